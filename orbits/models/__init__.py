@@ -1,0 +1,1 @@
+"""The machines: one model per file."""

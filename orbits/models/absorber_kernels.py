@@ -1,0 +1,298 @@
+"""Elementary maps of the reduced absorber between consecutive events, with exact derivatives (compiled).
+
+A node is (Psi, B+) at an impact and (Psi, w) at a turn, stick or slip. In mode s = -1 or +1, with d = (Psi - Psi_0)/Omega
+and beta = v' - w' at the start (B+ after an impact, C Omega cos Psi_0 from rest),
+
+    w' = C Omega cos Psi - beta - s a d,
+    w  = w_0 + C (sin Psi - sin Psi_0) - beta d - s a d^2 / 2,      a = (1 + eps) mu g,
+
+which are the paper's G+_LR and G+_RL for alternating impacts, and all other pairs of events beside them.
+Parameters in order: amplitude C, restitution r, friction mu, gravity g, mass_ratio eps, frequency Omega.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+NODE = 2
+AMPLITUDE, RESTITUTION, FRICTION, GRAVITY, MASS_RATIO, FREQUENCY = range(6)
+
+
+@njit(error_model="numpy")
+def linearise(data, u, p, work):
+    """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
+
+    Parameters
+    ----------
+    data : tuple
+        ``(events, modes, params, ip, twist, shift, pinned)``.
+    u : float array (2 L,)
+        Nodes, node-major.
+    p : float
+        Value of the parameter with index `ip`.
+    work : tuple
+        From `orbits.cyclic.workspace`; F, A, D, Q are filled.
+
+    Returns
+    -------
+    float
+        Largest residual, infinity where the maps cannot be evaluated.
+    """
+    events, modes, params, ip, twist, shift, pinned = data
+    F, A, D, Q, par, trig = work[0], work[1], work[2], work[3], work[4], work[5]
+    length = F.shape[0]
+    for j in range(6):
+        par[j] = params[j]
+    par[ip] = p
+    C, r, mu, g, eps, omega = par[0], par[1], par[2], par[3], par[4], par[5]
+    a = (1.0 + eps) * mu * g
+    da = 0.0
+    if ip == FRICTION:
+        da = (1.0 + eps) * g
+    elif ip == GRAVITY:
+        da = (1.0 + eps) * mu
+    elif ip == MASS_RATIO:
+        da = mu * g
+    by_omega = 1.0 / omega
+    speed = C * omega
+    largest = 0.0
+    for i in range(length):
+        trig[i, 0] = np.sin(u[2 * i])
+        trig[i, 1] = np.cos(u[2 * i])
+    trig[length, 0] = twist * trig[0, 0]
+    trig[length, 1] = twist * trig[0, 1]
+    for i in range(length):
+        event = events[i]
+        if i + 1 < length:
+            arrival = events[i + 1]
+            psi1 = u[2 * i + 2]
+            y1 = u[2 * i + 3]
+        else:
+            arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
+            psi1 = u[0] + shift
+            y1 = twist * u[1]
+        psi0 = u[2 * i]
+        y0 = u[2 * i + 1]
+        s0, c0 = trig[i, 0], trig[i, 1]
+        s1, c1 = trig[i + 1, 0], trig[i + 1, 1]
+        mode = modes[i]
+        if mode == 0:  # stuck: the absorber waits for the slip
+            after = modes[i + 1] if i + 1 < length else twist * modes[0]
+            F[i, 0] = speed * omega * s1 + after * a
+            F[i, 1] = y0 - y1
+            A[i, 0, 0] = 0.0
+            A[i, 0, 1] = 0.0
+            A[i, 1, 0] = 0.0
+            A[i, 1, 1] = 1.0
+            D[i, 0, 0] = speed * omega * c1
+            D[i, 0, 1] = 0.0
+            D[i, 1, 0] = 0.0
+            D[i, 1, 1] = -1.0
+            q = after * da
+            if ip == AMPLITUDE:
+                q = omega * omega * s1
+            elif ip == FREQUENCY:
+                q = 2.0 * speed * s1
+            Q[i, 0] = q
+            Q[i, 1] = 0.0
+        else:
+            sa = mode * a
+            d = (psi1 - psi0) * by_omega
+            if event < 2:
+                w0 = 1.0 - 2.0 * event
+                beta = y0
+                beta_psi = 0.0
+                beta_y = 1.0
+                w0_y = 0.0
+                beta_C = 0.0
+                beta_omega = 0.0
+            else:
+                w0 = y0
+                beta = speed * c0
+                beta_psi = -speed * s0
+                beta_y = 0.0
+                w0_y = 1.0
+                beta_C = omega * c0
+                beta_omega = C * c0
+            pull = beta + sa * d
+            V = speed * c1 - pull
+            W = w0 + C * (s1 - s0) - (beta + 0.5 * sa * d) * d
+            V_psi0 = sa * by_omega - beta_psi
+            V_y0 = -beta_y
+            V_psi1 = -speed * s1 - sa * by_omega
+            W_psi0 = pull * by_omega - C * c0 - beta_psi * d
+            W_y0 = w0_y - beta_y * d
+            W_psi1 = V * by_omega
+            if ip == AMPLITUDE:
+                V_p = omega * c1 - beta_C
+                W_p = s1 - s0 - beta_C * d
+            elif ip == FREQUENCY:
+                d_omega = -d * by_omega
+                V_p = C * c1 - beta_omega - sa * d_omega
+                W_p = -beta_omega * d - pull * d_omega
+            else:
+                V_p = -mode * da * d
+                W_p = -0.5 * mode * da * d * d
+            if arrival < 2:
+                F[i, 0] = y1 - speed * c1 - r * V
+                F[i, 1] = W - (1.0 - 2.0 * arrival)
+                A[i, 0, 0] = -r * V_psi0
+                A[i, 0, 1] = -r * V_y0
+                A[i, 1, 0] = W_psi0
+                A[i, 1, 1] = W_y0
+                D[i, 0, 0] = speed * s1 - r * V_psi1
+                D[i, 0, 1] = 1.0
+                D[i, 1, 0] = W_psi1
+                D[i, 1, 1] = 0.0
+                q = -r * V_p
+                if ip == AMPLITUDE:
+                    q -= omega * c1
+                elif ip == FREQUENCY:
+                    q -= C * c1
+                elif ip == RESTITUTION:
+                    q -= V
+                Q[i, 0] = q
+                Q[i, 1] = W_p
+            else:
+                F[i, 0] = V
+                F[i, 1] = W - y1
+                A[i, 0, 0] = V_psi0
+                A[i, 0, 1] = V_y0
+                A[i, 1, 0] = W_psi0
+                A[i, 1, 1] = W_y0
+                D[i, 0, 0] = V_psi1
+                D[i, 0, 1] = 0.0
+                D[i, 1, 0] = W_psi1
+                D[i, 1, 1] = -1.0
+                Q[i, 0] = V_p
+                Q[i, 1] = W_p
+        size = max(abs(F[i, 0]), abs(F[i, 1]))
+        if not size <= largest:
+            largest = size
+    if pinned:
+        _pin(F, A, D, Q, u, twist, work[10])
+    if not np.isfinite(largest):
+        return np.inf
+    return largest
+
+
+@njit(error_model="numpy")
+def _pin(F, A, D, Q, u, twist, pin):
+    """Replace the last displacement equation by w_{L-1} + w_L = 0; what was there goes to `pin`."""
+    last = F.shape[0] - 1
+    for c in range(2):
+        pin[c] = A[last, 1, c]
+        pin[2 + c] = D[last, 1, c]
+    pin[4] = F[last, 1]
+    A[last, 1, 0] = 0.0
+    A[last, 1, 1] = 1.0
+    D[last, 1, 0] = 0.0
+    D[last, 1, 1] = 1.0
+    F[last, 1] = u[2 * last + 1] + twist * u[1]
+    Q[last, 1] = 0.0
+
+
+@njit(error_model="numpy")
+def unpin(data, work):
+    """Put the displacement equation back, for the multipliers."""
+    if data[6]:
+        A, D, pin = work[1], work[2], work[10]
+        last = A.shape[0] - 1
+        for c in range(2):
+            A[last, 1, c] = pin[c]
+            D[last, 1, c] = pin[2 + c]
+
+
+@njit(error_model="numpy")
+def margins(data, u, p, work, out):
+    """Margins of admissibility, all positive for an orbit that a machine can follow .
+
+    Reads sines and cosines of the last `linearise` from `work`. `out` has shape (4 L,), four numbers per node:
+    0 the flight after it (smallest s w' at an interior minimum; without friction 1 - |w| at the extrema; stuck: time
+    to the slip, negative unless it is the first time friction gives way), 1 the event (approach speed, excess of
+    shaking over friction, reserve of friction, rate at which friction gives way), 2 the wall (1 - |w| away from impacts),
+    3 the duration of the segment. Infinity where there is nothing to watch.
+    """
+    events, modes, params, ip, twist, shift, pinned = data
+    par, trig = work[4], work[5]
+    length = events.shape[0]
+    C, mu, g, eps, omega = par[0], par[2], par[3], par[4], par[5]
+    a = (1.0 + eps) * mu * g
+    peak = C * omega * omega
+    speed = C * omega
+    two_pi = 2.0 * np.pi
+    ratio = a / peak if peak > 0.0 else np.inf
+    # s w' has its interior minima where sin Psi = -s a/peak and s cos Psi < 0
+    reversal = np.arcsin(ratio) if ratio < 1.0 else 0.0
+    for i in range(length):
+        event = events[i]
+        mode = modes[i]
+        psi0 = u[2 * i]
+        if i + 1 < length:
+            psi1 = u[2 * i + 2]
+            arrival = events[i + 1]
+            after = modes[i + 1]
+        else:
+            psi1 = u[0] + shift
+            arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
+            after = modes[0] if twist > 0.0 else -modes[0]
+        s0, c0 = trig[i, 0], trig[i, 1]
+        c1 = trig[i + 1, 1]
+        d = (psi1 - psi0) / omega
+        beta = u[2 * i + 1] if event < 2 else speed * c0
+        flight = np.inf
+        if mode == 0:
+            # the first time that -m C Omega^2 sin Psi = a with growing left side, for either direction m of the slip
+            if ratio < 1.0:
+                up = np.pi + reversal - psi0
+                down = reversal - psi0
+                up -= two_pi * np.floor(up / two_pi)
+                down -= two_pi * np.floor(down / two_pi)
+                first = min(up, down)
+                late = (psi1 - psi0) - first
+                flight = d if abs(late) < 1e-6 else -abs(late)
+            else:
+                flight = -1.0
+        elif a > 0.0:
+            if ratio < 1.0:
+                # mode +: Psi = pi + reversal (cos < 0);  mode -: Psi = reversal (cos > 0)
+                base = np.pi + reversal if mode > 0 else reversal
+                last = base + two_pi * np.floor((psi1 - base) / two_pi)
+                if last >= psi1 - 1e-9 * (1.0 if arrival >= 2 else 0.0):
+                    last -= two_pi
+                if last > psi0 + 1e-9 * (1.0 if event >= 2 else 0.0):
+                    cosine = -mode * np.sqrt(1.0 - ratio * ratio)
+                    # s w' = s (speed cos - beta) - a (t - t0): the last minimum is the lowest one
+                    flight = mode * (speed * cosine - beta) - a * (last - psi0) / omega
+        else:
+            # without friction the flight may reverse; the walls must hold inside it: extrema where cos Psi = beta/speed
+            w0 = 1.0 - 2.0 * event if event < 2 else u[2 * i + 1]
+            if abs(beta) < speed:
+                angle = np.arccos(beta / speed)
+                for sign in (-1.0, 1.0):
+                    psi = sign * angle
+                    psi += two_pi * np.ceil((psi0 - psi) / two_pi)
+                    while psi < psi1:
+                        if psi > psi0:
+                            w = w0 + C * (np.sin(psi) - s0) - beta * (psi - psi0) / omega
+                            flight = min(flight, 1.0 - abs(w))
+                        psi += two_pi
+        out[4 * i] = flight
+        wall = np.inf
+        incoming = modes[i - 1] if i > 0 else (modes[length - 1] if twist > 0.0 else -modes[length - 1])
+        push = -peak * s0  # v''
+        if event >= 2:
+            wall = 1.0 - abs(u[2 * i + 1])
+        if event == 2:
+            out[4 * i + 1] = -incoming * push - a
+        elif event == 3:
+            out[4 * i + 1] = a - abs(push)
+        elif event == 4:
+            out[4 * i + 1] = -mode * c0 * peak
+        out[4 * i + 2] = wall
+        out[4 * i + 3] = d
+        if arrival < 2:
+            approach = (1.0 - 2.0 * arrival) * (speed * c1 - beta - mode * a * d)
+            following = i + 1 if i + 1 < length else 0
+            out[4 * following + 1] = approach
