@@ -1,0 +1,5 @@
+"""The graph of branches and switches."""
+
+from .graph import Graph, Switch
+
+__all__ = ["Graph", "Switch"]

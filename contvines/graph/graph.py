@@ -1,0 +1,168 @@
+"""Graph: branches, special points and the switches that connect them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..branch import Branch
+    from ..special import SpecialPoint
+
+
+@dataclass(frozen=True)
+class Switch:
+    """One way from a branch to another.
+
+    Attributes
+    ----------
+    point : str
+        Label of the special point at which they meet.
+    source, target : str
+        Labels of branches.
+    kind : str
+        Kind of the special point.
+    note : str
+        At a border "persistence" or "nonsmooth fold"; remarks such as "mirror image not traced".
+    """
+
+    point: str
+    source: str
+    target: str
+    kind: str
+    note: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry of this switch in the JSON of a graph."""
+        return {"point": self.point, "from": self.source, "to": self.target, "kind": self.kind, "note": self.note}
+
+
+@dataclass(eq=False)
+class Graph:
+    """Branches and special points by label, and the switches between branches.
+
+    Attributes
+    ----------
+    parameter : str
+        Name of the continuation parameter.
+    model : dict
+        Name and fixed parameters of the model (JSON-able).
+    branches : dict of Branch
+    special : dict of SpecialPoint
+    switches : list of Switch
+    within : (float, float)
+        The interval of the parameter.
+    settings : dict
+        Settings of the run, ``depth`` and ``virtual`` included (JSON-able).
+    finished : bool
+        False while the run that builds it goes on, or was interrupted.
+    message : str
+        How the run ended, in words.
+    """
+
+    parameter: str = "p"
+    model: dict[str, Any] = field(default_factory=dict)
+    branches: dict[str, Branch] = field(default_factory=dict)
+    special: dict[str, SpecialPoint] = field(default_factory=dict)
+    switches: list[Switch] = field(default_factory=list)
+    within: tuple[float, float] = (float("-inf"), float("inf"))
+    settings: dict[str, Any] = field(default_factory=dict)
+    finished: bool = False
+    message: str = ""
+
+    def __getitem__(self, label: str) -> Any:
+        if label in self.special:
+            return self.special[label]
+        if label in self.branches:
+            return self.branches[label]
+        known = ", ".join([*self.branches, *self.special]) or "none yet"
+        raise KeyError(f"the graph has no label {label!r}; it has {known}")
+
+    def __contains__(self, label: object) -> bool:
+        return label in self.special or label in self.branches
+
+    def __iter__(self):
+        yield from self.branches.values()
+
+    def __len__(self) -> int:
+        return len(self.branches)
+
+    def __str__(self) -> str:
+        from .table import table
+
+        return table(self)
+
+    def __repr__(self) -> str:
+        state = "" if self.finished else ", unfinished"
+        return f"Graph({len(self.branches)} branches, {len(self.special)} special points, {len(self.switches)} switches{state})"
+
+    def on(self, branch: str) -> list[SpecialPoint]:
+        """The special points of a branch, in order along it."""
+        return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
+
+    def of_kind(self, kind: str) -> list[SpecialPoint]:
+        """The special points of a kind, in the order of their labels."""
+        return [point for point in self.special.values() if point.kind == kind]
+
+    def attach(self, problem: Any) -> None:
+        """Give all branches and special points without a problem this one (after loading a callable's graph)."""
+        for branch in self.branches.values():
+            if branch.problem is None and branch.points.shape[1] == problem.dimension:
+                branch.problem = problem
+        for point in self.special.values():
+            if point.problem is None and len(point.u) == problem.dimension:
+                point.problem = problem
+
+    def to_dict(self) -> dict[str, Any]:
+        """The graph as JSON-able dict: model, parameter, branches, special, switches."""
+        return {
+            "model": self.model,
+            "parameter": self.parameter,
+            "within": list(self.within),
+            "finished": self.finished,
+            "branches": [branch.to_dict() for branch in self.branches.values()],
+            "special": [point.to_dict() for point in self.special.values()],
+            "switches": [switch.to_dict() for switch in self.switches],
+        }
+
+    def network(self) -> Any:
+        """The graph as networkx MultiDiGraph: nodes are branches, edges are switches."""
+        import networkx
+
+        network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
+        for branch in self.branches.values():
+            network.add_node(branch.label, **branch.to_dict())
+        for switch in self.switches:
+            point = self.special[switch.point]
+            network.add_edge(
+                switch.source,
+                switch.target,
+                key=switch.point,
+                point=switch.point,
+                kind=switch.kind,
+                value=float(point.value),
+                criticality=point.criticality,
+                note=switch.note,
+            )
+        return network
+
+    def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
+        """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
+        from ..plots.diagram import plot_diagram
+
+        return plot_diagram(self, x=x, y=y, **options)
+
+    def save(self, path: str | Path) -> None:
+        """Write the graph to a .vines file; see :mod:`contvines.store`."""
+        from ..store import save
+
+        save(self, path)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Graph:
+        """Read a graph from a .vines file."""
+        from ..store import load
+
+        return load(path)

@@ -1,0 +1,56 @@
+"""The graph as a readable table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .graph import Graph
+
+
+def table(graph: Graph) -> str:
+    """Branches, special points and switches, one line each."""
+    name = graph.parameter
+    lines = [f"{len(graph.branches)} branches in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"]
+    if not graph.finished:
+        lines[0] += " (unfinished)"
+    rows = [("branch", "what", name, "stable", "points", "ended")]
+    for branch in graph.branches.values():
+        about = branch.description
+        what = " ".join(
+            str(part)
+            for part in (
+                about.get("word", about.get("name", "")),
+                f"k={about['periods']}" if "periods" in about else "",
+                "symmetric" if about.get("symmetric") else "",
+                "" if branch.real else "virtual",
+            )
+            if part
+        )
+        lo, hi = branch.range
+        stable = ", ".join(f"{a:.6g}..{b:.6g}" for a, b in branch.stable_intervals()) or "-"
+        ended = "; ".join(dict.fromkeys(branch.ended))
+        rows.append((branch.label, what, f"{lo:.6g}..{hi:.6g}", stable, str(len(branch)), ended))
+    lines += ["", *_columns(rows)]
+    if graph.special:
+        rows = [("point", "kind", "on", name, "", "leads to")]
+        for point in graph.special.values():
+            remarks = [point.criticality or ""]
+            if not point.real:
+                remarks.append("virtual")
+            targets = []
+            for switch in graph.switches:
+                if switch.point == point.label:
+                    arrow = f"{switch.source} -> {switch.target}"
+                    targets.append(f"{arrow} ({switch.note})" if switch.note else arrow)
+            rows.append(
+                (point.label, point.kind, point.branch, f"{point.value:.12g}", " ".join(filter(None, remarks)),
+                 "; ".join(targets))
+            )
+        lines += ["", *_columns(rows)]
+    return "\n".join(lines)
+
+
+def _columns(rows: list[tuple[str, ...]]) -> list[str]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]

@@ -1,0 +1,60 @@
+"""Journal: what a run has already computed, so that an interrupted run can be run again and catch up."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Journal(Protocol):
+    """The contract of a journal.
+
+    The automatic diagram is deterministic. It asks ``recall`` before each chunk of points, each location and each
+    crossing, computes only what is not there, and hands it to ``record``. Running again with the same journal
+    therefore resumes.
+    """
+
+    def recall(self, key: str) -> dict[str, Any] | None:
+        """What was recorded under the key: numpy arrays and JSON scalars, lists and dicts; None if nothing."""
+        ...
+
+    def record(self, key: str, values: dict[str, Any]) -> None:
+        """Keep the values; on return they survive a kill."""
+        ...
+
+    def checkpoint(self, graph: Any) -> None:
+        """Called with the graph so far, after each finished branch and at the end (``graph.finished``)."""
+        ...
+
+
+class NullJournal:
+    """Remembers nothing."""
+
+    def recall(self, key: str) -> dict[str, Any] | None:
+        return None
+
+    def record(self, key: str, values: dict[str, Any]) -> None:
+        return None
+
+    def checkpoint(self, graph: Any) -> None:
+        return None
+
+
+class MemoryJournal:
+    """Remembers in memory; for tests and interactive work."""
+
+    def __init__(self) -> None:
+        self.entries: dict[str, dict[str, Any]] = {}
+        self.graph: Any = None
+
+    def recall(self, key: str) -> dict[str, Any] | None:
+        return self.entries.get(key)
+
+    def record(self, key: str, values: dict[str, Any]) -> None:
+        self.entries[key] = {
+            name: value.copy() if isinstance(value, np.ndarray) else value for name, value in values.items()
+        }
+
+    def checkpoint(self, graph: Any) -> None:
+        self.graph = graph
