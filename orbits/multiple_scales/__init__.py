@@ -1,0 +1,70 @@
+"""The coupled machine near resonance, averaged: slow manifolds, slow flow, steady states, response, decay.
+
+First order in the mass ratio. `SlowFlow` holds the parameters; the other functions take one.
+"""
+
+from .backbone import Backbone, Coefficients, backbone, coefficients, resonance_detuning, resonance_frequency
+from .decay import damping_ratio, decay_amplitude, decay_bound, decay_rate, decay_time
+from .equilibria import (
+    Equilibrium,
+    equilibria,
+    equilibrium_at,
+    impacting_polynomial,
+    impacting_velocities,
+    sliding_polynomial,
+    sliding_turning_points,
+)
+from .flow import CLOSURES, SlowFlow
+from .manifolds import (
+    ManifoldPoint,
+    activation,
+    friction_level,
+    impact_loss,
+    reversal_bound,
+    sliding_bounds,
+    squared_amplitude,
+    symmetry_limit,
+    turning_point,
+    velocity_at,
+)
+from .response import ResponseCurve, ResponsePoint, frequency_response, special_points
+from .trajectory import SlowTrajectory, integrate
+
+__all__ = [
+    "CLOSURES",
+    "Backbone",
+    "Coefficients",
+    "Equilibrium",
+    "ManifoldPoint",
+    "ResponseCurve",
+    "ResponsePoint",
+    "SlowFlow",
+    "SlowTrajectory",
+    "activation",
+    "backbone",
+    "coefficients",
+    "damping_ratio",
+    "decay_amplitude",
+    "decay_bound",
+    "decay_rate",
+    "decay_time",
+    "equilibria",
+    "equilibrium_at",
+    "frequency_response",
+    "friction_level",
+    "impact_loss",
+    "impacting_polynomial",
+    "impacting_velocities",
+    "integrate",
+    "resonance_detuning",
+    "resonance_frequency",
+    "reversal_bound",
+    "sliding_bounds",
+    "sliding_polynomial",
+    "sliding_turning_points",
+    "special_points",
+    "squared_amplitude",
+    "symmetry_limit",
+    "turning_point",
+    "velocity_at",
+]
