@@ -1,0 +1,360 @@
+"""The periodic QR algorithm: eigenvalues of a product of small matrices from its factors.
+
+After Bojanczyk, Golub and Van Dooren, Proc. SPIE 1770 (1992) 31: orthogonal changes of basis between the
+factors bring all but one to upper triangular form and the last to upper Hessenberg form; implicit QR steps then
+chase the rotation round the cycle until the last is triangular too. Complex arithmetic with single shifts keeps
+it short; pairs are made exactly conjugate at the end. Scales are carried as (mantissa, exponent): no overflow.
+O(L) time and memory, no allocation.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+UNIT_ROUNDOFF = 2.0**-53
+LARGE, SMALL = 2.0**200, 2.0**-200  # a running product is rescaled outside this range
+LARGEST, LEAST = 2.0**1023, 2.0**-1021  # multipliers beyond these are clamped (never to 0 or infinity)
+
+
+def scratch_size(length, n):
+    """Number of floats of scratch for `length` factors of order `n`."""
+    return length * (3 * n * n + 2) + 8 * n * n + 8 * n
+
+
+@njit(cache=True, error_model="numpy")
+def scaled(mantissa, exponent):
+    """mantissa * 2**exponent, clamped away from 0 and infinity (an exact 0 stays 0)."""
+    if mantissa == 0.0 or not math.isfinite(mantissa):
+        return mantissa
+    fraction, own = math.frexp(mantissa)
+    total = own + exponent
+    if total > 1023:
+        return math.copysign(LARGEST, mantissa)
+    if total < -1020:
+        return math.copysign(LEAST, mantissa)
+    return math.ldexp(fraction, total)
+
+
+@njit(cache=True, error_model="numpy")
+def _sort(re, im):
+    """Descending modulus, then real part, then imaginary part (insertion sort in place)."""
+    for i in range(1, re.size):
+        x, y = re[i], im[i]
+        r = math.hypot(x, y)
+        j = i - 1
+        while j >= 0:
+            other = math.hypot(re[j], im[j])
+            if other > r or (other == r and (re[j] > x or (re[j] == x and im[j] >= y))):
+                break
+            re[j + 1], im[j + 1] = re[j], im[j]
+            j -= 1
+        re[j + 1], im[j + 1] = x, y
+
+
+@njit(cache=True, error_model="numpy")
+def _factors(A, D, twist, M, lu):
+    """Fill M[i] = -D_i^{-1} A_i (LU, partial pivoting), closure included; False if some D_i is singular."""
+    length, n = A.shape[0], A.shape[1]
+    for i in range(length):
+        for r in range(n):
+            for c in range(n):
+                lu[r, c] = D[i, r, c]
+                M[i, r, c] = -A[i, r, c]
+        for k in range(n):
+            pivot = k
+            for r in range(k + 1, n):
+                if abs(lu[r, k]) > abs(lu[pivot, k]):
+                    pivot = r
+            if not abs(lu[pivot, k]) > 0.0:
+                return False
+            if pivot != k:
+                for c in range(n):
+                    lu[k, c], lu[pivot, c] = lu[pivot, c], lu[k, c]
+                    M[i, k, c], M[i, pivot, c] = M[i, pivot, c], M[i, k, c]
+            for r in range(k + 1, n):
+                factor = lu[r, k] / lu[k, k]
+                if factor != 0.0:
+                    for c in range(k + 1, n):
+                        lu[r, c] -= factor * lu[k, c]
+                    for c in range(n):
+                        M[i, r, c] -= factor * M[i, k, c]
+        for c in range(n):
+            for r in range(n - 1, -1, -1):
+                value = M[i, r, c]
+                for k in range(r + 1, n):
+                    value -= lu[r, k] * M[i, k, c]
+                M[i, r, c] = value / lu[r, r]
+    if twist != 1.0:
+        for r in range(1, n):
+            for c in range(n):
+                M[length - 1, r, c] *= twist
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _deficiency(A):
+    """Least number of multipliers that vanish exactly: a zero row of A_i forgets one direction (a stick)."""
+    most = 0
+    for i in range(A.shape[0]):
+        rows = 0
+        for r in range(A.shape[1]):
+            empty = True
+            for c in range(A.shape[2]):
+                if A[i, r, c] != 0.0:
+                    empty = False
+                    break
+            if empty:
+                rows += 1
+        most = max(most, rows)
+    return most
+
+
+@njit(cache=True, error_model="numpy")
+def _rotation(f, g):
+    """(c, s) with c real such that [[c, s], [-conj s, c]] maps (f, g) to (r, 0)."""
+    size = abs(g)
+    if size == 0.0:
+        return 1.0, 0j
+    other = abs(f)
+    if other == 0.0:
+        return 0.0, g.conjugate() / size
+    norm = math.hypot(other, size)
+    return other / norm, (f / other) * (g.conjugate() / norm)
+
+
+@njit(cache=True, error_model="numpy")
+def _rows(X, k, c, s, first, last):
+    """Rotate rows k, k+1 of X over columns first..last."""
+    for j in range(first, last + 1):
+        x, y = X[k, j], X[k + 1, j]
+        X[k, j] = c * x + s * y
+        X[k + 1, j] = c * y - s.conjugate() * x
+
+
+@njit(cache=True, error_model="numpy")
+def _columns(X, k, c, s, first, last):
+    """Rotate columns k, k+1 of X (by the adjoint) over rows first..last."""
+    for i in range(first, last + 1):
+        x, y = X[i, k], X[i, k + 1]
+        X[i, k] = c * x + s.conjugate() * y
+        X[i, k + 1] = c * y - s * x
+
+
+@njit(cache=True, error_model="numpy")
+def _carry(T, k, c, s, lo, hi, top):
+    """Carry a rotation of rows k, k+1 of the last factor round the cycle to its columns (rows lo..top)."""
+    last = T.shape[0] - 1
+    for i in range(last):
+        _columns(T[i], k, c, s, lo, k + 1)
+        c, s = _rotation(T[i, k, k], T[i, k + 1, k])
+        _rows(T[i], k, c, s, k, hi)
+        T[i, k + 1, k] = 0.0
+    _columns(T[last], k, c, s, lo, top)
+
+
+@njit(cache=True, error_model="numpy")
+def _reduce(T):
+    """Periodic Hessenberg-triangular form: T[0..L-2] upper triangular, T[L-1] upper Hessenberg."""
+    length, n = T.shape[0], T.shape[1]
+    for i in range(length - 1):
+        for j in range(n - 1):
+            for k in range(n - 2, j - 1, -1):
+                c, s = _rotation(T[i, k, j], T[i, k + 1, j])
+                _rows(T[i], k, c, s, j, n - 1)
+                T[i, k + 1, j] = 0.0
+                _columns(T[i + 1], k, c, s, 0, n - 1)
+    H = T[length - 1]
+    for j in range(n - 2):
+        for k in range(n - 2, j, -1):
+            c, s = _rotation(H[k, j], H[k + 1, j])
+            _rows(H, k, c, s, j, n - 1)
+            H[k + 1, j] = 0.0
+            _carry(T, k, c, s, 0, n - 1, n - 1)
+
+
+@njit(cache=True, error_model="numpy")
+def _shift(T, hi):
+    """Wilkinson's shift of the trailing 2 x 2 of the product over the leading scale: (mantissa, exponent)."""
+    last = T.shape[0] - 1
+    a, b, d = 1.0 + 0j, 0j, 1.0 + 0j
+    power = 0
+    for i in range(last):
+        X = T[i]
+        b = X[hi - 1, hi - 1] * b + X[hi - 1, hi] * d
+        a *= X[hi - 1, hi - 1]
+        d *= X[hi, hi]
+        norm = abs(a) + abs(b) + abs(d)
+        if norm == 0.0:
+            return 0j, 0
+        if not SMALL < norm < LARGE:
+            shift = math.frexp(norm)[1]
+            factor = math.ldexp(1.0, -shift)
+            a, b, d = a * factor, b * factor, d * factor
+            power += shift
+    H = T[last]
+    p00, p01 = H[hi - 1, hi - 1] * a, H[hi - 1, hi - 1] * b + H[hi - 1, hi] * d
+    p10, p11 = H[hi, hi - 1] * a, H[hi, hi - 1] * b + H[hi, hi] * d
+    half = 0.5 * (p00 - p11)
+    root = (half * half + p01 * p10) ** 0.5
+    if (half * root.conjugate()).real < 0.0:
+        root = -root
+    total = half + root
+    if total == 0.0:
+        return p11, power
+    return p11 - p01 * p10 / total, power
+
+
+@njit(cache=True, error_model="numpy")
+def _iterate(T, turns):
+    """Periodic QR iteration on a periodic Hessenberg-triangular form; False if it does not converge."""
+    last = T.shape[0] - 1
+    H = T[last]
+    hi = T.shape[1] - 1
+    tries = 0
+    while hi > 0:
+        lo = hi
+        while lo > 0:
+            size = abs(H[lo - 1, lo - 1]) + abs(H[lo, lo])
+            if size == 0.0:
+                for j in range(hi + 1):
+                    size += abs(H[lo - 1, j])
+            if abs(H[lo, lo - 1]) <= UNIT_ROUNDOFF * size:
+                H[lo, lo - 1] = 0.0
+                break
+            lo -= 1
+        if lo == hi:
+            hi -= 1
+            tries = 0
+            continue
+        singular = False
+        ratio, power = 1.0 + 0j, 0  # the scale of the product's first column
+        for i in range(last):
+            for k in range(lo, hi + 1):
+                size = 0.0
+                for j in range(k, hi + 1):
+                    size += abs(T[i, k, j])
+                for j in range(lo, k):
+                    size += abs(T[i, j, k])
+                if abs(T[i, k, k]) <= UNIT_ROUNDOFF * size:
+                    T[i, k, k] = 0.0
+                    singular = True
+            ratio *= T[i, lo, lo]
+            size = abs(ratio)
+            if not SMALL < size < LARGE and size != 0.0:
+                shift = math.frexp(size)[1]
+                ratio *= math.ldexp(1.0, -shift)
+                power += shift
+        if singular or tries < 2 or tries % 8 == 7:
+            # a step without shift, explicit: it sorts the moduli and sweeps exact zeros down
+            for k in range(lo, hi):
+                c, s = _rotation(H[k, k], H[k + 1, k])
+                _rows(H, k, c, s, k, hi)
+                H[k + 1, k] = 0.0
+                turns[2 * k], turns[2 * k + 1] = c, s
+            for k in range(lo, hi):
+                _carry(T, k, turns[2 * k].real, turns[2 * k + 1], lo, hi, k + 1)
+        else:
+            target, own = _shift(T, hi)
+            if tries % 10 == 9:
+                target *= 1.0 + 0.5j
+            gap = own - power
+            if gap > 900:
+                gap = 900
+            if gap < -900:
+                target, gap = 0j, 0
+            first = H[lo, lo] - target / ratio * math.ldexp(1.0, gap)
+            second = H[lo + 1, lo]
+            c, s = _rotation(first, second)
+            _rows(H, lo, c, s, lo, hi)
+            _carry(T, lo, c, s, lo, hi, min(lo + 2, hi))
+            for k in range(lo + 1, hi):
+                c, s = _rotation(H[k, k - 1], H[k + 1, k - 1])
+                _rows(H, k, c, s, k - 1, hi)
+                H[k + 1, k - 1] = 0.0
+                _carry(T, k, c, s, lo, hi, min(k + 2, hi))
+        tries += 1
+        if tries > 120:
+            return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _apart(x, xp, y, yp):
+    """|x 2^xp - conj(y) 2^yp| and |Im x| 2^xp + |Im y| 2^yp, both over 2^max(xp, yp)."""
+    top = max(xp, yp)
+    a = x * math.ldexp(1.0, max(xp - top, -1000))
+    b = y * math.ldexp(1.0, max(yp - top, -1000))
+    return abs(a - b.conjugate()), abs(a.imag) + abs(b.imag)
+
+
+@njit(cache=True, error_model="numpy")
+def _diagonal(T, re, im, value, power):
+    """Eigenvalues from the converged form: real ones made real, pairs made exactly conjugate."""
+    length, n = T.shape[0], T.shape[1]
+    for k in range(n):
+        product, raised = 1.0 + 0j, 0
+        for i in range(length):
+            product *= T[i, k, k]
+            size = abs(product)
+            if size == 0.0:
+                break
+            if not SMALL < size < LARGE:
+                shift = math.frexp(size)[1]
+                product *= math.ldexp(1.0, -shift)
+                raised += shift
+        size = abs(product)
+        if size > 0.0:
+            shift = math.frexp(size)[1]
+            product *= math.ldexp(1.0, -shift)
+            raised += shift
+            value[k], power[k] = product, raised
+        else:
+            value[k], power[k] = 0j, -2000000
+    for k in range(n):
+        if power[k].imag != 0.0:
+            continue
+        mate, closest = -1, 0.5
+        for j in range(k + 1, n):
+            if power[j].imag == 0.0:
+                distance, width = _apart(value[k], int(power[k].real), value[j], int(power[j].real))
+                if width > 0.0 and distance <= closest * width:
+                    mate, closest = j, distance / width
+        raised = int(power[k].real)
+        if mate < 0:
+            re[k], im[k] = scaled(value[k].real, raised), 0.0
+        else:
+            other = value[mate] * math.ldexp(1.0, int(power[mate].real) - raised)
+            re[k] = re[mate] = scaled(0.5 * (value[k].real + other.real), raised)
+            im[k] = scaled(0.5 * abs(value[k].imag - other.imag), raised)
+            im[mate] = -im[k]
+            power[mate] += 1j
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def periodic_multipliers(A, D, twist, re, im, scratch):
+    """Multipliers by the periodic QR algorithm alone: arguments and result as for `multipliers`."""
+    length, n = A.shape[0], A.shape[1]
+    size = length * n * n
+    M = scratch[:size].reshape((length, n, n))
+    room = scratch[size : size + n * n].reshape((n, n))
+    if not _factors(A, D, twist, M, room):
+        re[:] = math.nan
+        im[:] = math.nan
+        return False
+    start = size + n * n + (size + n * n) % 2
+    T = scratch[start : start + 2 * size].view(np.complex128).reshape((length, n, n))
+    small = scratch[start + 2 * size : start + 2 * size + 8 * n].view(np.complex128)
+    for i in range(length):
+        for r in range(n):
+            for c in range(n):
+                T[i, r, c] = M[i, r, c]
+    _reduce(T)
+    converged = _iterate(T, small)
+    _diagonal(T, re, im, small[:n], small[n : 2 * n])
+    _sort(re, im)
+    lost = min(_deficiency(A), n)
+    for k in range(n - lost, n):
+        re[k] = im[k] = 0.0
+    return converged

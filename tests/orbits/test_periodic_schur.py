@@ -1,0 +1,190 @@
+"""Multipliers of cycles against products in many digits (mpmath) and exact identities."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from orbits.eigenvectors import eigenvector
+from orbits.periodic_schur import multipliers, periodic_multipliers, scratch_size
+
+BOTH = pytest.mark.parametrize("method", [multipliers, periodic_multipliers])
+
+
+def compute(method, A, D=None, twist=1.0):
+    """Multipliers as complex numbers; D defaults to minus the identity, so that A are the factors."""
+    length, n = A.shape[:2]
+    if D is None:
+        D = np.tile(-np.eye(n), (length, 1, 1))
+    re, im = np.empty(n), np.empty(n)
+    assert method(A, D, twist, re, im, np.full(scratch_size(length, n), np.nan))
+    return re + 1j * im
+
+
+def exact(A, D=None, twist=1.0, digits=80):
+    """The same by forming the product in many digits."""
+    length, n = A.shape[:2]
+    with mpmath.workdps(digits + 2 * length):
+        product = mpmath.eye(n)
+        for i in range(length):
+            product = mpmath.matrix(A[i].tolist()) * product
+            if D is not None:
+                product = -mpmath.inverse(mpmath.matrix(D[i].tolist())) * product
+        for r in range(1, n):
+            for c in range(n):
+                product[r, c] *= twist
+        values = [product[0, 0]] if n == 1 else mpmath.eig(product, left=False, right=False)
+        return sorted(values, key=lambda z: -abs(z))
+
+
+def distance(found, expected):
+    """Largest relative difference when each expected value takes its nearest free match."""
+    free = list(found)
+    worst = 0.0
+    for z in expected:
+        nearest = min(free, key=lambda x: abs(mpmath.mpc(x) - z))
+        free.remove(nearest)
+        if nearest == 0:
+            worst = max(worst, float(abs(z)) * 1e40)
+        else:
+            worst = max(worst, float(abs(mpmath.mpc(nearest) - z) / abs(z)))
+    return worst
+
+
+@BOTH
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
+@pytest.mark.parametrize("length", [1, 2, 5, 30])
+def test_random_factors(method, n, length):
+    draw = np.random.default_rng(100 * n + length)
+    for twist in (1.0, -1.0):
+        A, D = draw.normal(size=(2, length, n, n))
+        assert distance(compute(method, A, D, twist), exact(A, D, twist)) < 1e-9
+
+
+@BOTH
+def test_order_and_conjugate_pairs(method):
+    turn = np.array([[math.cos(1.0), -math.sin(1.0)], [math.sin(1.0), math.cos(1.0)]])
+    A = np.tile(0.9 * turn, (3, 1, 1))
+    found = compute(method, A)
+    assert found[0] == found[1].conjugate() and found[0].imag > 0.0
+    assert found[0] == pytest.approx(0.9**3 * np.exp(3j), rel=1e-13)
+    found = compute(method, np.diag([0.5, -2.0, 2.0, 0.0])[None])
+    assert list(found) == [2.0, -2.0, 0.5, 0.0]
+
+
+@BOTH
+def test_thousands_of_unstable_factors_neither_overflow_nor_lose_the_small_one(method):
+    """One matrix repeated: lambda^L, where both powers leave the range of floats or nearly so."""
+    A1 = np.array([[3.0, 1.0], [1.0, 0.5]])
+    large, small = 1.75 + math.sqrt(1.25**2 + 1.0), 1.75 - math.sqrt(1.25**2 + 1.0)
+    found = compute(method, np.tile(A1, (400, 1, 1)))
+    assert found[0].real == pytest.approx(large**400, rel=1e-11)
+    assert found[1].real == pytest.approx(small**400, rel=1e-11)
+    assert not found.imag.any()
+    found = compute(method, np.tile(A1, (8192, 1, 1)))
+    assert found[0] == 2.0**1023 and found[1] == 2.0**-1021
+
+
+@BOTH
+def test_graded_factors_keep_small_multipliers(method):
+    """Growth and decay of 1e6 between neighbours in rotated bases; multipliers of order one to 1e-18."""
+    draw = np.random.default_rng(3)
+    for n in (2, 4):
+        bases = [np.linalg.qr(draw.normal(size=(n, n)))[0] for _ in range(6)]
+        diagonals = np.ones((6, n))
+        diagonals[:, 0] = [1e6, 1e-6, 1e5, 1e-5, 2.0, 1.0]
+        diagonals[:, -1] = 1e-3
+        A = np.array([bases[(i + 1) % 6] @ np.diag(diagonals[i]) @ bases[i].T for i in range(6)])
+        assert distance(compute(method, A), exact(A)) < 1e-8
+        D = np.array([draw.normal(size=(n, n)) for _ in range(6)])
+        assert distance(compute(method, D @ A, D), exact(D @ A, D)) < 1e-8
+
+
+@BOTH
+def test_growth_then_decay(method):
+    """A word that stretches one direction by 3e5 and shrinks it back: rounding grows by that much and no more."""
+    angle = 0.3
+    basis = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    stretch = basis @ np.diag([8.0, 1.0]) @ basis.T
+    shrink = basis @ np.diag([0.125, 1.0]) @ basis.T
+    rest = np.array([[0.6, 0.2], [-0.1, 0.7]])
+    A = np.array([stretch] * 6 + [shrink] * 6 + [rest])
+    assert distance(compute(method, A), exact(A)) < 1e-9
+
+
+@BOTH
+@pytest.mark.parametrize("n", [2, 4])
+def test_a_stick_forgets_exactly(method, n):
+    draw = np.random.default_rng(n)
+    A, D = draw.normal(size=(2, 7, n, n))
+    A[3, 0] = 0.0
+    found = compute(method, A, D)
+    assert found[-1] == 0.0
+    assert distance(found[:-1], exact(A, D)[:-1]) < 1e-9
+    A[5, 0] = 0.0
+    assert compute(method, A, D)[-1] == 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 60), st.floats(-3.0, 3.0), st.sampled_from([2, 4]))
+def test_determinant_is_the_product_of_multipliers(seed, length, spread, n):
+    draw = np.random.default_rng(seed)
+    A, D = draw.normal(size=(2, length, n, n))
+    A *= 10.0 ** (spread * draw.normal(size=length))[:, None, None]
+    signs, logs = np.linalg.slogdet(A)
+    below_signs, below = np.linalg.slogdet(D)
+    for method in (multipliers, periodic_multipliers):
+        found = compute(method, A, D)
+        if np.all((np.abs(found) < 1e300) & (np.abs(found) > 1e-300)):
+            assert np.log(np.abs(found)).sum() == pytest.approx((logs - below).sum(), abs=1e-6)
+            assert np.prod(found / np.abs(found)).real == pytest.approx(
+                np.prod(signs * below_signs), abs=1e-6
+            )
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(2, 40), st.booleans())
+def test_a_cycle_may_start_at_any_node(seed, length, four):
+    """Eigenvalues of a product do not change when its factors are rotated."""
+    draw = np.random.default_rng(seed)
+    n = 4 if four else 2
+    A = draw.normal(size=(length, n, n))
+    here, there = compute(multipliers, A), compute(multipliers, np.roll(A, draw.integers(length), axis=0))
+    for x in here:
+        assert min(abs(x - y) for y in there) <= 1e-6 * abs(x)
+
+
+def test_singular_second_block_gives_nan():
+    A = np.ones((2, 2, 2))
+    D = np.zeros((2, 2, 2))
+    re, im = np.empty(2), np.empty(2)
+    assert not multipliers(A, D, 1.0, re, im, np.empty(scratch_size(2, 2)))
+    assert np.isnan(re).all()
+
+
+@pytest.mark.parametrize("twist", [1.0, -1.0])
+@pytest.mark.parametrize("length", [1, 2, 9, 200])
+def test_eigenvectors_solve_the_cycle(length, twist):
+    draw = np.random.default_rng(length)
+    for n in (2, 4):
+        A, D = draw.normal(size=(2, length, n, n))
+        for value in compute(multipliers, A, D, twist):
+            if not 1e-290 < abs(value) < 1e290:
+                continue
+            y, gap = eigenvector(A, D, twist, value)
+            assert gap < 1e-6
+            assert np.isrealobj(y) == (value.imag == 0.0)
+            growth = abs(value) ** (1.0 / length)
+            closing = np.r_[1.0, np.full(n - 1, twist)] * y[0] * value / abs(value)
+            for i in range(length):
+                ahead = y[i + 1] if i + 1 < length else closing
+                left, right = A[i] @ y[i], growth * D[i] @ ahead
+                assert np.linalg.norm(left + right) <= 1e-6 * (np.linalg.norm(left) + np.linalg.norm(right))
+
+
+def test_eigenvector_refuses_zero():
+    with pytest.raises(ValueError, match="finite and not zero"):
+        eigenvector(np.ones((1, 2, 2)), np.ones((1, 2, 2)), 1.0, 0.0)
