@@ -1,40 +1,65 @@
-"""Branches of solutions of F(u, p) = 0, their bifurcations, and how they connect.
+"""contvines: branches of solutions, their bifurcations, and how the branches connect.
 
-Everything public is imported on first use, so that ``import contvines`` costs nothing.
+>>> import contvines as cv
+>>> circle = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
+>>> graph = cv.diagram(circle, within=(-2.0, 2.0))
+>>> graph["B1"].closed
+True
 """
 
+from __future__ import annotations
+
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
-_HOMES = {
-    "Branch": "contvines.branch",
-    "SpecialPoint": "contvines.special",
-    "Graph": "contvines.graph.graph",
-    "Switch": "contvines.graph.graph",
-    "load": "contvines.store",
-    "AlgebraicProblem": "contvines.problem",
-    "MapProblem": "contvines.problem",
-    "diagram": "contvines.graph.diagram",
-    "trace": "contvines.continuation.trace",
+_HOME = {
+    "AlgebraicProblem": ".algebraic",
+    "Branch": ".branch",
+    "Embedding": ".problem",
+    "Graph": ".graph.graph",
+    "Kernels": ".problem",
+    "MapProblem": ".map_problem",
+    "MemoryJournal": ".journal",
+    "NullJournal": ".journal",
+    "Seed": ".problem",
+    "Settings": ".continuation.settings",
+    "SpecialPoint": ".special",
+    "Switch": ".graph.graph",
+    "Symmetry": ".problem",
+    "diagram": ".graph.automatic",
+    "load": ".store",
+    "resume": ".store",
+    "save": ".store",
+    "switch": ".graph.automatic",
+    "trace": ".continuation.trace",
 }
 
-__all__ = ["__version__", *sorted(_HOMES)]
-
-if TYPE_CHECKING:
-    from contvines.branch import Branch
-    from contvines.graph.graph import Graph, Switch
-    from contvines.special import SpecialPoint
+__all__ = sorted(_HOME)
 
 
-def __getattr__(name: str):
-    if name not in _HOMES:
-        raise AttributeError(f"module 'contvines' has no attribute {name!r}")
-    value = getattr(import_module(_HOMES[name]), name)
-    globals()[name] = value
-    return value
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        value = getattr(import_module(_HOME[name], __name__), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"contvines has no {name!r}; it has {', '.join(__all__)}")
 
 
 def __dir__() -> list[str]:
-    return sorted(set(globals()) | set(__all__))
+    return [*__all__, "__version__"]
+
+
+if TYPE_CHECKING:
+    from .algebraic import AlgebraicProblem
+    from .branch import Branch
+    from .continuation.settings import Settings
+    from .continuation.trace import trace
+    from .graph.automatic import diagram, switch
+    from .graph.graph import Graph, Switch
+    from .journal import MemoryJournal, NullJournal
+    from .map_problem import MapProblem
+    from .problem import Embedding, Kernels, Seed, Symmetry
+    from .special import SpecialPoint
+    from .store import load, save

@@ -1,0 +1,152 @@
+"""A graph as files that other programs read: csv, json, graphml, mat."""
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .graph.graph import Graph
+
+FORMATS = ("csv", "json", "graphml", "mat")
+
+
+def export(graph: "Graph", to: str, path: str | Path) -> Path:
+    """Write a graph in one of `FORMATS`.
+
+    csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
+    unknowns, multipliers). json: what `contvines show --json` prints. graphml: branches as nodes, switches as
+    edges. mat: one struct of arrays per branch and per special point.
+
+    Raises
+    ------
+    ValueError
+        If the format is not known or the place cannot be written.
+    """
+    writers = {"csv": _csv, "json": _json, "graphml": _graphml, "mat": _mat}
+    if to not in writers:
+        raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise ValueError(
+            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
+        )
+    try:
+        writers[to](graph, path)
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be written ({error.strerror}).") from None
+    return path
+
+
+def json_text(data: Any, *, indent: int | None = 2) -> str:
+    """Standard JSON at full precision; numbers that JSON lacks (nan, infinities) become null."""
+    return json.dumps(_finite(data), indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {str(k): _finite(v) for k, v in data.items()}
+    if isinstance(data, np.ndarray):
+        return _finite(data.tolist())
+    if isinstance(data, list | tuple):
+        return [_finite(v) for v in data]
+    if isinstance(data, complex | np.complexfloating):
+        return _finite([data.real, data.imag])
+    if isinstance(data, np.generic):
+        data = data.item()
+    return None if isinstance(data, float) and not math.isfinite(data) else data
+
+
+def _csv(graph: "Graph", path: Path) -> None:
+    unknowns = max((b.points.shape[1] for b in graph.branches.values()), default=0)
+    multipliers = max((b.multipliers.shape[1] for b in graph.branches.values()), default=0)
+    head = ["branch", "index", graph.parameter, "stable", "real", "margin", "special"]
+    head += [f"u{i}" for i in range(unknowns)]
+    head += [f"multiplier{j}_{part}" for j in range(multipliers) for part in ("re", "im")]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        for branch in graph.branches.values():
+            marks = dict(branch.marks)
+            for i in range(len(branch)):
+                row = [
+                    branch.label,
+                    i,
+                    repr(float(branch.values[i])),
+                    int(branch.stable[i]),
+                    int(branch.real),
+                ]
+                row += [repr(float(branch.margin[i])), marks.get(i, "")]
+                point = [repr(float(v)) for v in branch.points[i]]
+                spectrum = [repr(float(v)) for m in branch.multipliers[i] for v in (m.real, m.imag)]
+                pad = [""] * (unknowns - len(point))
+                writer.writerow(row + point + pad + spectrum + [""] * (2 * multipliers - len(spectrum)))
+
+
+def _json(graph: "Graph", path: Path) -> None:
+    path.write_text(json_text(graph.to_dict()) + "\n", encoding="utf-8")
+
+
+def _graphml(graph: "Graph", path: Path) -> None:
+    import networkx
+
+    network = graph.network()
+    flat = networkx.MultiDiGraph(**_flat(network.graph))
+    for node, data in network.nodes(data=True):
+        flat.add_node(node, **_flat(data))
+    for source, target, key, data in network.edges(keys=True, data=True):
+        flat.add_edge(source, target, key=key, **_flat(data))
+    networkx.write_graphml(flat, path)
+
+
+def _flat(data: dict[str, Any]) -> dict[str, Any]:
+    """GraphML holds scalars: lists and dicts are written as JSON text, what is None is left out."""
+    return {
+        str(k): v if isinstance(v, bool | int | float | str) else json_text(v, indent=None)
+        for k, v in data.items()
+        if v is not None
+    }
+
+
+def _mat(graph: "Graph", path: Path) -> None:
+    from scipy.io import savemat
+
+    branches = {
+        b.label: {
+            "points": b.points,
+            "values": b.values,
+            "tangents": b.tangents,
+            "multipliers": b.multipliers,
+            "margin": b.margin,
+            "stable": b.stable,
+            "real": b.real,
+            "ended": list(b.ended),
+            "about": json_text(b.to_dict(), indent=None),
+        }
+        for b in graph.branches.values()
+    }
+    special = {
+        p.label: {
+            "kind": p.kind,
+            "branch": p.branch,
+            "value": float(p.value),
+            "u": p.u,
+            "tangent": p.tangent,
+            "multipliers": p.multipliers,
+            "real": p.real,
+            "about": json_text(p.to_dict(), indent=None),
+        }
+        for p in graph.special.values()
+    }
+    about = json_text(
+        {"model": graph.model, "parameter": graph.parameter, "finished": graph.finished}, indent=None
+    )
+    switches = json_text([s.to_dict() for s in graph.switches], indent=None)
+    savemat(
+        path,
+        {"branches": branches, "special": special, "switches": switches, "about": about},
+        long_field_names=True,
+    )

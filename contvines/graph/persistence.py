@@ -1,0 +1,115 @@
+"""A graph as named entries of arrays and JSON values, and back: what the store writes and reads."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from ..branch import Branch
+from ..problem import rebuild
+from ..special import SpecialPoint
+from .graph import Graph, Switch
+
+Entry = tuple[str, str, dict[str, Any]]
+
+_MEMBERS = ("branches", "special", "switches")
+
+
+def graph_entries(graph: Graph) -> Iterator[Entry]:
+    """The graph as (kind, key, content): one "graph", then every "branch", "special" and "switch" in order."""
+    yield "graph", "graph", {f.name: getattr(graph, f.name) for f in fields(graph) if f.name not in _MEMBERS}
+    for branch in graph.branches.values():
+        yield "branch", branch.label, _content(branch)
+    for point in graph.special.values():
+        yield "special", point.label, _content(point)
+    for i, switch in enumerate(graph.switches):
+        yield "switch", str(i), {f.name: getattr(switch, f.name) for f in fields(switch)}
+
+
+def graph_from_entries(
+    entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True
+) -> Graph:
+    """The graph that `graph_entries` took apart.
+
+    Parameters
+    ----------
+    entries : contents by kind and key, in the order in which they were written.
+    problems : rebuild the problems of the branches, so that orbits and measures can be had.
+    """
+    head = next(iter(entries.get("graph", {}).values()), {})
+    graph = Graph(**{**head, "within": _pair(head["within"])} if head else {})
+    built: dict[str, Any] = {}
+    for label, content in entries.get("branch", {}).items():
+        content = dict(content)
+        content["ended"] = _pair(content["ended"])
+        content["marks"] = tuple((int(i), str(name)) for i, name in content["marks"])
+        problem = _problem(content["description"], built) if problems else None
+        graph.branches[label] = Branch(problem=problem, **content)
+    for label, content in entries.get("special", {}).items():
+        content = dict(content)
+        content["bracket"] = _pair(content["bracket"])
+        branch = graph.branches.get(content["branch"])
+        graph.special[label] = SpecialPoint(problem=branch.problem if branch else None, **content)
+    graph.switches += [Switch(**content) for content in entries.get("switch", {}).values()]
+    return graph
+
+
+def _content(thing: Any) -> dict[str, Any]:
+    return {f.name: getattr(thing, f.name) for f in fields(thing) if f.name != "problem"}
+
+
+def _pair(values: Any) -> Any:
+    first, second = values
+    return (first, second)
+
+
+def _problem(description: dict[str, Any], built: dict[str, Any]) -> Any:
+    """The problem that a description names, once per description; None if it cannot or must not be rebuilt.
+
+    A file may name any function. Only those of this package's two halves, and of modules that the user has
+    imported, are called.
+    """
+    module = str(description.get("factory") or "").partition(":")[0]
+    if not module or not (module.partition(".")[0] in ("orbits", "contvines") or _users_own(module)):
+        return None
+    key = json.dumps(description, sort_keys=True, default=str)
+    if key not in built:
+        built[key] = rebuild(description)
+    return built[key]
+
+
+def _users_own(module: str) -> bool:
+    if module not in sys.modules or module.partition(".")[0] in sys.stdlib_module_names - {"__main__"}:
+        return False
+    origin = getattr(sys.modules[module], "__file__", None) or ""
+    return module == "__main__" or ("site-packages" not in origin and origin != "")
+
+
+def same_graph(one: Graph, other: Graph) -> bool:
+    """Whether two graphs hold the same numbers, bit for bit, problems aside."""
+    mine, theirs = list(graph_entries(one)), list(graph_entries(other))
+    return len(mine) == len(theirs) and all(
+        a[:2] == b[:2] and a[2].keys() == b[2].keys() and all(_equal(a[2][k], b[2][k]) for k in a[2])
+        for a, b in zip(mine, theirs)
+    )
+
+
+def _equal(a: Any, b: Any) -> bool:
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        return (
+            isinstance(a, np.ndarray)
+            and isinstance(b, np.ndarray)
+            and a.shape == b.shape
+            and a.dtype == b.dtype
+            and a.tobytes() == b.tobytes()
+        )
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(_equal(a[k], b[k]) for k in a)
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(_equal(x, y) for x, y in zip(a, b))
+    return a == b or (a != a and b != b)

@@ -1,0 +1,207 @@
+"""The bifurcation diagram: branches as curves, special points as labelled marks."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .labels import place_labels
+from .style import LINES, MARKS, PLAIN, STATES, axis_label, new_axes, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..graph.graph import Graph
+
+
+def plot_diagram(
+    graph: "Graph",
+    x: str | None = None,
+    y: str | None = None,
+    *,
+    axes: "Axes | None" = None,
+    labels: bool = True,
+    ends: bool = False,
+) -> "Figure":
+    """Draw a graph: solid stable, dashed unstable, dotted virtual, special points marked and labelled.
+
+    Parameters
+    ----------
+    graph : Graph
+    x, y : names of measures; the continuation parameter, and "B" or the first measure there is, by default.
+    axes : drawn on; a new figure without.
+    labels : write the labels of branches and special points.
+    ends : mark the ends of the interval, too.
+
+    Raises
+    ------
+    ValueError
+        If the problem has no such measure.
+    """
+    x = x or graph.parameter
+    y = y or default_measure(graph)
+    with styled():
+        figure, axes = new_axes(axes)
+        anchors, texts, colors, obstacles, used, states = [], [], [], [], {}, {}
+        cycle = [c["color"] for c in _cycle()]
+        tint: dict[str, str] = {}
+        for i, branch in enumerate(graph.branches.values()):
+            color = tint[branch.label] = cycle[i % len(cycle)]
+            xs, ys = measured(branch, x), measured(branch, y)
+            for first, last, stable in branch.pieces():
+                state = ("stable" if stable else "unstable") if branch.real else "virtual"
+                states.setdefault(state, None)
+                axes.plot(
+                    xs[first : last + 1],
+                    ys[first : last + 1],
+                    linestyle=LINES[state],
+                    color=color,
+                    linewidth=2.1 if state == "stable" else 1.5,
+                    zorder=3 if state == "stable" else 2.5,
+                )
+            if len(branch):
+                obstacles.append(_dense(axes, xs, ys))
+        special: list[tuple[str, float, float, str]] = []
+        for point in graph.special.values():
+            if point.kind == "end" and not ends:
+                continue
+            branch = graph.branches.get(point.branch)
+            if branch is None:
+                continue
+            px, py = _at(branch, point, x), _at(branch, point, y)
+            mark = MARKS.get(point.kind, PLAIN)
+            used.setdefault(mark.name, mark)
+            color = tint[branch.label]
+            axes.plot(
+                [px],
+                [py],
+                linestyle="none",
+                marker=mark.marker,
+                color=color,
+                markerfacecolor=color if mark.filled else "white",
+                markeredgecolor="black" if mark.filled else color,
+                markeredgewidth=0.5 if mark.filled else 1.3,
+                zorder=6,
+            )
+            special.append((point.label, px, py, "black"))
+        axes.margins(0.04)
+        axes.set_xlabel(axis_label(x))
+        axes.set_ylabel(axis_label(y))
+        _legend(axes, states, used)
+        if labels:
+            figure.draw_without_rendering()
+            middles = _middles(graph, x, y, tint, axes) if len(graph.branches) > 1 else []
+            for text, px, py, color in [*special, *middles]:
+                anchors.append((px, py))
+                texts.append(text)
+                colors.append(color)
+            clutter = np.vstack([*obstacles, *_boxes(axes)]) if obstacles else np.empty((0, 2))
+            if anchors:
+                place_labels(axes, anchors, texts, clutter, colors=colors)
+        if not graph.finished:
+            axes.set_title("unfinished", color="0.4")
+    return figure
+
+
+def default_measure(graph: "Graph") -> str:
+    """The measure on the y axis when none is named."""
+    for branch in graph.branches.values():
+        names = list(getattr(branch.problem, "measure_names", ()) or ())
+        if "B" in names:
+            return "B"
+        if names:
+            return next((n for n in names if n not in ("norm", graph.parameter)), names[0])
+    return "norm"
+
+
+def measured(branch: Any, name: str) -> np.ndarray:
+    """A measure along a branch, shape (n,); what cannot be had is refused with the names that can."""
+    try:
+        return np.asarray(branch.measure(name), float)
+    except (KeyError, ValueError) as error:
+        names = sorted({branch.parameter, *(getattr(branch.problem, "measure_names", None) or ("norm",))})
+        raise ValueError(
+            f"{branch.label} has no measure {name!r}; choose one of {', '.join(names)}."
+        ) from error
+
+
+def _at(branch: Any, point: Any, name: str) -> float:
+    if name == branch.parameter:
+        return float(point.value)
+    if 0 <= point.index < len(branch):
+        return float(measured(branch, name)[point.index])
+    if branch.problem is None:
+        nearest = int(np.argmin(np.abs(branch.points - point.u).max(axis=1)))
+        return float(measured(branch, name)[nearest])
+    return float(branch.problem.measures((name,), point.u[None, :], np.array([point.value]))[name][0])
+
+
+def _cycle() -> list[dict[str, str]]:
+    import matplotlib as mpl
+
+    return list(mpl.rcParams["axes.prop_cycle"])
+
+
+def _middles(
+    graph: "Graph", x: str, y: str, tint: dict[str, str], axes: "Axes"
+) -> list[tuple[str, float, float, str]]:
+    """A point halfway along each branch as drawn, for its label."""
+    found = []
+    for branch in graph.branches.values():
+        if len(branch) < 2:
+            continue
+        points = np.column_stack([measured(branch, x), measured(branch, y)])
+        screen = axes.transData.transform(points)
+        length = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(screen, axis=0).T))])
+        if not np.isfinite(length[-1]) or length[-1] < 12:
+            continue
+        i = int(np.searchsorted(length, 0.5 * length[-1]))
+        found.append((branch.label, float(points[i, 0]), float(points[i, 1]), tint[branch.label]))
+    return found
+
+
+def _dense(axes: "Axes", xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
+    """Points close together along a curve, so that a label cannot slip between two of them."""
+    if len(xs) < 2:
+        return np.column_stack([xs, ys])
+    at = np.linspace(0, len(xs) - 1, max(400, len(xs)))
+    return np.column_stack([np.interp(at, np.arange(len(xs)), v) for v in (xs, ys)])
+
+
+def _boxes(axes: "Axes") -> list[np.ndarray]:
+    """Points over the legend."""
+    legend = axes.get_legend()
+    if legend is None:
+        return []
+    box = legend.get_window_extent()
+    grid = np.array(
+        [(u, v) for u in np.linspace(box.x0, box.x1, 30) for v in np.linspace(box.y0, box.y1, 30)]
+    )
+    return [axes.transData.inverted().transform(grid)]
+
+
+def _legend(axes: "Axes", states: dict[str, None], used: dict[str, Any]) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D(
+            [], [], color="0.2", linestyle=LINES[s], linewidth=2.1 if s == "stable" else 1.5, label=STATES[s]
+        )
+        for s in STATES
+        if s in states
+    ]
+    handles += [
+        Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker=m.marker,
+            color="0.2",
+            markerfacecolor="0.2" if m.filled else "white",
+            markersize=5.5,
+            label=m.name,
+        )
+        for m in used.values()
+    ]
+    if handles:
+        axes.legend(handles=handles, loc="best", handlelength=2.6)

@@ -1,0 +1,127 @@
+"""The one style of all pictures, the marks of special points, and how a figure is made and saved."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+STYLE = Path(__file__).with_name("contvines.mplstyle")
+
+# line styles of the three states of an orbit
+LINES: dict[str, Any] = {"stable": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
+STATES = {"stable": "stable", "unstable": "unstable", "virtual": "virtual (beyond a border)"}
+
+
+@dataclass(frozen=True)
+class Mark:
+    """How a kind of special point is drawn."""
+
+    name: str
+    marker: str
+    filled: bool = False
+
+
+MARKS = {
+    "fold": Mark("fold", "s", True),
+    "symmetry-breaking": Mark("symmetry breaking", "D"),
+    "branch-point": Mark("branch point", "o"),
+    "period-doubling": Mark("period doubling", "^"),
+    "neimark-sacker": Mark("Neimark-Sacker", "p"),
+    "hopf": Mark("Hopf", "h"),
+    "velocity-graze": Mark("velocity graze", "v", True),
+    "wall-graze": Mark("wall graze", ">", True),
+    "stick": Mark("turn to stick", "<", True),
+    "chatter": Mark("vanishing event", "X", True),
+    "user": Mark("user function", "*", True),
+    "end": Mark("end of the interval", "|"),
+}
+PLAIN = Mark("special point", "o")
+
+# axis labels in the field's notation; anything else is shown by its own name
+SYMBOLS = {
+    "amplitude": "amplitude $C$",
+    "C2": "$C^2$",
+    "C^2": "$C^2$",
+    "B": "velocity after impact $B^+$",
+    "B+": "velocity after impact $B^+$",
+    "B-": "velocity before impact $B^-$",
+    "frequency": r"frequency $\Omega$",
+    "restitution": "restitution $r$",
+    "friction": r"friction $\mu$",
+    "gravity": r"gravity $\tilde g$",
+    "mass_ratio": r"mass ratio $\varepsilon$",
+    "forcing": "forcing $G$",
+    "damping": r"damping $\lambda$",
+}
+
+
+def axis_label(name: str) -> str:
+    """The label of an axis that shows `name`."""
+    return SYMBOLS.get(name, name.replace("_", " "))
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Draw in the package's style, leaving the user's settings as they were."""
+    import matplotlib.style
+
+    with matplotlib.style.context(["default", STYLE]):
+        yield
+
+
+def new_axes(axes: "Axes | None", **figure: Any) -> "tuple[Figure, Axes]":
+    """The figure and axes to draw on: the given ones, or new ones that no window manager holds."""
+    if axes is not None:
+        return axes.get_figure(root=True), axes  # type: ignore[return-value]
+    made = new_figure(**figure)
+    return made, made.add_subplot()
+
+
+def new_figure(**options: Any) -> "Figure":
+    """A figure without a window: it can be drawn anywhere and needs no closing."""
+    import sys
+
+    if "matplotlib.pyplot" in sys.modules:  # an interactive session shows it as its own
+        return sys.modules["matplotlib.pyplot"].figure(**options)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    made = Figure(**options)
+    FigureCanvasAgg(made)
+    return made
+
+
+def save_figure(figure: "Figure", path: str | Path) -> None:
+    """Save a figure; the name's ending chooses the format.
+
+    Raises
+    ------
+    ValueError
+        If the ending is not one that can be written, or the place cannot be.
+    """
+    path = Path(path)
+    check_picture(path)
+    with styled():
+        try:
+            figure.savefig(path)
+        except OSError as error:
+            raise ValueError(f"{path}: the picture cannot be written ({error.strerror}).") from None
+
+
+def check_picture(path: str | Path) -> None:
+    """Refuse, before any work, a picture that could not be written at the end."""
+    path = Path(path)
+    kinds = ("png", "pdf", "svg", "jpg", "eps")
+    if path.suffix.lower().lstrip(".") not in kinds:
+        raise ValueError(
+            f"{path}: a picture's name must end in .{', .'.join(kinds)}; {path.stem}.png would do."
+        )
+    if not path.parent.is_dir():
+        raise ValueError(
+            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
+        )

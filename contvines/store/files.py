@@ -1,0 +1,46 @@
+"""A graph to a file of its own, and back."""
+
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from .database import Store
+from .header import check_header
+
+
+def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
+    """Write a graph to a file of its own; an existing .vines file is replaced in one step.
+
+    Raises
+    ------
+    StoreError
+        If the path holds a file that is not ours (it is left untouched), or cannot be written.
+    """
+    path = Path(path)
+    if path.exists():
+        check_header(path)
+    draft = path.with_name(f".{path.name}.{os.getpid()}.save")
+    try:
+        with Store.create(draft, fingerprint or "saved from Python", getattr(graph, "model", None)) as store:
+            store.checkpoint(graph)
+            store.settle()
+        for tail in ("-wal", "-shm"):
+            with suppress(OSError):
+                path.with_name(path.name + tail).unlink()
+        os.replace(draft, path)
+    finally:
+        with suppress(OSError):
+            draft.unlink()
+
+
+def load(path: str | Path, *, problems: bool = True) -> Any:
+    """The graph kept in a .vines file; `graph.finished` says whether its run had ended.
+
+    Raises
+    ------
+    StoreError
+        If the file is not ours, is damaged or is newer.
+    """
+    with Store.open(path) as store:
+        return store.graph(problems=problems)

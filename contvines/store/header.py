@@ -1,0 +1,51 @@
+"""What a .vines file looks like from outside, and which files are refused before SQLite touches them."""
+
+import os
+import struct
+from pathlib import Path
+
+APPLICATION_ID = 0x56494E45  # "VINE"
+VERSION = 1
+MAGIC = b"SQLite format 3\x00"
+
+
+class StoreError(ValueError):
+    """A file that cannot be used; the message says why and what to do. The file is left untouched."""
+
+
+def check_header(path: Path) -> None:
+    """Refuse what is not ours before SQLite touches it."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(100)
+            size = os.fstat(file.fileno()).st_size
+    except FileNotFoundError:
+        raise StoreError(
+            f"{path}: there is no such file; `contvines diagram STUDY.toml -o {path}` makes one."
+        ) from None
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be read ({error.strerror}).") from None
+    if len(head) < 100 or not head.startswith(MAGIC):
+        raise StoreError(
+            f"{path}: this is not a .vines file; choose another name with -o, it is left untouched."
+        )
+    version, application = struct.unpack(">I", head[60:64])[0], struct.unpack(">I", head[68:72])[0]
+    if application != APPLICATION_ID:
+        raise StoreError(
+            f"{path}: this is a database of another program; choose another name with -o, it is left untouched."
+        )
+    if version > VERSION:
+        raise StoreError(
+            f"{path}: this file has format {version}, written by a newer contvines; this one knows format {VERSION}: "
+            "update contvines, or choose another name with -o."
+        )
+    page = struct.unpack(">H", head[16:18])[0] or 512
+    page = 65536 if page == 1 else page
+    if not pending(path) and (size % page or size < page * struct.unpack(">I", head[28:32])[0]):
+        raise StoreError(f"{path}: this file is damaged (it is cut short); move it away and run again.")
+
+
+def pending(path: Path) -> bool:
+    """Whether a live or killed run has left a log from which SQLite completes the file."""
+    log = path.with_name(path.name + "-wal")
+    return log.exists() and log.stat().st_size > 0

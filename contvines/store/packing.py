@@ -1,0 +1,41 @@
+"""Arrays and JSON values as the rows of an entry, and back.
+
+Arrays are kept as raw bytes (float64, little-endian, unless they are complex, integer or boolean), numbers as
+JSON text that round-trips exactly; every entry carries a digest of all its parts.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+
+def plain(value: Any) -> Any:
+    """A value that JSON can hold: numpy scalars to Python's, tuples to lists."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    return value
+
+
+def packed(array: np.ndarray) -> tuple[str, str, bytes]:
+    dtype = {"c": "<c16", "b": "|b1", "i": "<i8", "u": "<i8"}.get(array.dtype.kind, "<f8")
+    return dtype, json.dumps(array.shape), np.ascontiguousarray(array, dtype=dtype).tobytes()
+
+
+def unpacked(dtype: str, shape: str, data: bytes) -> np.ndarray:
+    return np.frombuffer(data, dtype=dtype).reshape(json.loads(shape)).copy()
+
+
+def digest_of(kind: str, key: str, scalars: str, rows: list[tuple[str, str, str, bytes]]) -> bytes:
+    digest = hashlib.blake2b(digest_size=16)
+    for part in (kind, key, scalars, *(p for row in rows for p in row)):
+        part = part if isinstance(part, bytes) else part.encode()
+        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(part)
+    return digest.digest()

@@ -1,0 +1,214 @@
+"""The store: identity of save and load, the journal, and the files that are refused and left untouched."""
+
+import importlib.util
+import sqlite3
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contvines.graph.persistence import same_graph
+from contvines.store import APPLICATION_ID, VERSION, Store, StoreError, load, save
+
+_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
+assert _spec is not None and _spec.loader is not None
+fakes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(fakes)
+
+
+def folder(path: Path) -> dict[str, bytes]:
+    return {p.name: p.read_bytes() for p in sorted(path.iterdir()) if not p.name.endswith("-shm")}
+
+
+@pytest.mark.parametrize("finished", [True, False])
+def test_save_and_load_are_the_identity(tmp_path, finished):
+    graph = fakes.pitchfork_graph(finished)
+    save(graph, tmp_path / "a.vines")
+    again = load(tmp_path / "a.vines")
+    assert same_graph(graph, again)
+    assert again.finished is finished
+    assert list(again.branches) == list(graph.branches)
+    assert again.to_dict() == graph.to_dict() or not finished
+    assert [p.name for p in tmp_path.iterdir()] == ["a.vines"]
+
+
+def test_same_graph_sees_a_single_bit():
+    one, other = fakes.pitchfork_graph(), fakes.pitchfork_graph()
+    other.branches["B2"].points[3, 0] = np.nextafter(other.branches["B2"].points[3, 0], 2)
+    assert not same_graph(one, other)
+
+
+def test_save_replaces_its_own_file_and_no_other(tmp_path):
+    path = tmp_path / "a.vines"
+    save(fakes.pitchfork_graph(False), path)
+    save(fakes.pitchfork_graph(True), path)
+    assert load(path).finished
+    other = tmp_path / "notes.txt"
+    other.write_text("mine")
+    with pytest.raises(StoreError, match=r"notes\.txt: this is not a \.vines file"):
+        save(fakes.pitchfork_graph(), other)
+    assert other.read_text() == "mine"
+
+
+def test_journal_returns_what_was_recorded(tmp_path):
+    content = {
+        "points": np.random.default_rng(0).standard_normal((5, 3)),
+        "spectrum": np.array([1 + 2j, np.nan]),
+        "stable": np.array([True, False]),
+        "count": 7,
+        "empty": np.zeros((0, 4)),
+        "status": "left the interval",
+        "deep": {"list": [1, 2.5, None]},
+        "value": np.float64(0.1) + np.float64(0.2),
+    }
+    with Store.create(tmp_path / "j.vines", "f") as store:
+        assert store.recall("B1/0") is None
+        store.record("B1/0", content)
+        store.record("B1/0", content)  # the same again is no error
+        assert len(store) == 1
+    with Store.open(tmp_path / "j.vines", write=True) as store:
+        again = store.recall("B1/0")
+        assert again is not None
+        assert again.keys() == content.keys()
+        for key, value in content.items():
+            if isinstance(value, np.ndarray):
+                assert again[key].dtype == value.dtype
+                assert again[key].shape == value.shape
+                assert again[key].tobytes() == value.tobytes()
+            else:
+                assert again[key] == value
+        assert isinstance(again["value"], float)
+
+
+def test_a_failed_transaction_leaves_nothing(tmp_path):
+    with Store.create(tmp_path / "j.vines", "f") as store:
+        with pytest.raises(TypeError):
+            store.record("bad", {"array": np.zeros(3), "thing": object()})
+        assert store.recall("bad") is None
+        assert len(store) == 0
+
+
+def test_checkpoint_keeps_the_journal_until_the_graph_is_finished(tmp_path):
+    with Store.create(tmp_path / "c.vines", "f") as store:
+        store.record("a", {"x": 1})
+        store.checkpoint(fakes.pitchfork_graph(False))
+        assert not store.finished
+        assert store.recall("a") == {"x": 1}
+        store.checkpoint(fakes.pitchfork_graph(True))
+        assert store.finished
+        assert store.recall("a") is None
+
+
+def test_attach_creates_reopens_and_refuses_another_study(tmp_path):
+    path = tmp_path / "s.vines"
+    with Store.attach(path, "one", {"a": 1}) as store:
+        store.record("k", {"x": 1})
+        assert store.study == {"a": 1}
+    with Store.attach(path, "one") as store:
+        assert store.recall("k") == {"x": 1}
+    before = folder(tmp_path)
+    with pytest.raises(StoreError, match="belongs to another study"):
+        Store.attach(path, "two")
+    assert folder(tmp_path) == before
+
+
+def _text(path):
+    path.write_text("a,b\n1,2\n" * 50)
+
+
+def _short(path):
+    path.write_bytes(b"SQL")
+
+
+def _empty(path):
+    path.write_bytes(b"")
+
+
+def _foreign(path):
+    with sqlite3.connect(path) as db:
+        db.execute("CREATE TABLE mine (x)")
+    db.close()
+
+
+def _newer(path):
+    save(fakes.pitchfork_graph(), path)
+    data = bytearray(path.read_bytes())
+    data[60:64] = struct.pack(">I", VERSION + 1)
+    path.write_bytes(data)
+
+
+def _cut(path):
+    save(fakes.pitchfork_graph(), path)
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+
+
+def _scrambled(path):
+    save(fakes.pitchfork_graph(), path)
+    data = bytearray(path.read_bytes())
+    data[4096 : 4096 + 400] = b"\xaa" * 400
+    path.write_bytes(data)
+
+
+def _one_bit(path):
+    graph = fakes.pitchfork_graph()
+    save(graph, path)
+    data = bytearray(path.read_bytes())
+    needle = graph.branches["B2"].points[:4].tobytes()
+    data[data.index(needle) + 17] ^= 1
+    path.write_bytes(data)
+
+
+def _hollow(path):
+    with sqlite3.connect(path) as db:
+        db.execute(f"PRAGMA application_id={APPLICATION_ID}")
+        db.execute(f"PRAGMA user_version={VERSION}")
+        db.execute("CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT)")
+    db.close()
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (_text, "not a .vines file"),
+        (_short, "not a .vines file"),
+        (_empty, "not a .vines file"),
+        (_foreign, "database of another program"),
+        (_newer, "newer contvines"),
+        (_cut, "cut short"),
+        (_scrambled, "damaged"),
+        (_one_bit, "has changed since it was written"),
+        (_hollow, "lacks the table"),
+    ],
+)
+def test_refused_files_get_a_sentence_and_are_left_untouched(tmp_path, make, sentence):
+    path = tmp_path / "x.vines"
+    make(path)
+    before = folder(tmp_path)
+    for attempt in (
+        lambda: load(path),
+        lambda: Store.attach(path, "f"),
+        lambda: Store.open(path, write=True),
+    ):
+        with pytest.raises(StoreError) as caught:
+            attempt()
+        assert sentence in str(caught.value)
+        assert "x.vines" in str(caught.value)
+    assert folder(tmp_path) == before
+
+
+def test_missing_file_and_folder_have_their_sentences(tmp_path):
+    with pytest.raises(StoreError, match="there is no such file"):
+        load(tmp_path / "none.vines")
+    with pytest.raises(StoreError, match="cannot be read"):
+        load(tmp_path)
+    with pytest.raises(StoreError, match="cannot be written"):
+        Store.create(tmp_path / "no" / "such" / "x.vines", "f")
+
+
+def test_a_file_that_names_a_foreign_function_does_not_call_it(tmp_path):
+    graph = fakes.pitchfork_graph()
+    graph.branches["B1"].description = {"factory": "os:mkdir", "name": "x"}
+    save(graph, tmp_path / "a.vines")
+    assert load(tmp_path / "a.vines").branches["B1"].problem is None
