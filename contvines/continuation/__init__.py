@@ -1,0 +1,1 @@
+"""Pseudo-arclength continuation: one algorithm, compiled or interpreted."""

@@ -1,0 +1,59 @@
+"""Binding the continuation loop to the kernels of a problem.
+
+One source, :mod:`contvines.continuation.march`: ``bind`` copies its functions with other globals. For compiled problems
+the copies are compiled and cached on disk under a name that carries a digest of the kernels' sources, so that a cached
+loop is never older than the kernels in it.
+"""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from . import march as source
+
+
+class Bound(NamedTuple):
+    """``correct`` and ``march`` with the kernels of a problem inside."""
+
+    correct: Callable[..., Any]
+    march: Callable[..., Any]
+
+
+_bound: dict[tuple[Any, ...], Bound] = {}
+
+
+def copy_with(function: types.FunctionType, suffix: str = "", **names: Any) -> types.FunctionType:
+    """The function with some of its globals replaced."""
+    copy = types.FunctionType(
+        function.__code__, {**function.__globals__, **names}, function.__name__, function.__defaults__
+    )
+    copy.__qualname__ = function.__qualname__ + suffix
+    copy.__module__ = function.__module__
+    copy.__doc__ = function.__doc__
+    return copy
+
+
+def bind(kernels: Any) -> Bound:
+    """The continuation loop for these kernels; made once per set of kernels and process."""
+    key = (kernels.linearise, kernels.bordered, kernels.inspect, bool(kernels.compiled))
+    if key not in _bound:
+        _bound[key] = _make(kernels)
+    return _bound[key]
+
+
+def _make(kernels: Any) -> Bound:
+    functions = {"linearise": kernels.linearise, "bordered": kernels.bordered, "inspect": kernels.inspect}
+    if not kernels.compiled:
+        correct = copy_with(source.correct, **functions)
+        return Bound(correct, copy_with(source.march, correct=correct, predict=source.predict, **functions))
+    from numba import njit
+
+    from ..problem import kernels_digest
+
+    suffix = "_" + kernels_digest(kernels)
+    compile_ = njit(cache=True, error_model="numpy")
+    correct = compile_(copy_with(source.correct, suffix, **functions))
+    predict = compile_(copy_with(source.predict, suffix))
+    return Bound(correct, compile_(copy_with(source.march, suffix, correct=correct, predict=predict, **functions)))

@@ -1,0 +1,73 @@
+"""Settings of a continuation run."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to continue. Lengths are in the metric in which the parameter interval has length 1 and u its rms norm.
+
+    Attributes
+    ----------
+    tolerance : float
+        Largest last Newton correction, relative to 1 + abs(unknown). Newton converges quadratically and a point is
+        also asked for a predicted error at roundoff, so points are much more accurate than this.
+    angle : float
+        Angle between neighbouring tangents to aim at, in radians; beyond twice of it a step is rejected.
+    first_step, min_step, max_step : float
+        Step lengths.
+    max_iterations : int
+        Newton sweeps per point.
+    max_points : int
+        Points per branch and direction.
+    first_chunk, chunk : int
+        Points per call of the compiled loop: the first call, later calls.
+    amplitude : float
+        Distance from a special point at which the branch that leaves it is first corrected.
+    max_branches : int
+        The automatic diagram stops there.
+    """
+
+    tolerance: float = 1e-8
+    angle: float = 0.1
+    first_step: float = 1e-3
+    min_step: float = 1e-9
+    max_step: float = 0.03
+    max_iterations: int = 8
+    max_points: int = 20000
+    first_chunk: int = 64
+    chunk: int = 256
+    amplitude: float = 2e-3
+    max_branches: int = 200
+
+    def __post_init__(self) -> None:
+        for name in ("tolerance", "angle", "first_step", "min_step", "max_step", "amplitude"):
+            value = getattr(self, name)
+            if not (isinstance(value, (int, float)) and 0.0 < value < 1.0):
+                raise ValueError(f"settings: {name} = {value!r} must be a number between 0 and 1")
+        for name in ("max_iterations", "max_points", "first_chunk", "chunk", "max_branches"):
+            value = getattr(self, name)
+            if not (isinstance(value, int) and value >= 1):
+                raise ValueError(f"settings: {name} = {value!r} must be a whole number of at least 1")
+        if self.min_step >= self.max_step:
+            raise ValueError(
+                f"settings: min_step = {self.min_step!r} must be smaller than max_step = {self.max_step!r}"
+            )
+
+    @classmethod
+    def of(cls, values: Settings | dict[str, Any] | None) -> Settings:
+        """Settings from a dict; unknown names are refused."""
+        if isinstance(values, cls):
+            return values
+        names = [field.name for field in fields(cls)]
+        for name in values or {}:
+            if name not in names:
+                raise ValueError(f"settings: there is no {name!r}; choose from {', '.join(names)}")
+        return cls(**(values or {}))  # type: ignore[arg-type]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As a JSON-able dict."""
+        return asdict(self)
