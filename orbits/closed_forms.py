@@ -94,3 +94,77 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     speed = omega * (beta + H)  # B+ = Omega beta + pi a/(2 Omega)
     # contact on the left: C sin Psi and C cos Psi with the signs of w = +1 and of a motion to the right
     return np.array([[psi, speed], [psi + np.pi, -speed]])
+
+
+def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
+    """Nodes (Psi, w) at the turns of pure sliding `tt` about the middle, shape (2, 2).
+
+    From w' = 0 at both turns, half a period apart: C cos Psi = -s H, and the turning points are w = -+ sqrt(C^2 - H^2).
+
+    Parameters
+    ----------
+    params : float array (6,)
+    mode : int
+        Direction s of the slide after the first turn.
+
+    Raises
+    ------
+    ParameterError
+        If the shaking is too weak to slide.
+    """
+    C, _, mu, g, eps, omega = (float(value) for value in params)
+    H = float(friction_number(mu, g, eps, omega))
+    if C <= H:
+        raise ParameterError(f"amplitude = {C:g} is too small for pure sliding: it needs more than {H:.10g}")
+    psi = float(np.arctan2(-mode * np.sqrt(C**2 - H**2), -mode * H)) % (2.0 * np.pi)
+    w = -mode * np.sqrt(C**2 - H**2)
+    return np.array([[psi, w], [psi + np.pi, -w]])
+
+
+def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
+    """Nodes (Psi, w) of the symmetric stick-slip motion `ss` (events s, u, s, u) about the middle, shape (4, 2).
+
+    A slip starts where C Omega^2 sin Psi = -m a; the slide after it ends at the next zero of w' (bisection).
+
+    Parameters
+    ----------
+    params : float array (6,)
+    mode : int
+        Direction m of the first slip.
+
+    Raises
+    ------
+    ParameterError
+        If the absorber never slips, or slides without sticking.
+    """
+    C, _, mu, g, eps, omega = (float(value) for value in params)
+    a = (1.0 + eps) * mu * g
+    if C * omega**2 <= a:
+        raise ParameterError(f"amplitude = {C:g} never beats friction: stick-slip needs more than {a / omega**2:.10g}")
+    low, high = sliding_squares(friction_number(mu, g, eps, omega))
+    if C**2 > float(low):
+        raise ParameterError(f"amplitude = {C:g} slides without sticking: stick-slip ends at {np.sqrt(low):.10g}")
+    slip = (np.pi if mode > 0 else 0.0) + float(np.arcsin(a / (C * omega**2)))
+
+    def rate(psi: float) -> float:
+        return mode * C * omega * (np.cos(psi) - np.cos(slip)) - a * (psi - slip) / omega
+
+    # w' rises until the shaking falls below friction (at slip + pi - 2 asin(..)), then falls through 0
+    left, right = 2.0 * np.pi * (mode > 0) + (np.pi if mode < 0 else 0.0) - float(np.arcsin(a / (C * omega**2))), slip + np.pi
+    for _ in range(200):
+        middle = 0.5 * (left + right)
+        if rate(middle) > 0.0:
+            left = middle
+        else:
+            right = middle
+    stick = 0.5 * (left + right)
+    d = (stick - slip) / omega
+    path = C * (np.sin(stick) - np.sin(slip)) - C * omega * np.cos(slip) * d - mode * 0.5 * a * d**2
+    return np.array(
+        [
+            [stick - np.pi, -0.5 * path],
+            [slip, -0.5 * path],
+            [stick, 0.5 * path],
+            [slip + np.pi, 0.5 * path],
+        ]
+    )

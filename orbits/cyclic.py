@@ -16,6 +16,8 @@ from types import SimpleNamespace
 import numpy as np
 from numba import njit
 
+from orbits.periodic_schur import scratch_size
+
 TINY = 1e-300
 
 
@@ -25,9 +27,9 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
     Returns
     -------
     tuple
-        ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch)`` with shapes ``(L, n)``,
-        ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 2)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
-        ``(n, n + 2)``, ``(2, L n + 1)``, ``(2 n + 1,)`` and ``(8 n n + 8 n + 64,)``.
+        ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im)`` with shapes ``(L, n)``,
+        ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
+        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.periodic_schur`, and ``(n,)`` twice.
     """
     n = node
     return (
@@ -36,13 +38,15 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         np.zeros((length, n, n)),
         np.zeros((length, n)),
         np.zeros(parameters),
-        np.zeros((length + 1, 2)),
+        np.zeros((length + 1, 8)),
         np.zeros((length, n, 3 * n + 2)),
         np.zeros((2 * n, 3 * n + 2)),
         np.zeros((n, n + 2)),
         np.zeros((2, length * n + 1)),
-        np.zeros(2 * n + 1),
-        np.zeros(8 * n * n + 8 * n + 64),
+        np.zeros(4 * n + 2),
+        np.zeros(scratch_size(length, n)),
+        np.zeros(n),
+        np.zeros(n),
     )
 
 

@@ -170,7 +170,7 @@ def linearise(data, u, p, work):
         size = max(abs(F[i, 0]), abs(F[i, 1]))
         if not size <= largest:
             largest = size
-    if pinned:
+    if pinned == 1:
         _pin(F, A, D, Q, u, twist, work[10])
     if not np.isfinite(largest):
         return np.inf
@@ -196,7 +196,7 @@ def _pin(F, A, D, Q, u, twist, pin):
 @njit(error_model="numpy")
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
-    if data[6]:
+    if data[6] == 1:
         A, D, pin = work[1], work[2], work[10]
         last = A.shape[0] - 1
         for c in range(2):

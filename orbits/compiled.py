@@ -1,0 +1,131 @@
+"""The compiled functions of each model, put together once: maps, elimination, multipliers, margins.
+
+`assemble(model)` returns the kernels that a continuation loop calls (`linearise`, `bordered`, `inspect`) and the two
+entry points that this package calls itself (`newton`, `examine`), which numba keeps on disk.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from orbits import cyclic, periodic_qr, periodic_schur
+from orbits.models.base import Model
+
+# filled in per model by `specialise`
+linearise: Any = None
+bordered: Any = None
+margins: Any = None
+unpin: Any = None
+inspect: Any = None
+multipliers: Any = None
+
+
+def _inspect(data, u, p, work, row):
+    """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
+    unpin(data, work)
+    A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
+    multipliers(A, D, data[4], re, im, scratch)
+    n = re.size
+    count = n
+    if data[6] != 0:  # an impact-free motion may be moved as a whole: drop that multiplier, nearest to the twist
+        count = n - 1
+        trivial = 0
+        for j in range(1, n):
+            if np.hypot(re[j] - data[4], im[j]) < np.hypot(re[trivial] - data[4], im[trivial]):
+                trivial = j
+        for j in range(trivial, count):
+            re[j] = re[j + 1]
+            im[j] = im[j + 1]
+    for j in range(count):
+        row[2 * j] = re[j]
+        row[2 * j + 1] = im[j]
+    margins(data, u, p, work, row[2 * count :])
+
+
+def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
+    """Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not help.
+
+    Returns (residual, iterations, p); `u` is changed in place.
+    """
+    size = u.size
+    residual = linearise(data, u, p, work)
+    trial = u.copy()
+    for iteration in range(limit):
+        sign = bordered(data, work, border, 0.0, step, tangent)
+        if sign == 0.0 or not np.isfinite(step[0]):
+            return np.inf, iteration, p
+        length = 0.0
+        for j in range(size):
+            length = max(length, abs(step[j]))
+        share = 1.0
+        best = np.inf
+        while share > 0.01:
+            for j in range(size):
+                trial[j] = u[j] + share * step[j]
+            best = linearise(data, trial, p + share * step[size], work)
+            if best < residual or length < 1e-7:
+                break
+            share *= 0.5
+        u[:] = trial
+        p += share * step[size]
+        residual = best
+        if length * share < tolerance:
+            return residual, iteration + 1, p
+    return np.inf, limit, p
+
+
+def _examine(data, u, p, work, row):
+    """Residual, and the row of `inspect`, of one solution."""
+    residual = linearise(data, u, p, work)
+    inspect(data, u, p, work, row)
+    return residual
+
+
+def specialise(function: Callable, name: str, **known: Any) -> Any:
+    """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`."""
+    qualified = f"{function.__name__.strip('_')}_{name}"
+    copy = FunctionType(function.__code__, {**function.__globals__, **known}, qualified)
+    copy.__qualname__ = qualified
+    copy.__module__ = function.__module__
+    return njit(cache=True, error_model="numpy")(copy)
+
+
+@cache
+def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
+    files = [kernels.__file__, cyclic.__file__, periodic_schur.__file__, periodic_qr.__file__, __file__]
+    digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
+    stamp = f"{name}_{digest}"
+    eliminate = cyclic.cyclic_kernels(node).bordered
+    look = FunctionType(
+        _inspect.__code__,
+        {
+            **globals(),
+            "unpin": kernels.unpin,
+            "multipliers": periodic_schur.multipliers,
+            "margins": kernels.margins,
+        },
+    )
+    look = njit(error_model="numpy")(look)
+    known = {"linearise": kernels.linearise, "bordered": eliminate, "inspect": look}
+    return SimpleNamespace(
+        linearise=kernels.linearise,
+        bordered=eliminate,
+        inspect=look,
+        compiled=True,
+        digest=stamp,
+        newton=specialise(_newton, stamp, **known),
+        examine=specialise(_examine, stamp, **known),
+    )
+
+
+def assemble(model: Model) -> SimpleNamespace:
+    """The compiled functions for `model`, made once per process."""
+    return _assemble(model.kernels, model.node, model.name)

@@ -1,0 +1,267 @@
+"""OrbitProblem: the orbits with one word as solutions of F(u, p) = 0, as a continuation code wants them.
+
+A symmetric orbit is solved for on half its word, closed by the mirror: half the work, no branch point at its symmetry
+breaking (there a multiplier of the half map passes -1), and a classification that is exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from orbits import measures as measuring
+from orbits.compiled import assemble
+from orbits.cyclic import workspace
+from orbits.models.base import Model
+from orbits.monitors import PER_NODE, border_kind
+from orbits.words import Word
+
+
+class Symmetry(NamedTuple):
+    """An image of a solution that solves the same problem; `root` reduces a solution that is its own image."""
+
+    kind: str
+    apply: Any
+    root: Any
+
+
+class Embedding(NamedTuple):
+    """A solution seen in a larger problem, in which it is a branch point."""
+
+    problem: Any
+    u: np.ndarray
+    tangent: np.ndarray
+    kind: str
+
+
+class OrbitProblem:
+    """Periodic orbits with a given word, against one parameter of their machine.
+
+    Parameters
+    ----------
+    model : Model
+    word : Word
+        The word of the whole cycle.
+    periods : int
+        Forcing periods k of the whole cycle.
+    parameter : str
+        Name of the parameter that varies.
+    params : float array (P,)
+        Parameter vector; the entry of `parameter` is the starting value only.
+    symmetric : bool
+        Solve for symmetric orbits, on half the word.
+
+    Raises
+    ------
+    ValueError
+        If the parameter is unknown, or `symmetric` is asked of a word whose halves are not mirror images.
+    """
+
+    spectrum = "map"
+
+    def __init__(
+        self, model: Model, word: Word, periods: int, parameter: str, params: np.ndarray, symmetric: bool = False
+    ) -> None:
+        if parameter not in model.parameter_names:
+            raise ValueError(
+                f"parameter = {parameter!r} is unknown to the model {model.name!r}; choose one of "
+                + ", ".join(model.parameter_names)
+            )
+        if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
+            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
+        if len(word) == 0:
+            raise ValueError("the empty word (absorber stuck) has no maps to solve")
+        self.model, self.word, self.periods = model, word, int(periods)
+        self.parameter, self.params, self.symmetric = parameter, np.array(params, dtype=float), bool(symmetric)
+        self.index = model.parameter_names.index(parameter)
+        length = len(word) // 2 if symmetric else len(word)
+        n = model.node
+        self.length, self.dimension = length, length * n
+        self.twist = -1.0 if symmetric else 1.0
+        self.shift = np.pi * self.periods * (1 if symmetric else 2)
+        self.loose = word.impact_free  # may be moved as a whole
+        self.pinned = 0 if not self.loose else (2 if symmetric else 1)
+        self.n_multipliers = n - 1 if self.loose else n
+        self.n_margins = PER_NODE * length
+        self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
+        self.period_shift = np.zeros(self.dimension)
+        self.period_shift[::n] = 2.0 * np.pi
+        self.data = (
+            word.codes[:length].copy(),
+            word.mode_codes[:length].copy(),
+            self.params.copy(),
+            self.index,
+            self.twist,
+            self.shift,
+            self.pinned,
+        )
+
+    # ------------------------------------------------------------------ numerics
+    @property
+    def kernels(self) -> Any:
+        """linearise, bordered, inspect: the compiled functions of the model."""
+        return assemble(self.model)
+
+    def workspace(self) -> tuple[np.ndarray, ...]:
+        """Arrays for the kernels."""
+        return workspace(self.length, self.model.node, self.params.size)
+
+    def values(self, p: float) -> np.ndarray:
+        """The parameter vector at parameter value `p`."""
+        params = self.params.copy()
+        params[self.index] = p
+        return params
+
+    def margin_kind(self, j: int) -> str:
+        """Kind of the border at which margin `j` vanishes."""
+        return border_kind(self.word, j)
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        spectrum = np.asarray(spectrum, dtype=complex)
+        return spectrum**2 if self.symmetric else spectrum
+
+    # ------------------------------------------------------------------ shapes
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N)."""
+        u = np.asarray(u, dtype=float)
+        nodes = u.reshape(*u.shape[:-1], self.length, self.model.node)
+        if not self.symmetric:
+            return nodes
+        image = -nodes
+        image[..., 0] = nodes[..., 0] + self.shift
+        return np.concatenate([nodes, image], axis=-2)
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        return np.ascontiguousarray(nodes[: self.length], dtype=float).ravel()
+
+    # ------------------------------------------------------------------ symmetries and larger problems
+    @cached_property
+    def symmetries(self) -> tuple[Symmetry, ...]:
+        """The mirror image of a full word with mirror halves; the shift of a doubled word by its half."""
+        if self.symmetric:
+            return ()
+        found = []
+        if self.word.mirror_symmetric_halves and self.periods % 2 == 1:
+            half = self.sibling(self.word, self.periods, symmetric=True)
+            found.append(Symmetry("symmetry-breaking", lambda u: self._rotated(u, -1.0), lambda u: (half, half.reduce(self.expand(u)))))
+        if self.word.repetitions % 2 == 0 and self.periods % 2 == 0:
+            root = self.sibling(self.word.head(len(self.word) // 2), self.periods // 2, symmetric=False)
+            found.append(Symmetry("period-doubling", lambda u: self._rotated(u, 1.0), lambda u: (root, root.reduce(self.expand(u)))))
+        return tuple(found)
+
+    def _rotated(self, u: np.ndarray, sign: float) -> np.ndarray:
+        """Nodes half the cycle on, at the same phase again, mirrored for sign = -1."""
+        half = self.length // 2
+        turn = np.pi * self.periods
+        nodes = self.expand(u)
+        image = np.roll(nodes, -half, axis=0) * np.r_[1.0, np.full(self.model.node - 1, sign)]
+        image[: self.length - half, 0] -= turn
+        image[self.length - half :, 0] += turn
+        return image.ravel()
+
+    def sibling(self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None) -> OrbitProblem:
+        """The problem of another word of the same machine against the same parameter."""
+        return OrbitProblem(
+            self.model, word, periods, self.parameter, self.params if params is None else params, symmetric
+        )
+
+    def offspring(
+        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
+    ) -> list[Embedding]:
+        """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
+        along = np.asarray(tangent[:-1])
+        if kind == "symmetry-breaking" and self.symmetric:
+            full = self.sibling(self.word, self.periods, symmetric=False)
+            image = -along.reshape(self.length, -1)
+            image[:, 0] *= -1.0
+            direction = np.concatenate([along, image.ravel()])
+            return [Embedding(full, full.reduce(self.expand(u)), np.append(direction, tangent[-1]), kind)]
+        if kind == "period-doubling" and not self.symmetric:
+            double = self.sibling(self.word.double(), 2 * self.periods, symmetric=False)
+            nodes = self.expand(u)
+            second = nodes.copy()
+            second[:, 0] += self.shift
+            direction = np.concatenate([along, along])
+            return [
+                Embedding(double, np.concatenate([nodes, second]).ravel(), np.append(direction, tangent[-1]), kind)
+            ]
+        if kind == "branch-point":
+            return [Embedding(self, np.array(u), np.array(tangent), kind)]
+        return []
+
+    def beyond(self, point: Any) -> Sequence[Any]:
+        """The orbits on the other side of a border, with the words that physics writes."""
+        from orbits.borders import cross
+
+        return cross(self, point)
+
+    # ------------------------------------------------------------------ identity
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
+        """Key and vector that are equal for one orbit in all its descriptions.
+
+        Rotations of the word, shifts by whole forcing periods, the mirror image and repetitions of a shorter orbit
+        are one orbit.
+        """
+        from orbits.identity import canonical
+
+        return canonical(self.word, self.periods, self.expand(u))
+
+    # ------------------------------------------------------------------ for people
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Measures that this machine's orbits have."""
+        return measuring.names(self.model)
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
+        p = np.atleast_1d(np.asarray(p, dtype=float))
+        params = np.tile(self.params, (p.size, 1))
+        params[:, self.index] = p
+        return measuring.measure(self.model, self.word, self.periods, self.expand(np.atleast_2d(u)), params, names)
+
+    def orbit(self, u: np.ndarray, p: float) -> Any:
+        """The solution as an `orbits.orbit.Orbit`."""
+        from orbits.orbit import Orbit
+
+        return Orbit(self.model, self.word, self.periods, self.expand(u), self.values(p))
+
+    def replay(self, u: np.ndarray, p: float) -> float | None:
+        """Largest deviation of the event-driven simulation from the orbit over its period."""
+        return self.orbit(u, p).replay()
+
+    def describe(self) -> dict[str, Any]:
+        """A description that `rebuild` understands, ready for JSON."""
+        return {
+            "factory": "orbits.problem:rebuild",
+            "name": f"P_{self.word.impacts}^{self.periods}",
+            "model": self.model.settings(),
+            "word": self.word.text,
+            "events": "".join(self.word.events),
+            "modes": list(self.word.modes),
+            "frictionless": self.word.frictionless,
+            "periods": self.periods,
+            "impacts": self.word.impacts,
+            "parameter": self.parameter,
+            "params": [float(value) for value in self.params],
+            "symmetric": self.symmetric,
+        }
+
+
+def rebuild(description: dict[str, Any]) -> OrbitProblem:
+    """The problem that `OrbitProblem.describe` described."""
+    from orbits.models import build
+
+    word = Word(tuple(description["events"]), tuple(description["modes"]), description["frictionless"])
+    return OrbitProblem(
+        build(description["model"]),
+        word,
+        description["periods"],
+        description["parameter"],
+        np.array(description["params"]),
+        description["symmetric"],
+    )
