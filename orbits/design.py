@@ -217,7 +217,7 @@ class Design:
             Figure("pure sliding from", "q1_sl_min", low, "m", "below it the absorber sticks at each turn"),
             Figure("pure sliding to", "q1_sl_max", high, "m", "above it the absorber meets the walls"),
             Figure("damping by impacts", "D_NES", self.absorber_damping, "1", "damping ratio at large amplitude"),
-            Figure("oscillator's damping", "D", 0.5 * self.mass_ratio * self.damping, "1", "damping ratio without absorber"),
+            Figure("oscillator's damping", "D", 0.5 * self.mass_ratio * self.damping, "1", "damping ratio without absorber"),  # noqa: E501
             Figure("friction level", "h", self.level, "1", "(1 + eps)(pi/2) mu g/(b omega_0^2)"),
             Figure("impact loss", "R", self.loss, "1", "(1 - r)/(1 + r)"),
         ]  # fmt: skip

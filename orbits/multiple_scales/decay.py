@@ -72,9 +72,11 @@ def decay_amplitude(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArr
     rises = top * (1.0 - np.cos(np.linspace(0.0, np.pi, 801))) / 2.0
     amplitudes = np.sqrt(low**2 + rises**2)
     times = np.asarray(decay_time(flow, start, amplitudes))
-    spline = PchipInterpolator(times[::-1], rises[::-1], extrapolate=False)
+    spline = PchipInterpolator(times[::-1], rises[::-1])
     asked = np.asarray(slow_time, dtype=float)
-    guess = spline(asked)
+    guess = np.where(
+        (asked >= 0.0) & (asked <= times[0]), spline(np.clip(asked, times[-1], times[0])), np.nan
+    )
     c = coefficients(flow)
     free = c.alpha_c * low**2 - c.offset_c
     for _ in range(3):

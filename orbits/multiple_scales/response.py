@@ -52,7 +52,7 @@ class ResponseCurve:
     @property
     def stable(self) -> NDArray[np.bool_]:
         """Stable along the manifold (the slow flow's eigenvalues)."""
-        return np.all(self.eigenvalues.real < 0, axis=-1)
+        return np.all(np.real(self.eigenvalues) < 0, axis=-1)
 
     @property
     def seen(self) -> NDArray[np.bool_]:

@@ -1,0 +1,106 @@
+"""Design figures against formulas with units, integrated equations of motion and each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from orbits.design import Design
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    b=st.floats(0.005, 0.05), f0=st.floats(2, 20), r=st.floats(0.3, 0.99), mu=st.floats(0.0, 0.6)
+)  # fmt: skip
+def test_bounds_in_metres_are_the_published_formulas(b, f0, r, mu):
+    """Youssef, Karoui, Leine: q1_min and q1_max in physical units (mass ratio left out there)."""
+    machine = Design(cavity=b, natural_frequency=f0, restitution=r, friction=mu, mass_ratio=0.0)
+    R, g, w2 = (1 - r) / (1 + r), 9.81, (2 * np.pi * f0) ** 2
+    root = np.sqrt(np.pi**2 + 4 * R**2)
+    assert machine.activation_threshold == pytest.approx(
+        mu * np.pi**2 * g / (2 * w2 * root) + 2 * b * R / root, rel=1e-12
+    )
+    m = mu * g / (b * w2)
+    upper = (
+        2
+        * np.pi
+        * b
+        / (np.pi**2 - 4)
+        * np.hypot(R * m * np.pi / 2 - 2 / np.pi, R - m * (R**2 + 1 - np.pi**2 / 4))
+    )
+    assert machine.upper_bound == pytest.approx(upper, rel=1e-12)
+    assert machine.operating_ratio == pytest.approx(upper / machine.activation_threshold, rel=1e-12)
+
+
+def test_a_design_map_is_one_call():
+    mu, b = np.linspace(0, 0.6, 7), np.linspace(0.01, 0.03, 5)
+    whole = Design(friction=mu[None, :], cavity=b[:, None])
+    for quantity in ("activation_threshold", "upper_bound", "operating_ratio"):
+        grid = getattr(whole, quantity)
+        assert grid.shape == (5, 7)
+        assert grid[3, 2] == pytest.approx(getattr(Design(friction=mu[2], cavity=b[3]), quantity), rel=1e-14)
+    assert np.all(np.diff(whole.operating_ratio, axis=1) < 0)  # friction narrows the working range
+    assert whole.sticking_limit().shape == (7,) or whole.sticking_limit().shape == (1, 7)
+
+
+@settings(max_examples=10, deadline=None)
+@given(ratio=st.floats(0.7, 1.3), stuck=st.booleans(), lam=st.floats(2.0, 20.0))
+def test_linear_response_is_the_settled_motion(ratio, stuck, lam):
+    """Integrate M q'' + c q' + k q = k e + c e' (with m added when stuck) until it settles."""
+    machine = Design(mass_ratio=0.01, damping=lam)
+    w0 = 2 * np.pi * machine.natural_frequency
+    w, damping, mass = ratio * w0, 0.01 * lam * w0, 1 + 0.01 * stuck
+
+    def rate(t, y):
+        base, speed = np.sin(w * t), w * np.cos(w * t)
+        return [y[1], (w0**2 * (base - y[0]) + damping * (speed - y[1])) / mass]
+
+    settled = 40 / (0.01 * lam * w0 / 2)
+    run = solve_ivp(rate, (0, settled), [0, 0], rtol=1e-8, atol=1e-10, dense_output=True)
+    t = np.linspace(settled - 2 * np.pi / w, settled, 2001)
+    amplitude = np.max(np.abs(run.sol(t)[0]))
+    found = machine.linear_response(ratio * machine.natural_frequency, 1.0, stuck=stuck)
+    assert found == pytest.approx(amplitude, rel=2e-5)
+
+
+def test_stuck_absorber_is_held_by_friction_just_so():
+    machine = Design()
+    f = 7.25
+    limit = machine.sticking_limit(f)
+    assert machine.friction * 9.81 == pytest.approx((2 * np.pi * f) ** 2 * limit, rel=1e-12)
+    assert machine.is_stuck(f, 0.999 * limit / machine.linear_response(f, 1.0, stuck=True))
+    assert not machine.is_stuck(f, 1.001 * limit / machine.linear_response(f, 1.0, stuck=True))
+
+
+def test_stuck_is_below_stick_slip_is_below_sliding():
+    machine = Design(friction=np.linspace(0.05, 1, 20))
+    low, high = machine.sliding_bounds
+    assert np.all(machine.sticking_limit() < low) and np.all(low < high)
+
+
+def test_scales_follow_from_dimensionless_gravity():
+    machine = Design.from_dimensionless(gravity=0.211, cavity=0.02)
+    assert machine.gravity == pytest.approx(0.211, rel=1e-12)
+    assert machine.natural_frequency == pytest.approx(7.666, rel=2e-3)
+    assert Design.from_dimensionless(gravity=0.211, natural_frequency=7.666).cavity == pytest.approx(
+        0.02, rel=3e-3
+    )
+    with pytest.raises(ValueError, match="exactly one"):
+        Design.from_dimensionless(gravity=0.2)
+
+
+def test_units_and_names_of_the_table():
+    table = {line.symbol: line for line in Design().figures()}
+    assert table["q1_min"].unit == "m" and table["xi"].unit == "1"
+    assert table["xi"].value == pytest.approx(table["q1_max"].value / table["q1_min"].value, rel=1e-14)
+    assert table["D"].value == pytest.approx(0.0027, rel=1e-12)
+
+
+def test_bad_values_are_refused_by_name():
+    with pytest.raises(ValueError, match=r"cavity = 0\.0 must be positive"):
+        Design(cavity=[0.01, 0.0])
+    with pytest.raises(ValueError, match="restitution = nan"):
+        Design(restitution=float("nan"))

@@ -1,0 +1,388 @@
+"""The slow flow against quadrature, direct flight, finite differences and dense scans: nothing of itself."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq, minimize_scalar
+
+from orbits import multiple_scales as ms
+
+levels = st.floats(0.0, 0.6)
+restitutions = st.floats(0.2, 0.99)
+
+
+def triangle(z):
+    return np.arcsin(np.sin(z))
+
+
+def square(z):
+    return np.sign(np.cos(z))
+
+
+def ripple(z, friction_acceleration):
+    """The friction's part of the absorber's motion, for unit mu g times the given acceleration."""
+    return -0.5 * friction_acceleration * (triangle(z) ** 2 - 0.25 * np.pi**2) * square(z)
+
+
+def projected(function, wave):
+    edges = (0.0, 0.5 * np.pi, 1.5 * np.pi, 2.0 * np.pi)
+    pieces = (quad(lambda z: function(z) * wave(z), a, b, epsabs=1e-13)[0] for a, b in pairwise(edges))
+    return sum(pieces) / np.pi
+
+
+def test_kappa_is_the_first_harmonic_of_the_friction_ripple():
+    """Derived: (1/pi) int of (pi^2/4 - z^2) cos z gives 8/pi^2; the paper's value multiplies two
+    harmonics."""
+    h = 0.5 * np.pi * 0.37
+    kappa = projected(lambda z: ripple(z, 0.37), np.cos) / h
+    assert kappa == pytest.approx(8 / np.pi**2, abs=1e-12)
+    assert ms.CLOSURES["exact"] == pytest.approx(kappa, abs=1e-12)
+    # each factor replaced by its own first harmonic, Pi -> (4/pi) sin and M -> (4/pi) cos, gives the paper's
+    rough = (
+        projected(lambda z: (4 / np.pi) * np.cos(z) * (np.pi**2 / 4 - (4 / np.pi * np.sin(z)) ** 2), np.cos)
+        / np.pi
+    )
+    assert ms.CLOSURES["paper"] == pytest.approx(rough, abs=1e-12)
+    assert rough / kappa == pytest.approx(1.031, abs=1e-3)  # 3.1 percent too much friction
+
+
+@settings(max_examples=25, deadline=None)
+@given(b=st.floats(0.05, 2.5), r=restitutions, mu=st.floats(0.0, 1.0), g=st.floats(0.05, 0.6))
+def test_harmonics_are_projections_of_the_absorbers_motion(b, r, mu, g):
+    """k1 = -C (4/pi B sin + kappa h cos) etc. from the harmonics of Phi = B Pi + ripple at phase eta -
+    theta."""
+    flow = ms.SlowFlow(restitution=r, friction=mu, gravity=g)
+    motion = lambda z: b * triangle(z) + ripple(z, mu * g)  # noqa: E731
+    sine, cosine = projected(motion, np.sin), projected(motion, np.cos)
+    R, h = (1 - r) / (1 + r), 0.5 * np.pi * mu * g
+    reach, recoil = 1 - 0.5 * np.pi * b, R * b + h  # C cos(eta - theta), C sin(eta - theta)
+    squared, k1, k2 = flow.harmonics(b)
+    assert k1 == pytest.approx(-(sine * recoil + cosine * reach), abs=1e-11)
+    assert k2 == pytest.approx(sine * reach - cosine * recoil, abs=1e-11)
+    assert squared == pytest.approx(reach**2 + recoil**2, rel=1e-14)
+
+
+def flight(phase, rate, amplitude, friction_acceleration):
+    """Fly from the left wall to the right one: phase and rate after the impact -> the same at arrival
+    (before)."""
+
+    def w(x):
+        d = x - phase
+        return (
+            1.0
+            + amplitude * (np.sin(x) - np.sin(phase))
+            + (rate - amplitude * np.cos(phase)) * d
+            + 0.5 * friction_acceleration * d**2
+            + 1.0
+        )
+
+    hit = phase + 0.3
+    while w(hit) > 0:
+        hit += 0.05
+    hit = brentq(w, hit - 0.3, hit, xtol=1e-15)
+    speed = rate + amplitude * (np.cos(hit) - np.cos(phase)) + friction_acceleration * (hit - phase)
+    return hit, speed
+
+
+def half_map(state, amplitude, friction_acceleration, r):
+    """Half a period of the symmetric motion followed by the mirror: (phase, rate) at L -> at L."""
+    hit, speed = flight(state[0], state[1], amplitude, friction_acceleration)
+    return np.array([hit - np.pi, r * speed])
+
+
+def half_multipliers(b, r, h):
+    a = h / (0.5 * np.pi)
+    R = (1 - r) / (1 + r)
+    amplitude = float(np.sqrt(ms.squared_amplitude(b, R, h)))
+    phase = np.arctan2(1 - 0.5 * np.pi * b, R * b + h)
+    rate = amplitude * np.cos(phase) - (b + h)  # B+ = B + h
+    x = np.array([phase, rate])
+    step = 1e-5
+    columns = []
+    for k in range(2):
+        e = np.zeros(2)
+        e[k] = step
+        columns.append((half_map(x + e, amplitude, a, r) - half_map(x - e, amplitude, a, r)) / (2 * step))
+    return x, half_map(x, amplitude, a, r), np.linalg.eigvals(np.array(columns).T)
+
+
+@settings(max_examples=25, deadline=None)
+@given(r=st.floats(0.4, 0.95), h=st.floats(0.0, 0.3), place=st.floats(0.05, 0.95))
+def test_manifold_is_the_symmetric_orbit_of_a_shaken_cavity(r, h, place):
+    """At eps = 0 the slow manifold is exact: fly half a period and arrive at the mirror image."""
+    R = (1 - r) / (1 + r)
+    low, high = ms.activation(R, h).velocity, ms.symmetry_limit(R, h).velocity
+    x, image, multipliers = half_multipliers(low + place * (high - low), r, h)
+    assert image == pytest.approx(x, abs=1e-9)
+    assert np.all(np.abs(multipliers) < 1 + 1e-6)
+
+
+@settings(max_examples=15, deadline=None)
+@given(r=st.floats(0.4, 0.95), h=st.floats(0.0, 0.3))
+def test_ends_of_the_attracting_part_are_the_bifurcations_of_the_half_map(r, h):
+    """The half map followed by the mirror has multiplier +1 at the lower end (fold), -1 at the upper one."""
+    R = (1 - r) / (1 + r)
+    fold = half_multipliers(ms.activation(R, h).velocity, r, h)[2]
+    breaking = half_multipliers(ms.symmetry_limit(R, h).velocity, r, h)[2]
+    assert np.min(np.abs(fold - 1)) < 1e-5
+    assert np.min(np.abs(breaking + 1)) < 1e-5
+
+
+@settings(max_examples=30, deadline=None)
+@given(r=restitutions, h=levels)
+def test_activation_is_the_lowest_point(r, h):
+    R = (1 - r) / (1 + r)
+    lowest = minimize_scalar(lambda b: (1 - 0.5 * np.pi * b) ** 2 + (R * b + h) ** 2, bounds=(-1, 2), method="bounded",
+                             options={"xatol": 1e-12})  # fmt: skip
+    found = ms.activation(R, h)
+    assert found.velocity == pytest.approx(lowest.x, abs=1e-6)
+    assert found.amplitude**2 == pytest.approx(lowest.fun, abs=1e-12)
+    for branch in (-1, 1):
+        b = ms.velocity_at(found.amplitude + 0.2, R, h, branch)
+        assert np.sqrt(ms.squared_amplitude(b, R, h)) == pytest.approx(found.amplitude + 0.2, rel=1e-12)
+
+
+@settings(max_examples=30, deadline=None)
+@given(mu=st.floats(0.05, 1.0), g=st.floats(0.05, 0.6))
+def test_sliding_bounds_by_watching_the_motion(mu, g):
+    """Between turns w' = v' -+ (mu g)(phase from the turn's middle): symmetric turns, no stick, no wall."""
+    a = mu * g
+    h = 0.5 * np.pi * a
+    low, high = ms.sliding_bounds(h)
+    for amplitude in (low, high):
+        # turn at phase x to mode -: w' = C(cos y - cos x) + a (y - x) must vanish again at x + pi -> C
+        # cos x = a pi/2
+        x = np.arccos(h / amplitude)
+        assert amplitude * (np.cos(x + np.pi) - np.cos(x)) + a * np.pi == pytest.approx(0, abs=1e-12)
+        stroke = 2 * amplitude * np.sin(x) + amplitude * np.cos(x) * np.pi - 0.5 * a * np.pi**2
+        assert 0.5 * stroke == pytest.approx(ms.turning_point(amplitude, h), abs=1e-9)
+    assert low * np.sin(np.arccos(h / low)) == pytest.approx(a, rel=1e-10)  # frame's acceleration at the turn
+    assert ms.turning_point(high, h) == pytest.approx(1.0, rel=1e-12)
+
+
+def drawn_flows(n, seed):
+    rng = np.random.default_rng(seed)
+    flow = ms.SlowFlow(
+        forcing=rng.uniform(0.05, 5, n), restitution=rng.uniform(0.1, 1, n), friction=rng.uniform(0, 1, n),
+        gravity=rng.uniform(0.02, 0.6, n), damping=rng.uniform(0, 3, n),
+    )  # fmt: skip
+    return flow, flow.forcing * rng.uniform(-2, 2, n)
+
+
+def test_every_equilibrium_of_ten_thousand_machines_is_found():
+    """A dense scan of the phase-free balance sees nothing that the roots miss, and every root balances
+    the flow."""
+    n, grid = 10_000, 1500
+    flow, sigma = drawn_flows(n, 7)
+    roots = ms.impacting_velocities(flow, sigma)
+    phase = np.arctan2(*reversed(balance(flow, roots, sigma)))
+    growth, turn = wide(flow).rates(roots, phase, sigma[:, None])
+    good = np.isfinite(roots)
+    size = 1 + roots**4
+    assert np.max(np.abs(growth[good] / size[good])) < 1e-9
+    assert np.max(np.abs(turn[good])) < 1e-7
+    missed = 0
+    for start in range(0, n, 1000):
+        part = slice(start, start + 1000)
+        top = np.maximum(np.nanmax(np.where(good[part], roots[part], 0.0), axis=1) * 1.2, 4.0)
+        b = np.linspace(0, 1, grid)[None, :] * top[:, None]
+        some = pick(flow, part)
+        g_c, g_s = balance(some, b, sigma[part])
+        squared = wide(some).harmonics(b)[0]
+        gap = g_c**2 + g_s**2 - wide(some).forcing ** 2 * squared
+        seen = np.sign(gap[:, :-1]) != np.sign(gap[:, 1:])
+        for i, j in zip(*np.nonzero(seen)):
+            inside = (roots[part][i] >= b[i, j] - 1e-9) & (roots[part][i] <= b[i, j + 1] + 1e-9)
+            missed += not inside.any()
+        assert np.all(seen.sum(axis=1) <= good[part].sum(axis=1))
+    assert missed == 0
+    assert good.sum() > 7_000  # the draw is not an empty one
+
+
+def wide(flow):
+    fields = ("forcing", "restitution", "friction", "gravity", "damping")
+    return flow.with_(**{k: getattr(flow, k)[:, None] for k in fields})
+
+
+def pick(flow, part):
+    fields = ("forcing", "restitution", "friction", "gravity", "damping")
+    return flow.with_(**{k: getattr(flow, k)[part] for k in fields})
+
+
+def balance(flow, b, sigma):
+    """G C cos(gamma) and G C sin(gamma) that the two equations ask for, written out anew."""
+    w = wide(flow)
+    R, h, kappa = (
+        (1 - w.restitution) / (1 + w.restitution),
+        0.5 * np.pi * w.friction * w.gravity,
+        8 / np.pi**2,
+    )
+    squared = (1 - 0.5 * np.pi * b) ** 2 + (R * b + h) ** 2
+    k1 = -4 / np.pi * b * (R * b + h) - kappa * h * (1 - 0.5 * np.pi * b)
+    k2 = 4 / np.pi * b * (1 - 0.5 * np.pi * b) - kappa * h * (R * b + h)
+    return k2 - 2 * sigma[:, None] * squared, k1 - w.damping * squared
+
+
+def test_every_sliding_equilibrium_is_found():
+    flow, sigma = drawn_flows(10_000, 8)
+    roots = ms.sliding_turning_points(flow, sigma)
+    h, kappa = 0.5 * np.pi * flow.friction * flow.gravity, 8 / np.pi**2
+    delta = np.linspace(0, 1, 2000)[None, :] * (1 - 2 * h / np.pi)[:, None] + (2 * h / np.pi)[:, None]
+    squared = delta**2 + h[:, None] ** 2
+    gap = (
+        (flow.damping[:, None] * squared + kappa * h[:, None] * delta) ** 2
+        + (2 * sigma[:, None] * squared + kappa * h[:, None] ** 2) ** 2
+        - flow.forcing[:, None] ** 2 * squared
+    )
+    seen = (gap[:, :-1] < 0) != (gap[:, 1:] < 0)
+    assert np.array_equal(seen.sum(axis=1), np.isfinite(roots).sum(axis=1))
+    where = np.nonzero(seen)
+    assert np.all(
+        (roots[where[0], 0] >= delta[where] - 1e-12)
+        & (roots[where[0], 0] <= delta[where[0], where[1] + 1] + 1e-12)
+    )
+    assert seen.sum() > 500
+
+
+def test_real_roots_of_polynomials_with_known_roots():
+    rng = np.random.default_rng(3)
+    for degree in range(1, 7):
+        known = np.sort(rng.uniform(-3, 3, (200, degree)), axis=1)
+        coefficients = np.array([np.poly(k) for k in known])
+        found = ms.polynomials.real_roots(coefficients, -4.0, 4.0)
+        apart = np.min(np.diff(known, axis=1), axis=1, initial=9.0) > 1e-2
+        assert found[apart] == pytest.approx(known[apart], abs=1e-8)
+    pair = ms.polynomials.real_roots(np.array([1.0, -2.0, 1.0]), 0.0, 5.0)  # touched, not crossed
+    assert pair[0] == pytest.approx(1.0) and np.isnan(pair[1])
+    assert ms.polynomials.real_roots(np.array([0.0, 0.0, 2.0, -1.0]), -9.0, 9.0)[0] == pytest.approx(0.5)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    x=st.floats(0.1, 0.95),
+    phase=st.floats(-3, 3),
+    sigma=st.floats(-5, 5),
+    kind=st.sampled_from(["impacting", "sliding"]),
+)
+def test_eigenvalues_are_those_of_a_numerical_jacobian(x, phase, sigma, kind):
+    flow = ms.SlowFlow()
+    squared = flow.harmonics(x, kind)[0]
+
+    def field(s, gamma):
+        if kind == "sliding":
+            where = np.sqrt(s - flow.level**2)
+        else:
+            where = ms.velocity_at(
+                np.sqrt(s), flow.loss, flow.level, 1 if x > flow.activation.velocity else -1
+            )
+        return np.array(flow.rates(where, gamma, sigma, kind))
+
+    if kind == "impacting" and abs(x - flow.activation.velocity) < 0.03:
+        return
+    d = 1e-6
+    jacobian = np.column_stack([
+        (field(squared + d, phase) - field(squared - d, phase)) / (2 * d),
+        (field(squared, phase + d) - field(squared, phase - d)) / (2 * d),
+    ])  # fmt: skip
+    expected = np.linalg.eigvals(jacobian)
+    found = flow.eigenvalues(x, phase, kind)
+    assert np.sum(found) == pytest.approx(np.sum(expected), rel=1e-4, abs=1e-5)
+    assert np.prod(found) == pytest.approx(np.prod(expected), rel=1e-4, abs=1e-4)
+
+
+def test_bad_fields_are_refused_by_name():
+    with pytest.raises(ValueError, match=r"restitution = 1\.2"):
+        ms.SlowFlow(restitution=1.2)
+    with pytest.raises(ValueError, match=r"friction = -0\.1"):
+        ms.SlowFlow(friction=np.array([0.1, -0.1]))
+    with pytest.raises(ValueError, match="closure is 'rough'"):
+        ms.SlowFlow(closure="rough")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="one parameter set"):
+        ms.equilibria(ms.SlowFlow(), np.array([0.0, 1.0]))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="C_min"):
+        ms.integrate(ms.SlowFlow(), 0.0, 0.1, 0.0, 1.0)
+
+
+def test_trajectories_settle_on_equilibria_or_say_why_they_end():
+    flow = ms.SlowFlow()
+    states = {(s.manifold, s.attracting): s for s in ms.equilibria(flow, -2.58)}
+    for kind, start in (("impacting", 0.8), ("sliding", 0.3)):
+        run = ms.integrate(flow, -2.58, start, -1.0, 60.0, kind)
+        assert run.ended == "time"
+        assert run.amplitude[-1] == pytest.approx(states[kind, True].amplitude, abs=1e-7)
+        assert run.phase[-1] == pytest.approx(states[kind, True].phase, abs=1e-7)
+    free = flow.with_(forcing=0.0)
+    assert ms.integrate(free, 0.0, 1.5, 0.0, 10.0).ended == "activation"
+    assert ms.integrate(free, 0.0, 0.5, 0.0, 10.0, "sliding").ended == "stick"
+
+
+@settings(max_examples=15, deadline=None)
+@given(r=restitutions, mu=st.floats(0, 1), lam=st.floats(0.05, 2), start=st.floats(0.7, 3))
+def test_free_decay_in_closed_form_is_the_integrated_flow(r, mu, lam, start):
+    flow = ms.SlowFlow(forcing=0.0, restitution=r, friction=mu, damping=lam)
+    low = float(flow.activation.amplitude)
+    if start < low + 0.05:
+        return
+    total = ms.decay_time(flow, start)
+    times = np.linspace(0, 0.9 * total, 7)
+    R, h, kappa = (1 - r) / (1 + r), 0.5 * np.pi * mu * 0.211, 8 / np.pi**2
+    lowest = (2 * np.pi - 4 * R * h) / (np.pi**2 + 4 * R**2)
+
+    def rate(_t, s):
+        b = lowest + np.sqrt(max(s[0] - low**2, 0.0) / (np.pi**2 / 4 + R**2))
+        return -lam * s - 4 / np.pi * b * (R * b + h) - kappa * h * (1 - 0.5 * np.pi * b)
+
+    run = solve_ivp(rate, (0, times[-1]), [start**2], t_eval=times, rtol=1e-10, atol=1e-12)
+    found = ms.decay_amplitude(flow, start, times)
+    assert found == pytest.approx(np.sqrt(run.y[0]), rel=1e-6)
+    bound = ms.decay_bound(flow, start, times)
+    assert np.all(bound >= found - 1e-9)
+    share = -0.5 * flow.mass_ratio * rate(0, np.array([start**2]))[0] / start**2
+    assert ms.damping_ratio(flow, start) == pytest.approx(share, rel=1e-10)
+    assert ms.damping_ratio(flow) == pytest.approx(ms.damping_ratio(flow, 1e7), rel=1e-5)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    r=restitutions,
+    mu=st.floats(0, 1),
+    amplitude=st.floats(0.8, 3),
+    closure=st.sampled_from(["exact", "paper"]),
+)
+def test_backbone_is_the_phase_resonant_steady_state(r, mu, amplitude, closure):
+    """Forcing and detuning of the backbone put an equilibrium of phase -pi/2 where the amplitude says."""
+    flow = ms.SlowFlow(restitution=r, friction=mu, closure=closure)
+    if amplitude < flow.activation.amplitude + 0.02:
+        return
+    b = float(ms.velocity_at(amplitude, flow.loss, flow.level))
+    line = ms.backbone(flow, [b])
+    forced = flow.with_(forcing=float(line.forcing[0]))
+    assert np.abs(forced.rates(b, -0.5 * np.pi, line.detuning[0])) == pytest.approx(0, abs=1e-12)
+    assert ms.resonance_detuning(flow, amplitude) == pytest.approx(line.detuning[0], rel=1e-9, abs=1e-12)
+    shifted = ms.resonance_frequency(0.02 * amplitude, cavity=0.02, natural_frequency=7.666, flow=flow)
+    assert shifted == pytest.approx(7.666 * line.frequency[0], rel=1e-12)
+
+
+def test_response_curves_hold_every_equilibrium_and_their_own_folds():
+    flow = ms.SlowFlow()
+    for kind in ("impacting", "sliding"):
+        curves = ms.frequency_response(flow, kind)
+        for curve in curves:
+            rates = flow.rates(curve.position, curve.phase, curve.detuning, kind)
+            assert np.max(np.abs(rates)) < 1e-10
+        for sigma in (-4.7, -2.58, 0.3, 2.0, 4.5):
+            crossings = sum(int(np.sum(np.diff(np.sign(c.detuning - sigma)) != 0)) for c in curves)
+            assert crossings == sum(s.manifold == kind for s in ms.equilibria(flow, sigma))
+    (curve,) = ms.frequency_response(flow, points=4000)
+    folds = [p.state for p in ms.special_points(curve) if p.kind == "fold"]
+    turns = np.nonzero(np.diff(np.sign(np.diff(curve.detuning))))[0]
+    assert len(folds) == 2
+    assert sorted(s.detuning for s in folds) == pytest.approx(sorted(curve.detuning[turns + 1]), abs=1e-4)
+    hopf = [p.state for p in ms.special_points(curve) if p.kind == "hopf"]
+    assert all(abs(v.real) < 1e-8 and abs(v.imag) > 0 for s in hopf for v in s.eigenvalues)
