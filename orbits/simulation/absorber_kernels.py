@@ -132,6 +132,8 @@ def advance(state, params, until, codes, modes, rows):
     alpha = math.asin(ratio)
     beta = math.sqrt((1.0 - ratio) * (1.0 + ratio))
     at_root = False  # the leg starts exactly where q = 0, q rising
+    if driven and s != 0.0 and p == 0.0 and -s * math.cos(psi) > 0.0:
+        at_root = abs(-s * C * math.sin(psi) - A) < 1e-13 * C  # a slip
     count = 0
     status = _EVENTS_FULL
     while True:

@@ -1,0 +1,174 @@
+"""Runs of the event-driven simulator, for every model alike."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from orbits.simulation.contract import EVENTS_FULL, FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
+from orbits.simulation.trajectory import Trajectory
+
+CHUNK = 16384
+MOST_EVENTS = 1_000_000
+_KEYS = {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}
+_BODIES = ("q1", "q2", "q1_rate", "q2_rate")
+
+
+class SimulationError(ValueError):
+    """A start or a length of a run that cannot be; the sentence names the field, the value and what would do."""
+
+
+@cache
+def machine(name: str) -> Machine:
+    """The compiled stepper of the model called `name`; see :mod:`orbits.simulation.contract`."""
+    kernels = importlib.import_module(f"orbits.simulation.{name}_kernels")
+    return Machine(
+        name,
+        kernels.STATE,
+        kernels.ROW,
+        kernels.launch,
+        kernels.advance,
+        kernels.sample,
+        kernels.works,
+        kernels.energies,
+    )
+
+
+def simulate(
+    model: Any,
+    start: Mapping[str, float] | np.ndarray | None = None,
+    *,
+    periods: float | None = None,
+    events: int | None = None,
+    **parameters: float,
+) -> Trajectory:
+    """Simulate the machine from event to event.
+
+    Parameters
+    ----------
+    model : Model
+        The machine.
+    start : mapping or ndarray, optional
+        `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`;
+        what is not given is 0. Or a state, such as `Trajectory.end`.
+    periods : float, optional
+        Forcing periods to simulate.
+    events : int, optional
+        Stop after so many events. Without it at most a million, so that a run always ends.
+    **parameters
+        Parameters that are no fields of the machine (`amplitude`), or that replace them.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    SimulationError
+        If the start lies outside the cavity or is not finite, or neither periods nor events are given.
+    """
+    if periods is None and events is None:
+        raise SimulationError("neither periods nor events are given: say how long to simulate")
+    if periods is not None and not (math.isfinite(periods) and periods >= 0.0):
+        raise SimulationError(f"periods = {periods}: give a number of forcing periods, 0 or above")
+    if events is not None and events < 0:
+        raise SimulationError(f"events = {events}: give a number of events, 0 or above")
+    params = model.vector(parameters)
+    engine = machine(model.name)
+    state = first_state(model, engine, params, start)
+    until = math.inf if periods is None else state[TURNS] + state[PSI] / (2.0 * math.pi) + periods
+    if periods is None:
+        until = state[TURNS] + 1e9
+    begin = state.copy()
+    codes, modes, rows, status = collect(engine, state, params, until, MOST_EVENTS if events is None else events)
+    if status == FAILED:
+        raise SimulationError(
+            f"the motion of {model.name!r} left the range of numbers: give parameters and a start of moderate size"
+        )
+    return Trajectory(model, params, engine, begin, state, codes, modes, rows, status)
+
+
+def first_state(
+    model: Any, engine: Machine, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
+) -> np.ndarray:
+    """The state, shape (S,), that a start describes; `SimulationError` if it cannot be one."""
+    state = np.zeros(engine.state)
+    if isinstance(start, np.ndarray):
+        if start.shape != state.shape:
+            raise SimulationError(f"the start has shape {start.shape}: a state of {model.name!r} has {state.shape}")
+        state[:] = start
+        _check(state)
+        return state
+    given = dict(start or {})
+    allowed = [key for key, place in _KEYS.items() if place < engine.state]
+    if engine.state > V:
+        allowed += _BODIES
+        if any(key in given for key in _BODIES):
+            eps = float(params[model.parameter_names.index("mass_ratio")])
+            q1, q2, q1_rate, q2_rate = (float(given.pop(key, 0.0)) for key in _BODIES)
+            for key, value in (("w", q1 - q2), ("w_rate", q1_rate - q2_rate)):
+                given.setdefault(key, value)
+            for key, value in (("v", q1 + eps * q2), ("v_rate", q1_rate + eps * q2_rate)):
+                given.setdefault(key, value)
+    for key, value in given.items():
+        if key not in allowed:
+            raise SimulationError(f"start has no entry {key!r}; it may have " + ", ".join(allowed))
+        state[_KEYS[key]] = float(value)
+    _check(state)
+    engine.launch(state, params)
+    return state
+
+
+def _check(state: np.ndarray) -> None:
+    if not np.all(np.isfinite(state)):
+        raise SimulationError("the start is not finite: give numbers for phase, w and w_rate")
+    if abs(state[W]) > 1.0:
+        raise SimulationError(f"w = {state[W]:g} lies outside the cavity: give -1 <= w <= 1")
+
+
+def collect(
+    engine: Machine, state: np.ndarray, params: np.ndarray, until: float, most: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Run on from `state` (changed in place) and return codes, modes and rows of at most `most` events, and the status."""
+    parts = []
+    status = EVENTS_FULL
+    left = most
+    while left > 0 and status == EVENTS_FULL:
+        size = min(left, CHUNK)
+        codes, modes, rows = buffers(engine, size)
+        count, status = engine.advance(state, params, until, codes, modes, rows)
+        parts.append((codes[:count], modes[:count], rows[:count]))
+        left -= count
+    if not parts:
+        return (*buffers(engine, 0), status)
+    if len(parts) == 1:
+        return (*parts[0], status)
+    codes, modes, rows = (np.concatenate(column) for column in zip(*parts))
+    return codes, modes, rows, status
+
+
+def skip(
+    engine: Machine,
+    state: np.ndarray,
+    params: np.ndarray,
+    until: float,
+    most: int,
+    scratch: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+) -> int:
+    """Run on from `state` (changed in place) without keeping events; returns the status."""
+    codes, modes, rows = scratch if scratch is not None else buffers(engine, 4096)
+    status = EVENTS_FULL
+    while most > 0 and status == EVENTS_FULL:
+        count, status = engine.advance(state, params, until, codes, modes, rows)
+        most -= count
+    return status
+
+
+def buffers(engine: Machine, size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Empty event arrays for `size` events."""
+    return np.empty(size, np.int8), np.empty(size, np.int8), np.empty((size, engine.row))

@@ -1,0 +1,182 @@
+"""What a simulation returns: the exact list of events, and the motion between them in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from orbits.simulation.contract import HOLD, MODE, PSI, RATE, STATUS, TURNS, V, V_RATE, W, Machine
+
+TWO_PI = 2.0 * np.pi
+LETTERS = "LRtsuH"
+
+
+class Samples(NamedTuple):
+    """The motion at given instants; arrays of shape (n,), lengths in units of the cavity's half-width."""
+
+    phase: np.ndarray
+    w: np.ndarray
+    w_rate: np.ndarray
+    v: np.ndarray
+    v_rate: np.ndarray
+    cavity: np.ndarray
+    absorber: np.ndarray
+
+
+class Balance(NamedTuple):
+    """Where the energy went: change = excitation - damping - friction - impacts, up to `error` (relative)."""
+
+    change: float
+    excitation: float
+    damping: float
+    friction: float
+    impacts: float
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A simulated motion.
+
+    Attributes
+    ----------
+    model : Model
+        The machine.
+    params : ndarray, shape (P,)
+        Parameter vector of the run.
+    start, end : ndarray, shape (S,)
+        First and last state; see :mod:`orbits.simulation.contract`.
+    codes, modes : ndarray of int8, shape (n,)
+        Event codes (L R t s u = 0 ... 4, H = 5: persistent contact begins) and the modes after the events.
+    rows : ndarray, shape (n, ROW)
+        Event rows; see :mod:`orbits.simulation.contract`.
+    status : int
+        Why the run ended; `ended` says it in words.
+    """
+
+    model: Any
+    params: np.ndarray
+    machine: Machine
+    start: np.ndarray
+    end: np.ndarray
+    codes: np.ndarray
+    modes: np.ndarray
+    rows: np.ndarray
+    status: int
+
+    def __len__(self) -> int:
+        return self.codes.size
+
+    @property
+    def ended(self) -> str:
+        """Why the run ended, and whether impacts piled up on the way."""
+        sentence = STATUS[self.status]
+        contacts = int(np.count_nonzero(self.codes == HOLD))
+        if contacts:
+            times = "once" if contacts == 1 else f"{contacts} times"
+            sentence += f"; impacts piled up into persistent contact {times}"
+        return sentence
+
+    @property
+    def letters(self) -> str:
+        """The events as one string."""
+        return "".join(LETTERS[code] for code in self.codes)
+
+    @property
+    def impacts(self) -> int:
+        """Number of impacts."""
+        return int(np.count_nonzero(self.codes < 2))
+
+    @property
+    def phases(self) -> np.ndarray:
+        """Phase Psi of every event, shape (n,), counted through: 2 pi per forcing period."""
+        return self.rows[:, 0] + TWO_PI * self.rows[:, 1]
+
+    @cached_property
+    def states(self) -> np.ndarray:
+        """State at the start and after every event, shape (n + 1, S)."""
+        return np.concatenate([self.start[None, :], event_states(self.machine, self.modes, self.rows)])
+
+    @cached_property
+    def lengths(self) -> np.ndarray:
+        """Phase that passes in each segment, shape (n + 1,); the last one ends with the run."""
+        psi = np.append(self.states[:, PSI], self.end[PSI])
+        turns = np.append(self.states[:, TURNS], self.end[TURNS])
+        return np.maximum(np.diff(psi) + TWO_PI * np.diff(turns), 0.0)
+
+    def sample(self, phases: np.ndarray | None = None, per_period: int = 200) -> Samples:
+        """Evaluate the motion in closed form.
+
+        Parameters
+        ----------
+        phases : ndarray, shape (n,), optional
+            Phases Psi inside the run (radians, counted through); by default evenly spaced over the run.
+        per_period : int
+            Number of default instants per forcing period.
+
+        Returns
+        -------
+        Samples
+
+        Raises
+        ------
+        ValueError
+            If a phase lies outside the run.
+        """
+        first = self.start[PSI] + TWO_PI * self.start[TURNS]
+        last = self.end[PSI] + TWO_PI * self.end[TURNS]
+        if phases is None:
+            count = max(2, int(np.ceil((last - first) / TWO_PI * per_period)) + 1)
+            phases = np.linspace(first, last, count)
+        phases = np.atleast_1d(np.asarray(phases, dtype=float))
+        slack = 1e-9 * max(1.0, abs(last))
+        if phases.size and (phases.min() < first - slack or phases.max() > last + slack):
+            raise ValueError(
+                f"phases from {phases.min():g} to {phases.max():g} leave the run, which lasts "
+                f"from {first:g} to {last:g}; simulate more periods"
+            )
+        begins = self.states[:, PSI] + TWO_PI * self.states[:, TURNS]
+        place = np.clip(np.searchsorted(begins, phases, side="right") - 1, 0, len(begins) - 1)
+        states = self.states[place]
+        ahead = np.maximum((phases - TWO_PI * states[:, TURNS]) - states[:, PSI], 0.0)
+        out = np.empty((phases.size, 4))
+        self.machine.sample(states, self.params, ahead, out)
+        w, w_rate, v, v_rate = out.T
+        eps = self.params[self.model.parameter_names.index("mass_ratio")]
+        return Samples(phases, w, w_rate, v, v_rate, (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps))
+
+    def balance(self) -> Balance:
+        """Energy balance over the run, in the energy that the model's kernels define."""
+        works = np.empty((len(self) + 1, 3))
+        self.machine.works(self.states, self.params, self.lengths, works)
+        before = self.states[1:].copy()
+        before[:, RATE] = self.rows[:, 3]
+        pre, post, ends = np.empty(len(self)), np.empty(len(self)), np.empty(2)
+        self.machine.energies(before, self.params, pre)
+        self.machine.energies(self.states[1:], self.params, post)
+        self.machine.energies(np.stack([self.start, self.end]), self.params, ends)
+        lost = np.where(self.codes < 2, pre - post, 0.0)
+        excitation, damping, friction = works.sum(axis=0)
+        change = float(ends[1] - ends[0])
+        impacts = float(lost.sum())
+        gap = change - (excitation - damping - friction - impacts)
+        scale = float(np.abs(works).sum() + np.abs(lost).sum() + ends.max())
+        error = abs(gap) / scale if scale > 0.0 else 0.0
+        return Balance(change, float(excitation), float(damping), float(friction), impacts, float(error))
+
+
+def event_states(machine: Machine, modes: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """States after events, shape (n, S), from their rows."""
+    states = np.zeros((len(rows), machine.state))
+    states[:, PSI] = rows[:, 0]
+    states[:, TURNS] = rows[:, 1]
+    states[:, W] = rows[:, 2]
+    states[:, RATE] = rows[:, 4]
+    states[:, MODE] = modes
+    if machine.state > V:
+        states[:, V] = rows[:, 5]
+        states[:, V_RATE] = rows[:, 6]
+    return states
