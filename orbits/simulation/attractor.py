@@ -1,0 +1,149 @@
+"""What a simulation settles on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.simulation.contract import Machine
+from orbits.simulation.trajectory import LETTERS
+
+TWO_PI = 2.0 * np.pi
+KINDS = ("periodic", "sliding", "stuck", "chatter", "chaotic")
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """The motion that is left after a transient.
+
+    Attributes
+    ----------
+    model : Model
+        The machine.
+    params : ndarray, shape (P,)
+        Parameter vector.
+    kind : str
+        ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts pile up into
+        persistent contact, periodically or not) or ``chaotic`` (nothing recurs within the periods looked at).
+    periods : int
+        Forcing periods k until the motion recurs; 0 if it does not.
+    codes, modes : ndarray of int8, shape (n,)
+        The cycle's events (H = 5 begins a persistent contact) and the modes after them, rotated into canonical order.
+    nodes : ndarray, shape (n, NODE)
+        (Psi, B+) at impacts and (Psi, w) at other events, then (v, v') in the coupled model; the first phase lies in
+        [0, 2 pi), later ones are counted through.
+    residual : float
+        Largest difference between the first node and its image after one period.
+    multipliers : ndarray of complex, shape (NODE,)
+        Eigenvalues of the simulated return map's central differences; nan where they could not be taken.
+    symmetric : bool
+        Whether the orbit equals its mirror image.
+    state : ndarray, shape (S,)
+        A state on the attractor, from which a simulation goes on.
+    impacts_per_period, impact_speed : float
+        Impacts per forcing period and mean approach speed |w'-|, over the motion looked at.
+    """
+
+    model: Any
+    params: np.ndarray
+    machine: Machine
+    kind: str
+    periods: int
+    codes: np.ndarray
+    modes: np.ndarray
+    nodes: np.ndarray
+    residual: float
+    multipliers: np.ndarray
+    symmetric: bool
+    state: np.ndarray
+    impacts_per_period: float
+    impact_speed: float
+
+    def __repr__(self) -> str:
+        return f"Attractor({self.kind}, word={self.letters!r}, periods={self.periods}, impacts={self.impacts})"
+
+    @property
+    def letters(self) -> str:
+        """The cycle's events as one string, every slip written."""
+        return "".join(LETTERS[code] for code in self.codes)
+
+    @property
+    def impacts(self) -> int:
+        """Impacts l in one cycle."""
+        return int(np.count_nonzero(self.codes < 2))
+
+    @property
+    def recurrent(self) -> bool:
+        """Whether the motion is periodic (stuck included)."""
+        return self.kind == "stuck" or self.periods > 0
+
+    @property
+    def word(self) -> Any:
+        """The cycle as an `orbits.words.Word`; None where the motion has none (chaos, persistent contact)."""
+        from orbits.words import Word
+
+        if not self.recurrent or np.any(self.codes > 4):
+            return None
+        frictionless = self.model.friction_acceleration(self.params) == 0.0
+        return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), frictionless)
+
+    @property
+    def text(self) -> str:
+        """The word as text; for motions with persistent contact the plain list of events."""
+        if self.word is not None:
+            return self.word.text
+        return self.letters if self.periods else ""
+
+    def orbit(self) -> Any:
+        """The attractor as an `orbits.orbit.Orbit`, ready for continuation.
+
+        Raises
+        ------
+        ValueError
+            If the attractor is not periodic or has persistent contact, which no word describes.
+        """
+        from orbits.orbit import Orbit
+
+        word = self.word
+        if word is None:
+            raise ValueError(f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits")
+        return Orbit(self.model, word, self.periods, self.nodes, self.params)
+
+    def distance(self, other: Attractor) -> float:
+        """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.
+
+        Without impacts the mean position is free and left out. inf if the events differ.
+        """
+        if self.kind != other.kind or self.periods != other.periods or len(self.codes) != len(other.codes):
+            return np.inf
+        if not len(self.codes):
+            return 0.0
+        mirror = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
+        own, target = centred(self.codes, self.nodes), centred(other.codes, other.nodes)
+        image = -own
+        image[:, 0] = own[:, 0] + np.pi
+        images = [(self.codes, self.modes, own), (mirror[self.codes], -self.modes, image)]
+        best = np.inf
+        for codes, modes, nodes in images:
+            for k in range(len(codes)):
+                if np.array_equal(np.roll(codes, -k), other.codes) and np.array_equal(np.roll(modes, -k), other.modes):
+                    best = min(best, cyclic_distance(np.roll(nodes, -k, axis=0), target))
+        return best
+
+
+def cyclic_distance(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest difference of two node arrays, phases modulo 2 pi."""
+    gap = a - b
+    gap[:, 0] -= TWO_PI * np.round(gap[:, 0] / TWO_PI)
+    return float(np.abs(gap).max()) if gap.size else 0.0
+
+
+def centred(codes: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """The nodes; of a motion without impacts with the mean of w moved to 0."""
+    if np.any(codes < 2) or np.any(codes > 4):
+        return nodes
+    moved = nodes.copy()
+    moved[:, 1] -= nodes[:, 1].mean()
+    return moved

@@ -1,0 +1,192 @@
+"""Replay: does the simulator, which knows no word, follow a claimed periodic orbit?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.simulation.attractor import cyclic_distance
+from orbits.simulation.driver import collect, machine, skip
+from orbits.simulation.return_map import go_round, monodromy, nodes_of, state_of
+from orbits.simulation.trajectory import TWO_PI
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Outcome of a replay.
+
+    Attributes
+    ----------
+    error : float
+        Largest difference between claimed and simulated nodes over one period, the return included; inf if the events
+        differ.
+    message : str
+        "" or a sentence that says where the simulation departs from the claim.
+    multipliers : ndarray of complex
+        Eigenvalues of the simulated return map's central differences (empty if they were not asked for or not to be had).
+    tracked : int
+        Cycles for which the simulation, started on the orbit, stayed within `loss` of it (0 if not asked for).
+    expected : float
+        Cycles for which rounding errors allow that: ln(loss/1e-15)/ln|multiplier|, inf for a stable orbit.
+    returned : bool or None
+        Whether a start moved off a stable orbit comes back to it (None for others, or if not asked for).
+    """
+
+    error: float
+    message: str
+    multipliers: np.ndarray
+    tracked: int = 0
+    expected: float = np.inf
+    returned: bool | None = None
+
+    @property
+    def matches(self) -> bool:
+        """Whether the events are those claimed."""
+        return bool(np.isfinite(self.error))
+
+
+def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int = 200) -> Replay:
+    """Replay an orbit: start exactly at its first node and compare events and nodes over one period.
+
+    Parameters
+    ----------
+    orbit : orbit-like
+        With `model`, `params`, `periods`, `nodes` (shape (n, NODE)) and `word` (or `codes` and `modes`): an
+        `orbits.orbit.Orbit` or an `Attractor`.
+    thorough : bool
+        Also take multipliers, follow the orbit for as long as they allow and, if it is stable, start off it and see
+        whether the motion comes back.
+    loss : float
+        Distance at which a followed orbit counts as lost.
+    most : int
+        Largest number of cycles simulated for this.
+
+    Returns
+    -------
+    Replay
+    """
+    word = getattr(orbit, "word", None)
+    codes = word.codes if word is not None else orbit.codes
+    modes = word.mode_codes if word is not None else orbit.modes
+    return replay_nodes(orbit.model, orbit.params, codes, modes, orbit.nodes, orbit.periods, thorough, loss, most)
+
+
+def replay_nodes(
+    model: Any,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    periods: int,
+    thorough: bool = False,
+    loss: float = 1e-4,
+    most: int = 200,
+) -> Replay:
+    """`replay` from bare arrays: events and modes of shape (n,), nodes of shape (n, NODE)."""
+    params = np.asarray(params, dtype=float)
+    engine = machine(model.name)
+    codes, modes = np.asarray(codes, np.int8), np.asarray(modes, np.int8)
+    nothing = np.empty(0, complex)
+    if not len(codes):
+        return _stuck(model, params)
+    nodes = np.asarray(nodes, dtype=float).reshape(len(codes), -1)
+    there = go_round(engine, params, codes, modes, nodes[0])
+    if there.message:
+        return Replay(np.inf, there.message, nothing)
+    claimed = np.roll(nodes, -1, axis=0)
+    claimed[-1, 0] += TWO_PI * periods
+    error = float(np.abs(there.nodes - claimed).max())
+    if not thorough:
+        return Replay(error, "", nothing)
+    start = _freest(codes, nodes)
+    codes, modes = np.roll(codes, -start), np.roll(modes, -start)
+    nodes = np.roll(nodes, -start, axis=0)
+    if start:
+        nodes[-start:, 0] += TWO_PI * periods
+    matrix = monodromy(engine, params, codes, modes, nodes[0])
+    if matrix is None:
+        return Replay(error, "the return map is not smooth here: a displaced start takes other events", nothing)
+    multipliers = np.linalg.eigvals(matrix).astype(complex)
+    free = 0 if np.any(codes < 2) else 1  # a motion without impacts may be moved as a whole
+    growth = float(np.sort(np.abs(multipliers))[::-1][free])
+    expected = np.log(loss / 1e-15) / np.log(growth) if growth > 1.0 else np.inf
+    wanted = int(min(most, max(1.0, expected)))
+    tracked = _tracked(engine, params, codes, modes, nodes, periods, loss, wanted)
+    returned = None
+    if growth < 1.0 - 1e-6:
+        returned = _returns(engine, params, codes, modes, nodes, periods, growth)
+    return Replay(error, "", multipliers, tracked, float(expected), returned)
+
+
+def _stuck(model: Any, params: np.ndarray) -> Replay:
+    """The empty word: the absorber must not slip."""
+    if model.name != "absorber":
+        return Replay(np.inf, "a motion without events has no node to start from: simulate it from its state", np.empty(0))
+    held = params[0] * params[5] ** 2 <= model.friction_acceleration(params)
+    sentence = "" if held else "friction does not hold the absorber: C Omega^2 exceeds (1 + eps) mu g"
+    return Replay(0.0 if held else np.inf, sentence, np.empty(0, complex))
+
+
+def _freest(codes: np.ndarray, nodes: np.ndarray) -> int:
+    """An event whose node has no dependent entry: an impact, else a turn, else any."""
+    del nodes
+    for wanted in ((0, 1), (2,), (3,), (4,)):
+        places = np.flatnonzero(np.isin(codes, wanted))
+        if len(places):
+            return int(places[0])
+    return 0
+
+
+def _tracked(
+    engine: Any,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    periods: int,
+    loss: float,
+    wanted: int,
+) -> int:
+    there = go_round(engine, params, codes, modes, nodes[0], wanted)
+    n = len(codes)
+    cycles = len(there.nodes) // n
+    claimed = np.roll(nodes, -1, axis=0)
+    claimed[-1, 0] += TWO_PI * periods
+    for c in range(cycles):
+        piece = there.nodes[c * n : (c + 1) * n].copy()
+        piece[:, 0] -= TWO_PI * periods * c
+        if np.abs(piece - claimed).max() > loss:
+            return c
+    return cycles
+
+
+def _returns(
+    engine: Any,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    periods: int,
+    growth: float,
+) -> bool:
+    """Start 1e-6 off the orbit, wait until multipliers have shrunk that ten thousandfold, and compare."""
+    state = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
+    state[2] *= 1.0 + 1e-6
+    if codes[0] > 1:
+        state[0] += 1e-6
+    engine.launch(state, params)
+    cycles = min(200_000.0 / periods, np.ceil(np.log(1e-4) / np.log(max(growth, 1e-3))) + 2.0)
+    skip(engine, state, params, state[4] + cycles * periods, int(1000 * cycles * periods))
+    seen, after, rows, _ = collect(engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3)
+    found = nodes_of(engine, params, seen, after, rows)
+    n = len(codes)
+    for k in range(max(0, len(seen) - n + 1)):
+        if np.array_equal(seen[k : k + n], codes) and np.array_equal(after[k : k + n], modes):
+            here = found[k : k + n].copy()
+            if not np.any(codes < 2):
+                here[:, 1] += nodes[0, 1] - here[0, 1]
+            if cyclic_distance(here, nodes) < 1e-8:
+                return True
+    return False

@@ -1,0 +1,135 @@
+"""Once round a periodic orbit by simulation: the return map from one of its events to itself.
+
+Nothing here knows the equations that continuation solves, so it can serve as a witness for them. Derivatives are central
+differences of the simulated map.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from orbits.simulation.contract import FAILED, HOLD, MODE, PSI, RATE, TIME_REACHED, TURNS, V, V_RATE, Machine, W
+from orbits.simulation.driver import buffers
+from orbits.simulation.trajectory import LETTERS, TWO_PI, event_states
+
+
+class Round(NamedTuple):
+    """Events after the first node, up to and including its return.
+
+    nodes : shape (n, NODE), phases counted from the first node's; message : "" or what went otherwise than listed.
+    """
+
+    nodes: np.ndarray
+    message: str
+
+
+def state_of(engine: Machine, params: np.ndarray, code: int, mode: int, node: np.ndarray) -> np.ndarray:
+    """The state, shape (S,), just after an event, from its node (Psi, B+ or w(, v, v'))."""
+    state = np.zeros(engine.state)
+    psi = float(node[0])
+    turns = np.floor(psi / TWO_PI)
+    psi -= turns * TWO_PI
+    if psi >= TWO_PI or psi < 0.0:
+        psi = 0.0
+    state[PSI], state[TURNS], state[MODE] = psi, turns, mode
+    if engine.state > V:
+        state[V], state[V_RATE] = node[2], node[3]
+    if code < 2:
+        state[W] = 1.0 if code == 0 else -1.0
+        state[RATE] = _cavity_speed(engine, params, state[None, :])[0] - node[1]
+    else:
+        state[W] = node[1]
+    return state
+
+
+def nodes_of(engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Nodes, shape (n, NODE), of events; phases are counted through (2 pi per turn)."""
+    states = event_states(engine, modes, rows)
+    nodes = np.empty((len(rows), 4 if engine.state > V else 2))
+    nodes[:, 0] = states[:, PSI] + TWO_PI * states[:, TURNS]
+    impact = codes < 2
+    nodes[:, 1] = np.where(impact, _cavity_speed(engine, params, states) - states[:, RATE], states[:, W])
+    nodes[:, 2:] = rows[:, 5 : 5 + nodes.shape[1] - 2]
+    return nodes
+
+
+def _cavity_speed(engine: Machine, params: np.ndarray, states: np.ndarray) -> np.ndarray:
+    out = np.empty((len(states), 4))
+    engine.sample(states, params, np.zeros(len(states)), out)
+    return out[:, 3]
+
+
+def go_round(
+    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, node: np.ndarray, times: int = 1
+) -> Round:
+    """Start exactly at the first event of a cycle and simulate it `times` times.
+
+    Parameters
+    ----------
+    codes, modes : ndarray, shape (n,)
+        The cycle's events and the modes after them.
+    node : ndarray, shape (NODE,)
+        The first node.
+
+    Returns
+    -------
+    Round
+        `nodes` has shape (times * n, NODE): events 1 ... n-1, the return to event 0, and so on.
+    """
+    n = len(codes)
+    state = state_of(engine, params, int(codes[0]), int(modes[0]), node)
+    if abs(state[W]) > 1.0:
+        return Round(np.empty((0, len(node))), f"the first node lies outside the cavity (w = {state[W]:g})")
+    base = state[TURNS]
+    state[TURNS] = 0.0
+    if codes[0] < 2 and state[RATE] * modes[0] <= 0.0:
+        return Round(np.empty((0, len(node))), "the first impact does not send the absorber off the wall")
+    seen, after, rows = buffers(engine, times * n)
+    count, status = engine.advance(state, params, 1e7, seen, after, rows)
+    seen, after, rows = seen[:count], after[:count], rows[:count]
+    nodes = nodes_of(engine, params, seen, after, rows)
+    nodes[:, 0] += TWO_PI * base
+    told = np.tile(np.roll(codes, -1), times)
+    told_modes = np.tile(np.roll(modes, -1), times)
+    for i in range(count):
+        if seen[i] != told[i] or (after[i] != told_modes[i] and seen[i] != HOLD):
+            return Round(nodes[: i + 1], _difference(i, told[i], told_modes[i], seen[i], after[i]))
+    if count < times * n:
+        why = {FAILED: "the motion is not finite", TIME_REACHED: "no event came"}.get(status, "the motion came to rest")
+        return Round(nodes, f"after {count} events {why}, where {LETTERS[told[count]]} was listed")
+    return Round(nodes, "")
+
+
+def _difference(place: int, told: int, told_mode: int, seen: int, mode: int) -> str:
+    if told == seen:
+        return f"event {place + 1} ({LETTERS[seen]}) leads into mode {mode:+d}, listed was {told_mode:+d}"
+    return f"event {place + 1} is {LETTERS[seen]}, listed was {LETTERS[told]}"
+
+
+def monodromy(
+    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, node: np.ndarray, step: float = 1e-6
+) -> np.ndarray | None:
+    """Derivative of the return map at the first node, shape (NODE, NODE), by central differences.
+
+    None if some displaced start goes through other events, however small the step.
+    """
+    n = len(node)
+    result = np.empty((n, n))
+    for j in range(n):
+        for size in (step, 0.1 * step, 0.01 * step):
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = np.array(node, dtype=float)
+                moved[j] += sign * size
+                there = go_round(engine, params, codes, modes, moved)
+                if there.message:
+                    break
+                ends.append(there.nodes[-1])
+            if len(ends) == 2:
+                result[:, j] = (ends[0] - ends[1]) / (2.0 * size)
+                break
+        else:
+            return None
+    return result
