@@ -37,7 +37,10 @@ WOULD_DO = {
     "within": "two finite numbers [low, high] with low < high",
     "depth": "a whole number >= 0: how many switches deep",
     "virtual": "true or false",
-    "tolerance": "a number from 1e-13 to 1e-3, for example 1e-10",
+    "tolerance": "a number in (0, 1e-3], for example 1e-10",
+    "angle": "an angle between tangents in (0, 0.5] radians, for example 0.1",
+    "max_step": "a number in (1e-9, 0.5], a share of the interval, for example 0.03",
+    "max_points": "a whole number >= 1, for example 20000",
     "count": "a whole number >= 2, for example 400",
     "transient": "a whole number of forcing periods >= 0, for example 400",
     "window": "a whole number of forcing periods >= 1, for example 256",
@@ -64,7 +67,7 @@ class AbsorberSection(_Section):
     restitution: Restitution
     friction: NonNegative
     gravity: NonNegative
-    mass_ratio: Positive
+    mass_ratio: NonNegative = 0.0
     frequency: Positive = 1.0
 
 
@@ -99,7 +102,10 @@ class ContinueSection(_Section):
     within: Annotated[list[float], Field(min_length=2, max_length=2)]
     depth: Annotated[int, Field(ge=0)] = 3
     virtual: bool = False
-    tolerance: Annotated[float, Field(ge=1e-13, le=1e-3)] = 1e-10
+    tolerance: Annotated[float, Field(gt=0, le=1e-3)] | None = None
+    angle: Annotated[float, Field(gt=0, le=0.5)] | None = None
+    max_step: Annotated[float, Field(gt=1e-9, le=0.5)] | None = None
+    max_points: Annotated[int, Field(ge=1)] | None = None
 
 
 class SweepSection(_Section):
@@ -125,7 +131,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
         "restitution": Restitution,
         "friction": NonNegative,
         "gravity": NonNegative,
-        "mass_ratio": Positive,
+        "mass_ratio": NonNegative,
         "frequency": Positive,
     },
     "coupled": {
@@ -152,7 +158,8 @@ class Study:
     name : "absorber" or "coupled".
     parameters : every parameter of the model at the start, by name.
     word, periods, guess : the first orbit.
-    parameter, within, depth, virtual, tolerance : the continuation.
+    parameter, within, depth, virtual : the continuation.
+    settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep : settings of the brute-force sweep.
     """
 
@@ -166,7 +173,7 @@ class Study:
     within: tuple[float, float]
     depth: int
     virtual: bool
-    tolerance: float
+    settings: dict[str, Any]
     sweep: SweepSection
 
     def describe(self) -> dict[str, Any]:
@@ -179,7 +186,7 @@ class Study:
                 "within": list(self.within),
                 "depth": self.depth,
                 "virtual": self.virtual,
-                "tolerance": self.tolerance,
+                "settings": self.settings,
             },
         }
 
@@ -306,7 +313,7 @@ def _resolve(file: _File, path: Path) -> Study:
         within=(float(low), float(high)),
         depth=go.depth,
         virtual=go.virtual,
-        tolerance=go.tolerance,
+        settings=go.model_dump(include={"tolerance", "angle", "max_step", "max_points"}, exclude_none=True),
         sweep=file.sweep,
     )
 

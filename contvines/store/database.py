@@ -96,11 +96,7 @@ class Store:
         if not Path(path).exists():
             return cls.create(path, fingerprint, study)
         with cls.open(path) as reader:
-            if reader.fingerprint != fingerprint:
-                raise StoreError(
-                    f"{path}: this file belongs to another study or to another command; "
-                    "choose another name with -o, or move the file away."
-                )
+            reader.require(fingerprint)
         return cls._connect(Path(path), write=True)
 
     @classmethod
@@ -134,6 +130,14 @@ class Store:
     def fingerprint(self) -> str:
         """Digest of the study that the file belongs to."""
         return self._meta("fingerprint")
+
+    def require(self, fingerprint: str) -> None:
+        """Refuse a file that belongs to another study."""
+        if self.fingerprint != fingerprint:
+            raise StoreError(
+                f"{self.path}: this file belongs to another study or to another command; "
+                "choose another name with -o, or move the file away."
+            )
 
     @property
     def study(self) -> dict[str, Any] | None:

@@ -1,0 +1,87 @@
+"""The command `contvines`: its sub-commands, and how errors reach a user (as sentences).
+
+Each sub-command lives in a file of this folder and is registered below. Importing this module must stay cheap:
+numpy, numba, matplotlib, rich and pydantic are imported by the commands that need them.
+"""
+
+import sys
+from typing import Annotated
+
+import typer
+
+from contvines.command import look, run, sweep
+
+app = typer.Typer(
+    name="contvines",
+    help="Bifurcation graphs of vibro-impact absorbers: every branch, every border, only orbits that exist.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from contvines import __version__
+
+        typer.echo(f"contvines {__version__}")
+        raise typer.Exit
+
+
+@app.callback(
+    epilog="A first study: contvines diagram examples/friction.toml --plot friction.png",
+)
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", help="Show the traceback of an error (anywhere on the line).")
+    ] = False,
+) -> None:
+    pass
+
+
+app.command()(run.diagram)
+app.command()(run.trace)
+app.command()(run.switch)
+app.command()(look.show)
+app.command()(look.orbit)
+app.command()(look.plot)
+app.command()(look.export)
+app.command()(sweep.sweep)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line; every error ends as a sentence on stderr and a non-zero exit status."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    debug = "--debug" in words
+    words = [w for w in words if w != "--debug"]
+    try:
+        app(words, prog_name="contvines")
+    except Exception as error:
+        if debug:
+            raise
+        print(f"contvines: {sentence(error)}", file=sys.stderr)
+        sys.exit(1)
+
+
+def sentence(error: Exception) -> str:
+    """An error for people: our own errors are sentences already, others are named."""
+    if isinstance(error, KeyError) and error.args and " " in str(error.args[0]):
+        text = str(error.args[0])
+    elif isinstance(error, ValueError) and str(error):
+        text = str(error)
+    elif isinstance(error, OSError) and error.strerror:
+        text = f"{error.filename or 'a file'}: {error.strerror}"
+    else:
+        text = (
+            f"something went wrong that should not ({type(error).__name__}: {error}); "
+            "the same command with --debug shows where"
+        )
+    return text if text.endswith((".", "?")) or "\n" in text else text + "."
+
+
+if __name__ == "__main__":
+    main()

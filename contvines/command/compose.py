@@ -1,0 +1,72 @@
+"""Where the two packages meet: a study becomes a machine, a first orbit and a run."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from contvines.command.study import Study
+    from contvines.graph.graph import Graph
+
+
+def machine(study: "Study") -> Any:
+    """The machine of a study, `[start]`'s overrides included."""
+    from orbits.models import build
+
+    own = {k: v for k, v in study.parameters.items() if k not in loose(study)}
+    return build({"name": study.name, **own})
+
+
+def loose(study: "Study") -> dict[str, float]:
+    """Parameters that belong to the orbit rather than to the machine (the reduced model's amplitude)."""
+    return {k: v for k, v in study.parameters.items() if study.name == "absorber" and k == "amplitude"}
+
+
+def first_orbit(study: "Study") -> Any:
+    """The study's start, solved.
+
+    Raises
+    ------
+    ValueError
+        If the word cannot be, or no orbit with it is found; the sentence names the study.
+    """
+    try:
+        return machine(study).orbit(study.word, study.periods, guess=study.guess, **loose(study))
+    except ValueError as error:
+        raise ValueError(f"{study.path}: [start] {error}") from error
+
+
+def run_diagram(study: "Study", seed: Any, journal: Any, depth: int) -> "Graph":
+    """The automatic diagram of a study from its first orbit."""
+    import contvines
+
+    return contvines.diagram(
+        seed,
+        over=study.parameter,
+        within=study.within,
+        depth=depth,
+        virtual=study.virtual,
+        journal=journal,
+        settings=study.settings,
+    )
+
+
+def beside(path: Path, ending: str) -> Path:
+    """The default place of a result: the study's or file's name with another ending, in the current folder."""
+    return Path(path.stem + ending)
+
+
+def check_place(path: Path) -> None:
+    """Refuse, before any work, a result that could not be written at the end."""
+    if path.is_dir():
+        raise ValueError(f"{path}: this is a folder; give the name of a file with -o.")
+    if not path.parent.is_dir():
+        raise ValueError(
+            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
+        )
+
+
+def say(text: str, quiet: bool = False) -> None:
+    """A remark for the user, on stderr so that results on stdout stay clean."""
+    if not quiet:
+        print(text, file=sys.stderr)

@@ -1,0 +1,225 @@
+"""`contvines show`, `orbit`, `plot` and `export`: the commands that look at results."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+FileArgument = Annotated[
+    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
+
+
+class Format(StrEnum):
+    """What `export` writes."""
+
+    csv = "csv"
+    json = "json"
+    graphml = "graphml"
+    mat = "mat"
+
+
+class Picture(StrEnum):
+    """What `plot` draws."""
+
+    diagram = "diagram"
+    multipliers = "multipliers"
+    network = "network"
+
+
+def show(file: FileArgument, json: JsonOption = False) -> None:
+    """List branches, special points and switches."""
+    from contvines.store import load
+
+    graph = load(file, problems=False)
+    if json:
+        from contvines.export import json_text
+
+        typer.echo(json_text(graph.to_dict()))
+        return
+    if not graph.finished:
+        _unfinished(file)
+    typer.echo(str(graph))
+
+
+def orbit(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE.vines|STUDY.toml", help="A result, or a study to try its start.")
+    ],
+    label: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[LABEL]", help="With FILE.vines: a special point (SB1), or a point of a branch (B1:12)."
+        ),
+    ] = None,
+    json: JsonOption = False,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw phase portrait and history.")
+    ] = None,
+) -> None:
+    """One orbit: its events, multipliers and margins."""
+    if plot is not None:
+        from contvines.plots.style import check_picture
+
+        check_picture(plot)
+    found = _orbit(file, label)
+    if json:
+        from contvines.export import json_text
+
+        typer.echo(json_text(_plain(found)))
+    else:
+        typer.echo(_describe(found))
+    if plot is not None:
+        from contvines.plots.portrait import plot_portrait
+        from contvines.plots.style import save_figure
+
+        save_figure(plot_portrait(found), plot)
+
+
+def plot(
+    file: FileArgument,
+    x: Annotated[
+        str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")
+    ] = None,
+    y: Annotated[str | None, typer.Option("-y", help="Measure on the y axis; by default B.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
+    ] = None,
+    kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
+    branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
+) -> None:
+    """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
+    from contvines.command.compose import beside
+    from contvines.plots.style import check_picture, save_figure
+    from contvines.store import load
+
+    target = output or beside(file, ".png")
+    check_picture(target)
+    graph = load(file)
+    if not graph.finished:
+        _unfinished(file)
+    if not graph.branches:
+        raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
+    if kind is Picture.diagram:
+        from contvines.plots.diagram import plot_diagram
+
+        figure = plot_diagram(graph, x, y)
+    elif kind is Picture.network:
+        from contvines.plots.network import plot_network
+
+        figure = plot_network(graph)
+    else:
+        from contvines.plots.multipliers import plot_multipliers
+
+        label = branch or next(iter(graph.branches))
+        if label not in graph.branches:
+            raise ValueError(
+                f"--branch {label}: there is no such branch in {file}; it has {', '.join(graph.branches)}."
+            )
+        figure = plot_multipliers(graph.branches[label])
+    save_figure(figure, target)
+    typer.echo(str(target))
+
+
+def export(
+    file: FileArgument,
+    to: Annotated[Format, typer.Option("--to", help="The format.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
+    ] = None,
+) -> None:
+    """Write a result for other programs: csv, json, graphml or mat."""
+    from contvines.command.compose import beside, check_place
+    from contvines.export import export as write
+    from contvines.store import load
+
+    target = output or beside(file, f".{to.value}")
+    check_place(target)
+    graph = load(file, problems=False)
+    if not graph.finished:
+        _unfinished(file)
+    typer.echo(str(write(graph, to.value, target)))
+
+
+def _orbit(file: Path, label: str | None) -> Any:
+    from contvines.command.study import is_database
+
+    if not is_database(file) and file.suffix == ".toml":
+        from contvines.command.compose import first_orbit
+        from contvines.command.study import read_study
+
+        if label is not None:
+            raise ValueError(
+                f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
+            )
+        return first_orbit(read_study(file))
+    from contvines.store import load
+
+    graph = load(file)
+    if label is None:
+        raise ValueError(
+            f"which orbit of {file}? Give one of the labels {', '.join([*graph.special, *graph.branches])}."
+        )
+    name, _, place = label.partition(":")
+    thing = graph[name]
+    if hasattr(thing, "kind") and not place:
+        return thing.orbit
+    if hasattr(thing, "kind"):
+        raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
+    last = len(thing) - 1
+    if place and not (place.isdigit() and int(place) <= last):
+        raise ValueError(
+            f"{label}: the points of {name} are numbered from 0 to {last}; {name}:{last // 2} would do."
+        )
+    return thing.orbit(int(place or 0))
+
+
+def _plain(found: Any) -> dict[str, Any]:
+    if hasattr(found, "to_dict"):
+        return found.to_dict()
+    names = [n for n in ("parameter", "value", "u", "points") if hasattr(found, n)]
+    return {n: getattr(found, n) for n in names}
+
+
+def _describe(found: Any) -> str:
+    """An orbit as a readable text, from the same object that --json prints."""
+    about = _plain(found)
+    lines = []
+    if "word" in about:
+        nature = "real" if about["real"] else "virtual: no machine follows it"
+        lines.append(f"{about['word'] or 'stuck'}  k = {about['periods']}  ({nature})")
+    parameters = about.get("parameters", {})
+    if parameters:
+        lines.append("  " + "  ".join(f"{k} = {v:.10g}" for k, v in parameters.items()))
+    nodes = about.get("nodes", [])
+    if nodes:
+        names = list(nodes[0])
+        table = [
+            names,
+            *[[f"{n[k]:.10g}" if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
+        ]
+        widths = [max(len(row[i]) for row in table) for i in range(len(names))]
+        lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths)) for row in table]
+    if "multipliers" in about:
+        text = ", ".join(
+            f"{re:.10g}" if im == 0 else f"{re:.10g}{im:+.10g}i" for re, im in about["multipliers"]
+        )
+        lines.append(f"  multipliers: {text or 'none'}")
+    if about.get("margins"):
+        smallest = min(about["margins"], key=lambda m: m["value"])
+        lines.append(
+            f"  smallest margin: {smallest['value']:.6g} ({smallest['kind']}, segment {smallest['segment']}) "
+            f"of {len(about['margins'])}"
+        )
+    if not lines:
+        lines = [f"{k}: {v}" for k, v in about.items()]
+    return "\n".join(lines)
+
+
+def _unfinished(file: Path) -> None:
+    typer.echo(
+        f"{file} is unfinished: its run goes on, or was stopped; the same command continues it.", err=True
+    )

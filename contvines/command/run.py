@@ -1,0 +1,171 @@
+"""`contvines diagram`, `trace` and `switch`: the commands that continue."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+StudyArgument = Annotated[
+    Path, typer.Argument(metavar="STUDY.toml", help="The study: model, start, what to continue.")
+]
+FileArgument = Annotated[
+    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
+]
+OutputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "-o", "--output", metavar="FILE.vines", help="Where to keep the graph; by default STUDY.vines here."
+    ),
+]
+PlotOption = Annotated[
+    Path | None,
+    typer.Option("--plot", metavar="FILE.png", help="Draw the bifurcation diagram (png, pdf or svg)."),
+]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
+XOption = Annotated[str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")]
+YOption = Annotated[str | None, typer.Option("-y", help="Measure on the y axis; by default B.")]
+
+
+def diagram(
+    study: StudyArgument,
+    output: OutputOption = None,
+    plot: PlotOption = None,
+    quiet: QuietOption = False,
+    x: XOption = None,
+    y: YOption = None,
+) -> None:
+    """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
+    _run("diagram", study, output, plot, quiet, x, y)
+
+
+def trace(
+    study: StudyArgument,
+    output: OutputOption = None,
+    plot: PlotOption = None,
+    quiet: QuietOption = False,
+    x: XOption = None,
+    y: YOption = None,
+) -> None:
+    """Follow the study's one branch, without switching."""
+    _run("trace", study, output, plot, quiet, x, y)
+
+
+def switch(
+    file: FileArgument,
+    label: Annotated[str, typer.Argument(metavar="LABEL", help="A special point, for example SB1.")],
+    quiet: QuietOption = False,
+) -> None:
+    """Follow the branch that leaves a special point, and add it to the file."""
+    from contvines.command.progress import watched
+    from contvines.graph.diagram import extend
+    from contvines.journal import NullJournal
+    from contvines.store import Store
+
+    with Store.open(file, write=True) as store:
+        if not store.finished:
+            raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
+        graph = store.graph()
+        point = graph[label]
+        if not hasattr(point, "kind"):
+            specials = ", ".join(graph.special) or "none"
+            raise ValueError(f"{label} is a branch; give a special point of {file}: {specials}.")
+        before = set(graph.branches)
+        with _interruptible(f"{file} is as it was"), watched(NullJournal(), quiet=quiet) as journal:
+            extend(graph, label, journal=journal)
+        new = [b for name, b in graph.branches.items() if name not in before]
+        if new:
+            store.checkpoint(graph)
+    if not quiet:
+        if not new:
+            typer.echo(f"{label}: nothing new leaves here; {file} is as it was.")
+        for branch in new:
+            low, high = branch.range
+            typer.echo(
+                f"{branch.label}: {len(branch)} points, {branch.parameter} from {low:.6g} to {high:.6g}"
+            )
+
+
+def _run(
+    command: str,
+    path: Path,
+    output: Path | None,
+    plot: Path | None,
+    quiet: bool,
+    x: str | None,
+    y: str | None,
+) -> None:
+    from contvines.command.compose import beside, check_place, first_orbit, run_diagram, say
+    from contvines.command.study import read_study
+    from contvines.store import Store
+
+    study = read_study(path)
+    target = output or beside(path, ".vines")
+    check_place(target)
+    if target.resolve() == path.resolve():
+        raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
+    if plot is not None:
+        _check_picture(plot)
+    fingerprint = study.fingerprint(command)
+    graph: Any = None
+    if target.exists():
+        with Store.open(target) as store:
+            store.require(fingerprint)
+            if store.finished:
+                graph = store.graph(problems=plot is not None)
+                say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
+            else:
+                say(f"{target} is unfinished: going on after {len(store)} finished pieces of work.", quiet)
+    if graph is None:
+        seed = first_orbit(study)
+        graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)
+        say(f"kept in {target}", quiet)
+    if not quiet:
+        typer.echo(str(graph))
+    if plot is not None:
+        _draw(graph, x, y, plot)
+        say(f"drawn in {plot}", quiet)
+
+
+def _continue(
+    study: Any, seed: Any, command: str, target: Path, fingerprint: str, quiet: bool, run: Any
+) -> Any:
+    from contvines.command.progress import watched
+    from contvines.store import Store
+
+    depth = study.depth if command == "diagram" else 0
+    with Store.attach(target, fingerprint, study.describe()) as store:
+        note = f"all finished points are kept in {target}; the same command goes on from there"
+        with _interruptible(note), watched(store, quiet=quiet) as journal:
+            graph = run(study, seed, journal, depth)
+        if not store.finished:
+            store.checkpoint(graph)
+    return graph
+
+
+class _interruptible:
+    """Ctrl-C ends the command with a sentence and status 130."""
+
+    def __init__(self, note: str):
+        self.note = note
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: Any, *_: object) -> None:
+        if kind is not None and issubclass(kind, KeyboardInterrupt):
+            typer.echo(f"\ncontvines: stopped; {self.note}.", err=True)
+            raise typer.Exit(130)
+
+
+def _check_picture(path: Path) -> None:
+    # kept apart from matplotlib: a wrong name is refused at once
+    from contvines.plots.style import check_picture
+
+    check_picture(path)
+
+
+def _draw(graph: Any, x: str | None, y: str | None, path: Path) -> None:
+    from contvines.plots.diagram import plot_diagram
+    from contvines.plots.style import save_figure
+
+    save_figure(plot_diagram(graph, x, y), path)
