@@ -1,0 +1,139 @@
+"""Refusals as sentences that name the field, the value and what would do."""
+
+import difflib
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+
+from contvines.command.schema import (
+    EXCITATION,
+    PARAMETERS,
+    AbsorberSection,
+    ContinueSection,
+    CoupledSection,
+    StartSection,
+    SweepSection,
+)
+
+# What would do, for each field; used in every sentence that refuses a value.
+WOULD_DO = {
+    "name": "'absorber' or 'coupled'",
+    "restitution": "a number in (0, 1], for example 0.76",
+    "friction": "a number >= 0, for example 0.5",
+    "gravity": "a number >= 0, for example 0.211",
+    "mass_ratio": "a number >= 0, for example 0.006",
+    "frequency": "a number > 0, for example 1.0",
+    "amplitude": "a number >= 0, for example 0.55",
+    "forcing": "a number >= 0, for example 3.3",
+    "damping": "a number >= 0, for example 0.9",
+    "excitation": "a number from 0 to 1: 1.0 keeps the damper's share of the base excitation, 0.0 drops it",
+    "word": "a word of events such as 'LR', 'LtL' or 'tt', or of maps such as 'LR RL'",
+    "periods": "a whole number >= 1",
+    "guess": "a list with one [phase, B or w] per event of the word",
+    "parameter": "the name of one of the model's parameters",
+    "within": "two finite numbers [low, high] with low < high",
+    "depth": "a whole number >= 0: how many switches deep",
+    "virtual": "true or false",
+    "tolerance": "a number in (0, 1e-3], for example 1e-10",
+    "angle": "an angle between tangents in (0, 0.5] radians, for example 0.1",
+    "max_step": "a number in (1e-9, 0.5], a share of the interval, for example 0.03",
+    "max_points": "a whole number >= 1, for example 20000",
+    "count": "a whole number >= 2, for example 400",
+    "transient": "a whole number of forcing periods >= 0, for example 400",
+    "window": "a whole number of forcing periods >= 1, for example 256",
+}
+SECTIONS = {
+    "model": 'name = "absorber" and its parameters',
+    "start": 'a word, its periods and a first amplitude, for example word = "LR", periods = 1, amplitude = 0.55',
+    "continue": 'what to vary and where, for example parameter = "amplitude", within = [0.2, 1.3]',
+}
+
+
+def refusal_of(kind: Any, section: str, key: str, value: Any) -> str | None:
+    """The sentence that refuses a parameter's value, or None if it is fine."""
+    try:
+        TypeAdapter(kind, config=ConfigDict(strict=True, allow_inf_nan=False)).validate_python(value)
+    except ValidationError as error:
+        return sentence_of({**error.errors()[0], "loc": (section, key), "input": value}, {})
+    return None
+
+
+def sentence_of(error: Any, data: dict[str, Any]) -> str:
+    """One pydantic error as a sentence: field, value, what would do."""
+    kind = error["type"]
+    loc = [p for p in error["loc"] if p not in ("absorber", "coupled")]
+    section = str(loc[0])
+    value = error.get("input")
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        given = value.get("name") if isinstance(value, dict) else None
+        if kind == "union_tag_not_found":
+            return f"[model] name is missing; {WOULD_DO['name']} would do."
+        hint = did_you_mean(given, PARAMETERS)
+        return f"[model] name = {_show(given)}: no such model{hint}; {WOULD_DO['name']} would do."
+    if len(loc) == 1:
+        if kind == "missing":
+            return f"the section [{section}] is missing; it holds {SECTIONS[section]}."
+        if kind == "extra_forbidden":
+            hint = did_you_mean(section, [*SECTIONS, "sweep"])
+            known = ", ".join(f"[{s}]" for s in [*SECTIONS, "sweep"])
+            return f"{section} = {_show(value)}: no such section{hint}; a study has {known}."
+        return f"{section} = {_show(value)} is not a section; write [{section}] on a line of its own, its keys below."
+    key = str(loc[1])
+    place = f"[{section}] {key}" + "".join(f"[{i}]" for i in loc[2:])
+    would = WOULD_DO.get(key, "another value")
+    if kind == "missing":
+        return f"[{section}] {key} is missing; {would} would do."
+    if kind == "extra_forbidden":
+        return unknown_field(section, key, value, _fields(section, data))
+    if kind == "finite_number":
+        return f"{place} = {_show(value)} is not a finite number; {would} would do."
+    if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
+        return f"{place} = {_show(value)} is out of range; {would} would do."
+    if kind in ("too_short", "too_long"):
+        return f"{place} = {_show(value)} has {len(value)} entries; {would} would do."
+    wanted = {
+        "float_type": "a number",
+        "int_type": "a whole number",
+        "string_type": "text",
+        "bool_type": "true or false",
+    }
+    what = f"is not {wanted[kind]}" if kind in wanted else "cannot be used"
+    return f"{place} = {_show(value)} {what}; {would} would do."
+
+
+def _fields(section: str, data: dict[str, Any]) -> list[str]:
+    models: dict[str, type[BaseModel]] = {
+        "start": StartSection,
+        "continue": ContinueSection,
+        "sweep": SweepSection,
+    }
+    if section == "model":
+        name = data.get("model", {}).get("name")
+        return list((CoupledSection if name == "coupled" else AbsorberSection).model_fields)
+    return list(models[section].model_fields)
+
+
+def unknown_field(section: str, key: str, value: Any, known: list[str]) -> str:
+    if section == "model" and key in EXCITATION.values():
+        return f"[model] {key} = {_show(value)}: this belongs to [start], beside the word."
+    return (
+        f"[{section}] {key} = {_show(value)}: there is no such field{did_you_mean(key, known)}; "
+        f"known are {', '.join(known)}."
+    )
+
+
+def did_you_mean(given: Any, known: Any) -> str:
+    close = difflib.get_close_matches(str(given), [str(k) for k in known], n=1, cutoff=0.6)
+    return f" (did you mean {close[0]!r}?)" if close else ""
+
+
+def _show(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def together(sentences: list[str]) -> str:
+    unique = list(dict.fromkeys(sentences))
+    if len(unique) == 1:
+        return unique[0]
+    return f"{len(unique)} things to mend:\n" + "\n".join(f"  - {s}" for s in unique)
