@@ -1,0 +1,198 @@
+"""Engine: a problem with its bound loop, work arrays and metric; solves single points tightly."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import march as source
+from .binding import bind
+from .settings import Settings
+
+TIGHT = 1e-12
+
+
+class Solved(NamedTuple):
+    """A point of a branch with everything known about it.
+
+    ``row`` is what the kernel ``inspect`` wrote: multipliers as re, im pairs, then margins. ``tangent`` is a unit vector
+    in the metric, ``sign`` the sign of det [[F_u, F_p], [tangent]], ``correction`` the last Newton correction.
+    """
+
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray
+    row: np.ndarray
+    sign: float
+    residual: float
+    correction: float
+
+
+class Engine:
+    """Continuation of one problem within an interval.
+
+    Parameters
+    ----------
+    problem : Problem
+    within : (float, float)
+        Interval of the parameter; its length is the unit of the parameter in the metric.
+    settings : Settings
+    """
+
+    def __init__(self, problem: Any, within: tuple[float, float], settings: Settings) -> None:
+        self.problem, self.settings = problem, settings
+        self.lower, self.upper = float(within[0]), float(within[1])
+        self.within = (self.lower, self.upper)
+        n = self.n = int(problem.dimension)
+        self.bound = bind(problem.kernels)
+        self.data = problem.data
+        self.work = problem.workspace()
+        self.m = int(problem.n_multipliers)
+        self.row_size = 2 * self.m + int(problem.n_margins)
+        self.weights = np.full(n + 1, 1.0 / n)
+        self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
+        self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
+        self.u = np.zeros(n)
+        control = np.zeros(source.CONTROL_SIZE)
+        control[source.METRIC_U], control[source.METRIC_P] = self.weights[0], self.weights[n]
+        control[source.ANGLE] = settings.angle
+        control[source.MIN_STEP], control[source.MAX_STEP] = settings.min_step, settings.max_step
+        control[source.TOLERANCE], control[source.SWEEPS] = settings.tolerance, settings.max_iterations
+        control[source.LOWER], control[source.UPPER] = self.lower, self.upper
+        control[source.ROW_MARGINS] = 2 * self.m
+        self.control = control
+        self.at_parameter = np.zeros(n + 1)
+        self.at_parameter[n] = 1.0
+
+    # ------------------------------------------------------------------ metric
+    def inner(self, a: np.ndarray, b: np.ndarray) -> float:
+        """<a, b>."""
+        return float(np.dot(self.weights * a, b))
+
+    def norm(self, a: np.ndarray) -> float:
+        """Length of a vector."""
+        return math.sqrt(max(self.inner(a, a), 0.0))
+
+    def unit(self, a: np.ndarray) -> np.ndarray:
+        """The vector scaled to length 1."""
+        return a / self.norm(a)
+
+    @staticmethod
+    def join(u: np.ndarray, p: float) -> np.ndarray:
+        """(u, p) as one vector."""
+        return np.append(u, p)
+
+    # ------------------------------------------------------------------ single points
+    def solve(
+        self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
+    ) -> Solved | None:
+        """The solution with border.(u, p) = target near a guess, to roundoff; None if Newton does not converge.
+
+        Parameters
+        ----------
+        u, p
+            Guess.
+        border : ndarray, shape (N + 1,)
+            Row that makes the system square, metric included.
+        target : float
+        along : ndarray, optional
+            The tangent is returned with <along, tangent> > 0; else with <border, tangent> > 0.
+        """
+        self.u[:] = u
+        p, sweeps, _, _, size = self.bound.correct(
+            self.data, self.work, self.u, float(p), border, float(target), TIGHT, 40, self.step, self.tangent
+        )
+        if sweeps < 0:
+            return None
+        return self.polish(self.u.copy(), p, border, target, along, size)
+
+    def polish(
+        self,
+        u: np.ndarray,
+        p: float,
+        border: np.ndarray,
+        target: float,
+        along: np.ndarray | None = None,
+        size: float = 0.0,
+    ) -> Solved | None:
+        """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
+        kernels, n = self.problem.kernels, self.n
+        residual = kernels.linearise(self.data, u, p, self.work)
+        if not residual < 1e300:
+            return None
+        gap = target - float(np.dot(border[:n], u)) - border[n] * p
+        sign = kernels.bordered(self.data, self.work, border, gap, self.step, self.tangent)
+        if not np.all(np.isfinite(self.tangent)):
+            return None
+        row = np.zeros(self.row_size)
+        kernels.inspect(self.data, u, p, self.work, row)
+        tangent = self.unit(self.tangent)
+        if along is not None and self.inner(along, tangent) < 0.0:
+            tangent = -tangent
+        if float(np.dot(border, tangent)) < 0.0:
+            sign = -sign
+        return Solved(u, float(p), tangent, row, float(sign), float(residual), float(size))
+
+    def at_value(self, u: np.ndarray, p: float, along: np.ndarray | None = None) -> Solved | None:
+        """The solution at a fixed parameter value, or None."""
+        return self.solve(u, p, self.at_parameter, p, along)
+
+    def start(self, u: np.ndarray, p: float, tangent: np.ndarray | None = None) -> Solved | None:
+        """A first point near (u, p): at fixed p, or, where that fails (at a fold), nearest to the guess."""
+        if tangent is not None and np.any(tangent):
+            tangent = self.unit(np.asarray(tangent, dtype=float))
+            border = self.weights * tangent
+            found = self.solve(u, p, border, float(np.dot(border, self.join(u, p))), tangent)
+            if found is not None and self.lower <= found.p <= self.upper:
+                return found
+        found = self.at_value(np.asarray(u, dtype=float), p)
+        if found is None:
+            for i in range(min(self.n, 8)):
+                border = np.zeros(self.n + 1)
+                border[i] = 1.0
+                found = self.solve(np.asarray(u, dtype=float), p, border, float(u[i]))
+                if found is not None and self.lower <= found.p <= self.upper:
+                    break
+                found = None
+        return found
+
+    def residual(self, u: np.ndarray, p: float) -> float:
+        """Largest absolute residual."""
+        return float(self.problem.kernels.linearise(self.data, np.ascontiguousarray(u), float(p), self.work))
+
+    def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
+        """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
+        self.work[0].reshape(-1)[:] = -side[: self.n]
+        self.problem.kernels.bordered(self.data, self.work, border, float(side[self.n]), self.step, self.tangent)
+        return self.step.copy()
+
+    # ------------------------------------------------------------------ rows
+    def spectrum(self, rows: np.ndarray) -> np.ndarray:
+        """Raw multipliers of some rows, shape (..., m)."""
+        m = self.m
+        return rows[..., 0 : 2 * m : 2] + 1j * rows[..., 1 : 2 * m : 2]
+
+    def margins(self, rows: np.ndarray) -> np.ndarray:
+        """Margins of some rows, shape (..., n_margins); NaN counts as not applicable."""
+        margins = rows[..., 2 * self.m :]
+        return np.where(np.isnan(margins), np.inf, margins)
+
+    def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
+        """Smallest margin of each row, +inf where there are none."""
+        margins = self.margins(rows)
+        return margins.min(axis=-1) if margins.shape[-1] else np.full(margins.shape[:-1], np.inf)
+
+    def multipliers(self, rows: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period, shape (..., m)."""
+        return np.asarray(self.problem.to_multipliers(self.spectrum(rows)), dtype=complex)
+
+    def stable(self, rows: np.ndarray) -> np.ndarray:
+        """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows)."""
+        spectrum = self.spectrum(rows)
+        if self.problem.spectrum == "map":
+            return np.all(np.abs(spectrum) < 1.0, axis=-1)
+        if self.problem.spectrum == "flow":
+            return np.all(spectrum.real < 0.0, axis=-1)
+        return np.zeros(rows.shape[:-1], dtype=bool)

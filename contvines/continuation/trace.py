@@ -1,0 +1,288 @@
+"""Tracing a branch: chunks of points from the loop, and ``trace``, a generator of points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import march as source
+from .engine import Engine, Solved
+from .settings import Settings
+from .status import Status
+
+
+@dataclass
+class Chunk:
+    """Consecutive points of a branch; the first one is the last point of the chunk before."""
+
+    points: np.ndarray
+    values: np.ndarray
+    tangents: np.ndarray
+    rows: np.ndarray
+    signs: np.ndarray
+    corrections: np.ndarray
+    status: Status
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def cut(self, n: int) -> Chunk:
+        """The first n points."""
+        return Chunk(
+            self.points[:n],
+            self.values[:n],
+            self.tangents[:n],
+            self.rows[:n],
+            self.signs[:n],
+            self.corrections[:n],
+            self.status,
+        )
+
+    def solved(self, i: int) -> Solved:
+        """Point i."""
+        return Solved(
+            self.points[i],
+            float(self.values[i]),
+            self.tangents[i],
+            self.rows[i],
+            float(self.signs[i]),
+            0.0,
+            float(self.corrections[i]),
+        )
+
+
+ARRAYS = ("points", "values", "tangents", "rows", "signs", "corrections")
+
+
+def chunks(
+    engine: Engine,
+    start: Solved,
+    journal: Any = None,
+    key: str = "",
+    stop_at_border: bool = False,
+    first_step: float | None = None,
+) -> Iterator[Chunk]:
+    """Follow the branch from a point in the direction of its tangent, a chunk at a time.
+
+    Parameters
+    ----------
+    engine : Engine
+    start : Solved
+    journal, key
+        Each chunk is asked for, and recorded, under ``key/number``.
+    stop_at_border : bool
+        Stop at the first point with a negative margin (which is the last one yielded).
+    first_step : float, optional
+
+    Yields
+    ------
+    Chunk
+        The last one has a status other than RUNNING. A closed branch ends with its first point again.
+    """
+    settings = engine.settings
+    n, capacity = engine.n, settings.first_chunk
+    engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
+    if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
+        start.p <= engine.lower and start.tangent[n] < 0.0
+    ):
+        yield _pack([start], Status.LEFT_INTERVAL)
+        return
+    history = [start]
+    h = settings.first_step if first_step is None else first_step
+    closing = _Closing(engine, start)
+    total, number = 1, 0
+    while True:
+        name = f"{key}/{number}"
+        known = journal.recall(name) if journal is not None else None
+        if known is not None:
+            chunk = Chunk(*(np.asarray(known[part]) for part in ARRAYS), status=Status(int(known["status"])))
+            h = float(known["h"])
+        else:
+            chunk, h = _march(engine, history, capacity, h, stop_at_border)
+            closed = closing.cut(chunk)
+            if closed is not None:
+                chunk = closed
+            elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
+                chunk.status = Status.MAX_POINTS
+            if journal is not None:
+                values: dict[str, Any] = {part: getattr(chunk, part) for part in ARRAYS}
+                journal.record(name, {**values, "status": int(chunk.status), "h": h})
+        yield chunk
+        if chunk.status != Status.RUNNING:
+            return
+        total += len(chunk) - 1
+        number += 1
+        history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
+        capacity = settings.chunk
+
+
+def _march(
+    engine: Engine, history: list[Solved], capacity: int, h: float, stop_at_border: bool
+) -> tuple[Chunk, float]:
+    first, n = len(history), engine.n
+    size = first + capacity
+    points, values, tangents = np.empty((size, n)), np.empty(size), np.empty((size, n + 1))
+    rows, signs, corrections = np.zeros((size, engine.row_size)), np.zeros(size), np.zeros(size)
+    for i, point in enumerate(history):
+        points[i], values[i], tangents[i] = point.u, point.p, point.tangent
+        rows[i], signs[i], corrections[i] = point.row, point.sign, point.correction
+    engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
+    filled, h, status = engine.bound.march(
+        engine.data,
+        engine.work,
+        points,
+        values,
+        tangents,
+        rows,
+        signs,
+        corrections,
+        first,
+        float(h),
+        engine.control,
+        engine.u,
+        engine.border,
+        engine.step,
+        engine.tangent,
+    )
+    part = slice(first - 1, filled)
+    return (
+        Chunk(
+            points[part], values[part], tangents[part], rows[part], signs[part], corrections[part], Status(status)
+        ),
+        float(h),
+    )
+
+
+def _pack(solved: list[Solved], status: Status) -> Chunk:
+    return Chunk(
+        np.array([s.u for s in solved]),
+        np.array([s.p for s in solved]),
+        np.array([s.tangent for s in solved]),
+        np.array([s.row for s in solved]),
+        np.array([s.sign for s in solved]),
+        np.array([s.correction for s in solved]),
+        status,
+    )
+
+
+class _Closing:
+    """Recognises that a branch comes back to its start, modulo the shift by a period."""
+
+    def __init__(self, engine: Engine, start: Solved) -> None:
+        self.engine, self.start = engine, start
+        self.z = engine.join(start.u, start.p)
+        self.border = engine.weights * start.tangent
+        shift = engine.problem.period_shift
+        self.shift = None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
+
+    def cut(self, chunk: Chunk) -> Chunk | None:
+        """The chunk up to the start, or None if it does not get there."""
+        engine = self.engine
+        gaps = np.column_stack([chunk.points, chunk.values]) - self.z
+        turns = np.zeros(len(chunk))
+        if self.shift is not None:
+            turns = np.round(gaps @ self.shift / (self.shift @ self.shift))
+            gaps = gaps - turns[:, None] * self.shift
+        along = gaps @ self.border
+        distance = np.sqrt((gaps**2) @ engine.weights)
+        steps = np.sqrt((np.diff(gaps, axis=0) ** 2) @ engine.weights)
+        near = (along[:-1] < 0.0) & (along[1:] >= 0.0)
+        near &= np.minimum(distance[:-1], distance[1:]) <= 1.5 * steps
+        same = np.array(chunk.tangents[1:] @ self.border) > 0.0
+        for i in np.flatnonzero(near & same):
+            share = along[i] / (along[i] - along[i + 1])
+            guess = self.z + gaps[i] + share * (gaps[i + 1] - gaps[i])
+            found = engine.solve(guess[:-1], guess[-1], self.border, float(np.dot(self.border, self.z)))
+            if found is None:
+                continue
+            gap = np.abs(engine.join(found.u, found.p) - self.z) / (1.0 + np.abs(self.z))
+            if gap.max() <= 1e-7 and engine.inner(found.tangent, self.start.tangent) > 0.0:
+                points, rest = chunk.cut(int(i) + 1), self.start
+                end = rest.u if self.shift is None else rest.u + turns[i] * self.shift[:-1]
+                return Chunk(
+                    np.vstack([points.points, end]),
+                    np.append(points.values, rest.p),
+                    np.vstack([points.tangents, rest.tangent]),
+                    np.vstack([points.rows, rest.row]),
+                    np.append(points.signs, rest.sign),
+                    np.append(points.corrections, rest.correction),
+                    Status.CLOSED,
+                )
+        return None
+
+
+class Point(NamedTuple):
+    """A point of a branch, as ``trace`` yields it.
+
+    ``multipliers`` are those of the full period (eigenvalues for flows), ``margin`` is the smallest margin, ``status`` is
+    empty but for the last point, where it says why the branch ends.
+    """
+
+    u: np.ndarray
+    value: float
+    tangent: np.ndarray
+    multipliers: np.ndarray
+    margin: float
+    stable: bool
+    status: str
+
+
+def trace(
+    problem: Any,
+    within: tuple[float, float],
+    u: np.ndarray | None = None,
+    p: float | None = None,
+    direction: float = 1.0,
+    settings: Settings | dict[str, Any] | None = None,
+    stop_at_border: bool = False,
+) -> Iterator[Point]:
+    """The points of a branch, one by one; the caller's loop decides when to stop.
+
+    Parameters
+    ----------
+    problem : Problem
+    within : (float, float)
+        Interval of the parameter.
+    u, p : optional
+        Start; the problem's ``u0``, ``p0`` if left out.
+    direction : float
+        Positive: begin with increasing parameter.
+    settings : Settings or dict, optional
+    stop_at_border : bool
+        End with the first point that has a negative margin.
+
+    Yields
+    ------
+    Point
+
+    Raises
+    ------
+    ValueError
+        If the interval is no interval, the start is outside of it, or does not converge.
+    """
+    from .starts import check_interval, solve_start
+
+    settings = Settings.of(settings)
+    engine = Engine(problem, check_interval(within), settings)
+    start = solve_start(engine, problem.u0 if u is None else u, problem.p0 if p is None else p)
+    if start.tangent[-1] * direction < 0.0:
+        start = start._replace(tangent=-start.tangent, sign=-start.sign)
+    first = True
+    for chunk in chunks(engine, start, stop_at_border=stop_at_border):
+        multipliers, stable = engine.multipliers(chunk.rows), engine.stable(chunk.rows)
+        margin = engine.smallest_margin(chunk.rows)
+        for i in range(0 if first else 1, len(chunk)):
+            last = i == len(chunk) - 1 and chunk.status != Status.RUNNING
+            yield Point(
+                chunk.points[i].copy(),
+                float(chunk.values[i]),
+                chunk.tangents[i].copy(),
+                multipliers[i],
+                float(margin[i]),
+                bool(stable[i]),
+                chunk.status.sentence(problem.parameter, float(chunk.values[i])) if last else "",
+            )
+        first = False
