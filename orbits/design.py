@@ -211,13 +211,13 @@ class Design:
         low, high = self.sliding_bounds
         return [
             Figure("activation threshold", "q1_min", self.activation_threshold, "m", "the absorber engages"),
-            Figure("upper bound", "q1_max", self.upper_bound, "m", "symmetric impacts become unstable"),
+            Figure("upper bound", "q1_max", self.upper_bound, "m", "end of symmetric impacts"),
             Figure("operating ratio", "xi", self.operating_ratio, "1", "q1_max/q1_min"),
-            Figure("sticking limit at f_0", "q1_cr", self.sticking_limit(), "m", "below it the absorber sticks"),
-            Figure("pure sliding from", "q1_sl_min", low, "m", "below it the absorber sticks at each turn"),
-            Figure("pure sliding to", "q1_sl_max", high, "m", "above it the absorber meets the walls"),
-            Figure("damping by impacts", "D_NES", self.absorber_damping, "1", "damping ratio at large amplitude"),
-            Figure("oscillator's damping", "D", 0.5 * self.mass_ratio * self.damping, "1", "damping ratio without absorber"),  # noqa: E501
-            Figure("friction level", "h", self.level, "1", "(1 + eps)(pi/2) mu g/(b omega_0^2)"),
+            Figure("sticking limit, f_0", "q1_cr", self.sticking_limit(), "m", "below: stuck"),
+            Figure("pure sliding from", "q1_sl_min", low, "m", "below: stick at each turn"),
+            Figure("pure sliding to", "q1_sl_max", high, "m", "above: impacts"),
+            Figure("damping by impacts", "D_NES", self.absorber_damping, "1", "ratio, large amplitude"),
+            Figure("oscillator's damping", "D", 0.5 * self.mass_ratio * self.damping, "1", "ratio, no absorber"),
+            Figure("friction level", "h", self.level, "1", "(1+eps)(pi/2) mu g~"),
             Figure("impact loss", "R", self.loss, "1", "(1 - r)/(1 + r)"),
         ]  # fmt: skip

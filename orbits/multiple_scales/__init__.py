@@ -4,6 +4,7 @@ First order in the mass ratio. `SlowFlow` holds the parameters; the other functi
 """
 
 from .backbone import Backbone, Coefficients, backbone, coefficients, resonance_detuning, resonance_frequency
+from .continuation import SlowResponse
 from .decay import damping_ratio, decay_amplitude, decay_bound, decay_rate, decay_time
 from .equilibria import (
     Equilibrium,
@@ -39,6 +40,7 @@ __all__ = [
     "ResponseCurve",
     "ResponsePoint",
     "SlowFlow",
+    "SlowResponse",
     "SlowTrajectory",
     "activation",
     "backbone",

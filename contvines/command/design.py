@@ -1,0 +1,199 @@
+"""`contvines design STUDY.toml`: design figures of the study's machine in physical units, as a table and
+a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import typer
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from orbits.design import Design
+
+    from .study import Study
+
+DAMPING = 0.9  # the reduced model has none; the coupled model's default
+
+
+def machine(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
+    """The study's dimensionless machine on a physical scale.
+
+    ``gravity`` = g/(b omega_0^2) ties the cavity's half-width b to the natural frequency: one of the two
+    is enough (b = 0.02 m if none is given). Without gravity both are needed.
+
+    Raises
+    ------
+    StudyError
+        If the scale is missing, given twice, or not positive.
+    """
+    from orbits.design import Design
+
+    from .study import StudyError
+
+    values = study.parameters
+    fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
+    fields["damping"] = values.get("damping", DAMPING)
+    for name, value in (("cavity", cavity), ("natural-frequency", natural_frequency)):
+        if value is not None and not 0 < value < np.inf:
+            raise StudyError(f"--{name} = {value!r} must be a positive number.")
+    if values["gravity"] == 0:
+        if cavity is None or natural_frequency is None:
+            raise StudyError(
+                "[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency."
+            )
+        return Design(cavity=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
+    if cavity is not None and natural_frequency is not None:
+        raise StudyError(
+            f"--cavity and --natural-frequency were both given, but [model] gravity = {values['gravity']!r} "
+            "already ties one to the other; give one of them."
+        )
+    if cavity is None and natural_frequency is None:
+        cavity = 0.02
+    return Design.from_dimensionless(
+        gravity=values["gravity"], cavity=cavity, natural_frequency=natural_frequency, **fields
+    )
+
+
+def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
+    """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres."""
+    given = [
+        ("half-width of cavity", "b", 1e3 * design.cavity, "mm", "wall to wall is 2 b"),
+        ("natural frequency", "f_0", design.natural_frequency, "Hz", "oscillator alone"),
+        ("restitution", "r", design.restitution, "", "study"),
+        ("friction", "mu", design.friction, "", "study"),
+        ("mass ratio", "eps", design.mass_ratio, "", "study"),
+        ("damping", "lambda", design.damping, "", "study, else 0.9"),
+    ]
+    for line in design.figures():
+        length = line.unit == "m"
+        value = float(line.value) * (1e3 if length else 1.0)
+        given.append(
+            (line.name, line.symbol, value, "mm" if length else line.unit.replace("1", ""), line.meaning)
+        )
+    return [(name, symbol, f"{value:.6g}", unit, meaning) for name, symbol, value, unit, meaning in given]
+
+
+def as_json(design: Design) -> dict[str, Any]:
+    """Figures in SI units at full precision."""
+    found: dict[str, Any] = {
+        "cavity": {"value": float(design.cavity), "unit": "m"},
+        "natural_frequency": {"value": float(design.natural_frequency), "unit": "Hz"},
+    }
+    for line in design.figures():
+        found[line.symbol] = {"value": float(line.value), "unit": line.unit, "meaning": line.meaning}
+    return found
+
+
+def draw(design: Design) -> Figure:
+    """Amplitude bounds and working range over friction and over the cavity's half-width; a map of both."""
+    from contvines.plots.style import new_figure, styled
+
+    mu0, b0 = float(design.friction), float(design.cavity)
+    mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)
+    b = np.linspace(0.35, 2.0, 201) * b0
+    with styled():
+        figure = new_figure(figsize=(10.5, 6.6))
+        top, bottom = figure.subplots(2, 3, width_ratios=(1, 1, 1.15))
+        columns = (
+            (mu, "friction", mu0, r"friction $\mu$", 1.0),
+            (b, "cavity", b0, "half-width $b$ [mm]", 1e3),
+        )
+        for column, (axis, name, here, label, unit) in enumerate(columns):
+            line = design.with_(**{name: axis})
+            low, high = np.broadcast_to(line.activation_threshold, axis.shape), line.upper_bound
+            axes = top[column]
+            axes.fill_between(
+                axis * unit, 1e3 * low, 1e3 * high, color="#dbe6f1", lw=0, label="two symmetric impacts"
+            )
+            axes.plot(axis * unit, 1e3 * low, color="#0b3c6f", label=r"$q_{1,\min}$")
+            axes.plot(axis * unit, 1e3 * high, color="#0b3c6f", ls=(0, (5, 2.2)), label=r"$q_{1,\max}$")
+            stick = np.broadcast_to(line.sticking_limit(), axis.shape)
+            axes.plot(
+                axis * unit,
+                1e3 * stick,
+                color="#b5121b",
+                ls=(0, (1, 1.6)),
+                label=r"$q_{1,\mathrm{cr}}$ at $f_0$",
+            )
+            axes.set(ylabel="oscillator $q_1$ [mm]" if column == 0 else "", ylim=(0, None))
+            if column == 1:
+                axes.legend(loc="upper left")
+            bottom[column].plot(axis * unit, line.operating_ratio, color="#0b3c6f")
+            bottom[column].set(
+                xlabel=label, ylabel=r"working range $\xi$" if column == 0 else "", ylim=(1, None)
+            )
+            for panel in (axes, bottom[column]):
+                panel.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
+        maps = (
+            (
+                top[2],
+                design.with_(friction=mu[None, :], cavity=b[:, None]).upper_bound * 1e3,
+                r"$q_{1,\max}$ [mm]",
+            ),
+            (bottom[2], design.with_(friction=mu[None, :], cavity=b[:, None]).operating_ratio, r"$\xi$"),
+        )
+        for panel, values, title in maps:
+            levels = np.geomspace(values.min(), values.max(), 12)
+            panel.contourf(mu, 1e3 * b, values, levels=levels, cmap="Greys", alpha=0.55, norm="log")
+            lines = panel.contour(mu, 1e3 * b, values, levels=levels, colors="#0b3c6f", linewidths=0.9)
+            panel.clabel(lines, fmt="%.3g", fontsize=7.5)
+            panel.plot(mu0, 1e3 * b0, "o", color="#b5121b")
+            panel.set(ylabel="half-width $b$ [mm]", title=title)
+            panel.grid(False)
+        bottom[2].set_xlabel(r"friction $\mu$")
+    return figure
+
+
+def design(
+    study: Path = typer.Argument(..., metavar="STUDY.toml", help="The study whose machine is meant."),
+    cavity: float | None = typer.Option(
+        None, help="Half-width b of the cavity [m]; 0.02 if no scale is given."
+    ),
+    natural_frequency: float | None = typer.Option(
+        None, help="f_0 of the oscillator [Hz], instead of the cavity."
+    ),
+    plot: Path | None = typer.Option(
+        None, metavar="FILE.png", help="Where the picture goes; STUDY-design.png in this folder if not given."
+    ),
+    no_plot: bool = typer.Option(False, "--no-plot", help="No picture."),
+    json_: bool = typer.Option(False, "--json", help="Print one JSON object in SI units instead of a table."),
+) -> None:
+    """Design figures in physical units: activation threshold, upper bound, working range, sticking and
+    sliding limits."""
+    from contvines.plots.style import check_picture, save_figure
+
+    from .study import read_study
+
+    plot = None if no_plot else plot or Path(f"{study.stem}-design.png")
+    if plot is not None:
+        check_picture(plot)
+    figures = machine(read_study(study), cavity, natural_frequency)
+    if json_:
+        import json
+
+        typer.echo(json.dumps(as_json(figures), indent=2))
+    else:
+        from rich.box import SIMPLE_HEAD
+        from rich.console import Console
+        from rich.table import Table
+
+        table = Table(title=f"Design figures of {study.name}", title_justify="left", box=SIMPLE_HEAD)
+        for heading, side in (
+            ("quantity", "left"),
+            ("symbol", "left"),
+            ("value", "right"),
+            ("unit", "left"),
+            ("", "left"),
+        ):
+            table.add_column(heading, justify=side, no_wrap=True)  # type: ignore[arg-type]
+        for line in rows(figures):
+            table.add_row(*line)
+        Console().print(table)
+    if plot is not None:
+        save_figure(draw(figures), plot)
+        if not json_:
+            typer.echo(f"Picture: {plot}")

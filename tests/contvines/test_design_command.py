@@ -1,0 +1,80 @@
+"""`contvines design`: the table, the JSON, the picture and its refusals."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from contvines.command.design import design, machine
+from contvines.command.study import StudyError, check_study
+
+STUDY = """
+[model]
+name = "absorber"
+restitution = 0.76
+friction = 0.5
+gravity = 0.211
+mass_ratio = 0.006
+
+[start]
+word = "LR"
+periods = 1
+amplitude = 0.55
+
+[continue]
+parameter = "amplitude"
+within = [0.2, 1.3]
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    return path
+
+
+def run(*arguments):
+    app = typer.Typer()
+    app.command()(design)
+    return CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+def test_table_has_units(study):
+    result = run(study, "--no-plot")
+    assert result.exit_code == 0, result.output
+    assert "q1_min" in result.output and "mm" in result.output and "xi" in result.output
+
+
+def test_json_in_si_units(study):
+    found = json.loads(run(study, "--no-plot", "--json").output)
+    # by hand: R = 3/22, h = (pi/2)(1.006)(0.1055); C_min = (pi h + 2 R)/sqrt(pi^2 + 4 R^2); b = 20 mm
+    R, h = 3 / 22, np.pi / 2 * 1.006 * 0.1055
+    threshold = 0.02 * (np.pi * h + 2 * R) / np.sqrt(np.pi**2 + 4 * R**2)
+    assert found["q1_min"]["value"] == pytest.approx(threshold, rel=1e-12)
+    assert found["q1_min"]["unit"] == "m"
+    assert found["xi"]["value"] == pytest.approx(np.sqrt(0.5282903 / 0.0637942), rel=1e-6)
+
+
+def test_picture(study, tmp_path):
+    target = tmp_path / "map.png"
+    assert run(study, "--plot", target).exit_code == 0
+    assert target.stat().st_size > 20_000
+
+
+def test_scale_is_given_once(tmp_path):
+    import tomllib
+
+    data = check_study(tomllib.loads(STUDY))
+    assert machine(data, None, 7.666).cavity == pytest.approx(0.02004, rel=1e-3)
+    with pytest.raises(StudyError, match="give one of them"):
+        machine(data, 0.02, 7.666)
+    with pytest.raises(StudyError, match="--cavity"):
+        machine(data, -1.0, None)
+    floating = check_study(tomllib.loads(STUDY.replace("gravity = 0.211", "gravity = 0")))
+    with pytest.raises(StudyError, match="give both"):
+        machine(floating, None, None)
