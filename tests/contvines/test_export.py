@@ -1,0 +1,94 @@
+"""Exports: read back with independent readers, number for number."""
+
+import csv
+import importlib.util
+import json
+import math
+from pathlib import Path
+
+import networkx
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+from contvines.export import export, json_text
+
+_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
+assert _spec is not None and _spec.loader is not None
+fakes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(fakes)
+
+
+@pytest.fixture
+def graph():
+    return fakes.pitchfork_graph()
+
+
+def test_csv_has_every_point_at_full_precision(graph, tmp_path):
+    path = export(graph, "csv", tmp_path / "g.csv")
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == sum(len(b) for b in graph.branches.values())
+    for branch in graph.branches.values():
+        mine = [r for r in rows if r["branch"] == branch.label]
+        assert [float(r["p"]) for r in mine] == branch.values.tolist()
+        assert [float(r["u0"]) for r in mine] == branch.points[:, 0].tolist()
+        assert [r["stable"] == "1" for r in mine] == branch.stable.tolist()
+        assert [
+            complex(float(r["multiplier0_re"]), float(r["multiplier0_im"])) for r in mine
+        ] == branch.multipliers[:, 0].tolist()
+    assert [(r["branch"], int(r["index"])) for r in rows if r["special"] == "BP1"] == [("B1", 20), ("B2", 0)]
+
+
+def test_json_is_the_graphs_own_object_in_standard_json(graph, tmp_path):
+    graph.special["BP1"].bracket = (float("nan"), float("inf"))
+    text = export(graph, "json", tmp_path / "g.json").read_text()
+    assert "NaN" not in text and "Infinity" not in text
+    data = json.loads(text)
+    assert [b["label"] for b in data["branches"]] == ["B1", "B2", "B3"]
+    assert data["special"][0]["value"] == {"p": 0.0}
+    assert data["special"][0]["bracket"] == [None, None]
+    assert data["switches"][0]["from"] == "B1"
+
+
+def test_graphml_is_read_back_by_networkx(graph, tmp_path):
+    network = networkx.read_graphml(export(graph, "graphml", tmp_path / "g.graphml"), force_multigraph=True)
+    assert set(network.nodes) == {"B1", "B2", "B3"}
+    assert {(a, b, d["point"]) for a, b, d in network.edges(data=True)} == {
+        ("B1", "B2", "BP1"),
+        ("B2", "B3", "VG1"),
+    }
+    assert json.loads(network.nodes["B2"]["range"]) == [0.0, 1.0]
+
+
+def test_mat_is_read_back_by_scipy(graph, tmp_path):
+    data = loadmat(export(graph, "mat", tmp_path / "g.mat"), simplify_cells=True)
+    for label, branch in graph.branches.items():
+        assert np.array_equal(data["branches"][label]["values"], branch.values)
+        assert np.array_equal(np.ravel(data["branches"][label]["multipliers"]), np.ravel(branch.multipliers))
+    assert data["special"]["VG1"]["kind"] == "velocity-graze"
+    assert json.loads(data["about"])["model"] == {"name": "pitchfork"}
+
+
+def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
+    with pytest.raises(
+        ValueError, match="--to xml: there is no such format; choose one of csv, json, graphml, mat"
+    ):
+        export(graph, "xml", tmp_path / "g.xml")
+    with pytest.raises(ValueError, match="there is no folder"):
+        export(graph, "csv", tmp_path / "none" / "g.csv")
+    with pytest.raises(ValueError, match="cannot be written"):
+        export(graph, "json", tmp_path)
+
+
+def test_json_text_keeps_every_bit():
+    values = [0.1 + 0.2, 1e-308, math.pi, -0.0, 5e-324]
+    assert [v.hex() for v in json.loads(json_text(values))] == [v.hex() for v in values]
+    assert json.loads(
+        json_text({"z": 1 + 2j, "a": np.arange(3), "n": np.float64(2), "t": np.bool_(True)})
+    ) == {
+        "z": [1.0, 2.0],
+        "a": [0, 1, 2],
+        "n": 2.0,
+        "t": True,
+    }

@@ -1,0 +1,125 @@
+"""Pictures: what is drawn, in which style, and what the legend says of it."""
+
+import importlib.util
+import itertools
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+from contvines.plots import plot_diagram, plot_multipliers, plot_network, plot_portrait, save_figure
+from contvines.plots.style import LINES, MARKS, STYLE, check_picture
+from contvines.special import PREFIXES
+
+_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
+assert _spec is not None and _spec.loader is not None
+fakes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(fakes)
+
+
+@pytest.fixture
+def graph():
+    return fakes.pitchfork_graph()
+
+
+def dashes(state):
+    """How matplotlib itself notes the dashes of a line drawn in the style of a state."""
+    return mpl.lines.Line2D([], [], linestyle=LINES[state], linewidth=1.5)._unscaled_dash_pattern[1]
+
+
+def test_line_styles_say_stable_unstable_virtual(graph):
+    axes = plot_diagram(graph).axes[0]
+    curves = [line for line in axes.lines if len(line.get_xdata()) > 1]
+    seen = {}
+    for curve in curves:
+        seen.setdefault(curve._unscaled_dash_pattern[1], []).append(curve)
+    stable = seen[None]
+    assert {len(c.get_xdata()) for c in stable} == {21, 31}  # the lower half of B1, all of B2
+    (unstable,) = seen[dashes("unstable")]
+    assert unstable.get_xdata()[0] == 0.0 and unstable.get_xdata()[-1] == 1.0
+    # a virtual branch is dotted throughout, whatever its multipliers say
+    assert {x for c in seen[dashes("virtual")] for x in c.get_xdata()} == set(graph.branches["B3"].values)
+
+
+def test_special_points_are_marked_labelled_and_explained(graph):
+    axes = plot_diagram(graph, ends=True).axes[0]
+    texts = {t.get_text() for t in axes.texts}
+    assert {"BP1", "VG1", "EP1", "B1", "B2", "B3"} <= texts
+    legend = {t.get_text() for t in axes.get_legend().get_texts()}
+    assert legend == {
+        "stable", "unstable", "virtual (beyond a border)", "branch point", "velocity graze", "end of the interval",
+    }  # fmt: skip
+    marks = {
+        (float(m.get_xdata()[0]), float(m.get_ydata()[0])) for m in axes.lines if len(m.get_xdata()) == 1
+    }
+    assert (0.0, 0.0) in marks
+
+
+def test_labels_do_not_cover_one_another(graph):
+    figure = plot_diagram(graph)
+    figure.canvas.draw()
+    boxes = [t.get_window_extent() for t in figure.axes[0].texts]
+    for i, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_every_kind_has_a_mark():
+    assert set(MARKS) == set(PREFIXES)
+
+
+def test_an_unfinished_graph_says_so():
+    axes = plot_diagram(fakes.pitchfork_graph(finished=False)).axes[0]
+    assert "unfinished" in [axes.get_title(loc=loc) for loc in ("left", "center", "right")]
+
+
+def test_an_unknown_measure_is_refused_with_those_that_can_be_had(graph):
+    with pytest.raises(ValueError, match="B1 has no measure 'speed'; choose one of norm, p"):
+        plot_diagram(graph, y="speed")
+
+
+def test_network_has_a_box_per_branch_and_names_the_switches(graph):
+    texts = [t.get_text() for t in plot_network(graph).axes[0].texts]
+    assert [t.split()[0] for t in texts[:3]] == ["B1", "B2", "B3"]
+    assert texts[3:] == ["BP1", "VG1"]
+
+
+def test_multipliers_are_drawn_with_the_unit_circle(graph):
+    left, right = plot_multipliers(graph.branches["B2"]).axes[:2]
+    assert np.allclose(left.lines[0].get_ydata(), 2 * graph.branches["B2"].points[:, 0] ** 2)
+    circle = np.hypot(right.lines[0].get_xdata(), right.lines[0].get_ydata())
+    assert np.allclose(circle, 1.0)
+    graph.branches["B2"].multipliers = np.empty((31, 0))
+    with pytest.raises(ValueError, match="B2 has no multipliers"):
+        plot_multipliers(graph.branches["B2"])
+
+
+def test_portrait_asks_the_orbit_first():
+    class Orbit:
+        def plot(self):
+            return plot_portrait(np.array([[0.0, 1.0], [1.0, 0.0]]))
+
+    assert plot_portrait(Orbit()).axes[0].lines[0].get_xdata().tolist() == [0.0, 1.0]
+
+
+def test_pictures_are_saved_and_the_users_settings_stay(graph, tmp_path):
+    before = dict(mpl.rcParams)
+    for name in ("a.png", "a.pdf", "a.svg"):
+        save_figure(plot_diagram(graph), tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 4000
+    assert dict(mpl.rcParams) == before
+    assert STYLE.exists()
+
+
+@pytest.mark.parametrize("name", ["a.doc", "a", "none/a.png"])
+def test_a_picture_that_cannot_be_written_is_refused_before_work(tmp_path, name):
+    with pytest.raises(ValueError, match=r"must end in|there is no folder"):
+        check_picture(tmp_path / name)
+
+
+def test_colours_differ_in_grey():
+    """Neighbouring branches must be told apart on a grey printer: by luminance (ITU-R BT.601)."""
+    style = mpl.rc_params_from_file(STYLE, use_default_template=False)
+    grey = [np.dot(mpl.colors.to_rgb(c["color"]), [0.299, 0.587, 0.114]) for c in style["axes.prop_cycle"]]
+    assert max(grey) < 0.55  # dark enough on white
+    assert min(abs(a - b) for a, b in itertools.pairwise(grey)) > 0.05
