@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from contvines.command import look, run, sweep
+from contvines.command import design, look, run, sweep
 
 app = typer.Typer(
     name="contvines",
@@ -51,6 +51,7 @@ app.command()(look.orbit)
 app.command()(look.plot)
 app.command()(look.export)
 app.command()(sweep.sweep)
+app.command()(design.design)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -3,10 +3,10 @@ a picture."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import typer
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
     fields["damping"] = values.get("damping", DAMPING)
     for name, value in (("cavity", cavity), ("natural-frequency", natural_frequency)):
-        if value is not None and not 0 < value < np.inf:
+        if value is not None and not 0 < value < math.inf:
             raise StudyError(f"--{name} = {value!r} must be a positive number.")
     if values["gravity"] == 0:
         if cavity is None or natural_frequency is None:
@@ -74,7 +74,7 @@ def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
         given.append(
             (line.name, line.symbol, value, "mm" if length else line.unit.replace("1", ""), line.meaning)
         )
-    return [(name, symbol, f"{value:.6g}", unit, meaning) for name, symbol, value, unit, meaning in given]
+    return [(name, symbol, f"{value:.5g}", unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
 def as_json(design: Design) -> dict[str, Any]:
@@ -90,6 +90,8 @@ def as_json(design: Design) -> dict[str, Any]:
 
 def draw(design: Design) -> Figure:
     """Amplitude bounds and working range over friction and over the cavity's half-width; a map of both."""
+    import numpy as np
+
     from contvines.plots.style import new_figure, styled
 
     mu0, b0 = float(design.friction), float(design.cavity)
@@ -181,7 +183,9 @@ def design(
         from rich.console import Console
         from rich.table import Table
 
-        table = Table(title=f"Design figures of {study.name}", title_justify="left", box=SIMPLE_HEAD)
+        table = Table(
+            title=f"Design figures of {study.name}", title_justify="left", box=SIMPLE_HEAD, pad_edge=False
+        )
         for heading, side in (
             ("quantity", "left"),
             ("symbol", "left"),
