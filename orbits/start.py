@@ -172,10 +172,14 @@ def _simulated(
     generator = np.random.default_rng(20)
     for trial in range(24):
         start = None if trial == 0 else _random_start(model, generator)
-        attractor = find_attractor(model, values, start=start, max_period=max(8, 2 * periods))
-        if attractor.kind not in ("periodic", "sliding") or attractor.orbit is None:
+        attractor = find_attractor(model, start, max_period=max(8, 2 * periods), patience=0, **values)
+        if attractor.kind not in ("periodic", "sliding") or not attractor.nodes.size:
+            continue
+        if attractor.word is None:
             continue
         orbit = attractor.orbit
+        if orbit.word.impact_free:  # its mean position is free: take the middle
+            orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
         if orbit.word.canonical() == target and orbit.periods == periods:
             polished = polish(_aligned(orbit, word))
             if polished is not None:

@@ -1,0 +1,220 @@
+"""Across a border: the word on the other side, and the orbit with which its branch begins.
+
+The local rules of `orbits.rewriting` propose the word; where they do not, the simulator writes it. A proposal counts only
+if its maps have a real solution next to the border and the simulator, which knows no word, follows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from orbits.compiled import assemble
+from orbits.monitors import PER_NODE
+from orbits.orbit import Orbit
+from orbits.problem import OrbitProblem
+from orbits.rewriting import Edit, apply, edit
+from orbits.words import Word
+
+NEAR = 1e-7  # margins this small vanish together
+SIZES = (2e-3, 2e-4, 2e-5)  # of what grows beyond the border
+FOLLOWED = 1e-6  # largest replay error of a seed
+
+
+class Seed(NamedTuple):
+    """Where the branch on the other side begins; `tangent` leads away from the border."""
+
+    problem: OrbitProblem
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray | None
+    kind: str
+    note: str
+    persistence: bool
+
+
+def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
+    """Seeds of the branches on the other side of a border.
+
+    Parameters
+    ----------
+    problem : OrbitProblem
+    point : special point
+        With `u`, `value`, `tangent` and `margin_index`.
+
+    Returns
+    -------
+    list of Seed
+        Usually one; empty if neither the local rules nor the simulator find an orbit there.
+    """
+    u, p = np.asarray(point.u, dtype=float), float(point.value)
+    old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), int(point.margin_index))
+    for candidate in (*_proposals(problem, u, p, int(point.margin_index)), *_simulated(problem, u, p)):
+        other, v, q, tangent, note = candidate
+        orbit = other.orbit(v, q)
+        if orbit.margin < -1e-9 or not orbit.replay() < FOLLOWED:
+            continue
+        persistence = np.sign(q - p) != old_side
+        kind = "persistence" if persistence else "nonsmooth fold"
+        return [Seed(other, v, q, tangent, "border", f"{note}: {kind}, the word becomes {other.word.text}", bool(persistence))]
+    return []
+
+
+def _row(problem: OrbitProblem, u: np.ndarray, p: float) -> np.ndarray:
+    """Margins of a solution."""
+    row = np.empty(2 * problem.n_multipliers + problem.n_margins)
+    assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
+    return row[2 * problem.n_multipliers :]
+
+
+def _real_side(problem: OrbitProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
+    """Sign of the parameter's change from the border into the branch's real part."""
+    step = 1e-6 / max(float(np.abs(tangent).max()), 1e-12)
+    ahead = _row(problem, u + step * tangent[:-1], p + step * float(tangent[-1]))[index]
+    behind = _row(problem, u - step * tangent[:-1], p - step * float(tangent[-1]))[index]
+    return float(np.sign(tangent[-1])) if ahead > behind else -float(np.sign(tangent[-1]))
+
+
+def _proposals(
+    problem: OrbitProblem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[OrbitProblem, np.ndarray, float, np.ndarray, str]]:
+    """Solutions next to the border with the words that the local rules propose."""
+    orbit = problem.orbit(u, p)
+    values = _row(problem, u, p)
+    together = [j for j in range(problem.n_margins) if j == index or abs(values[j]) < NEAR]
+    edits: dict[int, Edit] = {}
+    for j in [index, *together]:
+        if any(j // PER_NODE == k for k in edits):
+            continue
+        change = edit(orbit, j, problem.values(p))
+        if change is not None and not any(_overlap(change, other) for other in edits.values()):
+            edits[j // PER_NODE] = change
+    if not edits:
+        return
+    choices = [list(edits.values())]
+    if len(edits) > 1 and index // PER_NODE in edits:
+        choices.append([edits[index // PER_NODE]])
+    for chosen in choices:
+        found = _grow(problem, orbit, p, chosen)
+        if found is not None:
+            yield (*found, chosen[0].note)
+
+
+def _overlap(a: Edit, b: Edit) -> bool:
+    return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
+
+
+def _grow(
+    problem: OrbitProblem, orbit: Orbit, p: float, edits: list[Edit]
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
+    if problem.symmetric:  # edit the half, and mirror it
+        half = problem.length
+        if any(change.stop > half and change.start != half for change in edits):
+            return None
+        word, nodes, first = apply(orbit.word.head(half), orbit.nodes[:half], edits)
+        mirrored = word.mirror()
+        word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.frictionless)
+    else:
+        word, nodes, first = apply(orbit.word, orbit.nodes, edits)
+    if not len(word):
+        return None
+    try:
+        other = problem.sibling(word, problem.periods, problem.symmetric)
+    except ValueError:
+        return None
+    n = problem.model.node
+    guess = np.ascontiguousarray(nodes, dtype=float).ravel()
+    size = other.dimension
+    kernels, work = assemble(problem.model), other.workspace()
+    step, tangent = np.empty(size + 1), np.empty(size + 1)
+    if edits[0].grows == "margin":
+        return _beside(other, guess, p)
+    best = None
+    u, q = guess.copy(), p
+    for wanted in SIZES:
+        border = np.zeros(size + 1)
+        if edits[0].grows == "duration":
+            border[first * n], border[(first + 1) * n] = -1.0, 1.0
+            have = u[(first + 1) * n] - u[first * n]
+            u[first * n] += have - wanted if edits[0].note.startswith("a stick appears") else 0.0
+            if not edits[0].note.startswith("a stick appears"):
+                u[(first + 1) * n] = u[first * n] + wanted
+        else:
+            sign = 1.0 if edits[0].events[0] == "L" else -1.0
+            border[first * n + 1] = sign
+            if n == 4:
+                border[first * n + 3] = -sign
+            speed = sign * (u[first * n + 1] - other.orbit(u, q).events.v_rate[first])
+            u[first * n + 1] += sign * (wanted - speed)
+        trial = u.copy()
+        residual, _, q_new = kernels.newton(other.data, trial, q, work, border, step, tangent, 1e-12, 40)
+        if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
+            break
+        u, q = trial, float(q_new)
+        best = (other, u.copy(), q, tangent.copy())
+    return best
+
+
+def _beside(other: OrbitProblem, guess: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
+    size = other.dimension
+    kernels, work = assemble(other.model), other.workspace()
+    border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
+    border[-1] = 1.0
+    at_border = guess.copy()
+    residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
+    if not residual < 1e-10:
+        return None
+    for distance in (1e-7, 1e-5, 1e-3):
+        sides = []
+        for side in (1.0, -1.0):
+            q = p + side * distance * max(1.0, abs(p))
+            u = at_border + (q - p) * tangent[:-1]
+            along = tangent.copy()
+            residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
+            if residual < 1e-10:
+                sides.append((float(_row(other, u, q).min()), u, q, side * along))
+        if sides:
+            margin, u, q, along = max(sides, key=lambda entry: entry[0])
+            if margin > 0.0:
+                return other, u, q, along
+    return None
+
+
+def _simulated(
+    problem: OrbitProblem, u: np.ndarray, p: float
+) -> Iterator[tuple[OrbitProblem, np.ndarray, float, None, str]]:
+    """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
+    from orbits.identity import canonical, is_symmetric
+    from orbits.simulation.driver import machine
+    from orbits.simulation.recurrence import settle
+    from orbits.simulation.return_map import state_of
+    from orbits.start import polish
+
+    orbit = problem.orbit(u, p)
+    engine = machine(problem.model.name)
+    here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
+    place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
+    for side in (1.0, -1.0):
+        q = p + side * 1e-6 * max(1.0, abs(p))
+        params = problem.values(q)
+        state = state_of(
+            engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
+        )
+        state[1] = np.clip(state[1], -1.0, 1.0)
+        attractor = settle(problem.model, engine, params, state, 60.0, max(2 * problem.periods, 4), 1e-6, 0)
+        if attractor.word is None or not attractor.nodes.size:
+            continue
+        found = polish(attractor.orbit)
+        if found is None or found.periods % problem.periods:
+            continue
+        if canonical(found.word, found.periods, found.nodes)[0] == here:
+            continue
+        if abs(found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods) > 0.05:
+            continue
+        symmetric = is_symmetric(found.word, found.periods, found.nodes)
+        other = problem.sibling(found.word, found.periods, symmetric, found.params)
+        yield other, other.reduce(found.nodes), q, None, "the simulator goes on"

@@ -1,0 +1,92 @@
+"""An orbit between its events: positions and velocities over time, in closed form."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orbits.simulation.driver import machine
+from orbits.simulation.return_map import state_of
+
+if TYPE_CHECKING:
+    from orbits.orbit import Orbit
+
+
+def flight(orbit: Orbit, segment: int, ahead: np.ndarray) -> np.ndarray:
+    """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
+    engine = machine(orbit.model.name)
+    state = state_of(
+        engine,
+        orbit.params,
+        int(orbit.word.codes[segment]),
+        int(orbit.word.modes[segment]),
+        orbit.nodes[segment],
+    )
+    out = np.empty((len(ahead), 4))
+    engine.sample(np.tile(state, (len(ahead), 1)), orbit.params, np.ascontiguousarray(ahead, dtype=float), out)
+    return out
+
+
+def lengths(orbit: Orbit) -> np.ndarray:
+    """Duration of each segment in radians of the forcing phase, shape (L,)."""
+    phases = orbit.nodes[:, 0]
+    return np.diff(np.append(phases, phases[0] + 2.0 * np.pi * orbit.periods))
+
+
+def sample(orbit: Orbit, points: int = 400) -> dict[str, np.ndarray]:
+    """Positions and velocities over one period, events included with both their velocities.
+
+    Parameters
+    ----------
+    orbit : Orbit
+    points : int
+        About how many points; at least two per segment.
+
+    Returns
+    -------
+    dict of float arrays
+        ``tau`` (dimensionless time from the first event), ``phase``, ``w``, ``w_rate``, ``v``, ``v_rate``, the absolute
+        positions in units of b ``cavity`` (q1) and ``absorber`` (q2), and ``segment`` (index of the event before).
+    """
+    columns: dict[str, list[np.ndarray]] = {name: [] for name in ("phase", "state", "segment")}
+    durations = lengths(orbit)
+    total = 2.0 * np.pi * orbit.periods
+    for segment, duration in enumerate(durations):
+        count = max(2, round(points * duration / total))
+        ahead = np.linspace(0.0, max(float(duration), 0.0), count)
+        columns["phase"].append(orbit.nodes[segment, 0] + ahead)
+        columns["state"].append(flight(orbit, segment, ahead))
+        columns["segment"].append(np.full(count, segment))
+    phase = np.concatenate(columns["phase"])
+    w, w_rate, v, v_rate = np.concatenate(columns["state"]).T
+    eps = orbit.parameters["mass_ratio"]
+    return {
+        "tau": (phase - phase[0]) / orbit.parameters["frequency"],
+        "phase": phase,
+        "w": w,
+        "w_rate": w_rate,
+        "v": v,
+        "v_rate": v_rate,
+        "cavity": (v + eps * w) / (1.0 + eps),
+        "absorber": (v - w) / (1.0 + eps),
+        "segment": np.concatenate(columns["segment"]),
+    }
+
+
+def slowest(orbit: Orbit, segment: int) -> tuple[float, np.ndarray]:
+    """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
+    length = float(lengths(orbit)[segment])
+    mode = orbit.word.modes[segment]
+    ahead = np.linspace(0.0, length, 402)[1:-1]
+    speed = mode * flight(orbit, segment, ahead)[:, 1]
+    inner = np.flatnonzero((speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])) + 1
+    place = inner[np.argmin(speed[inner])] if inner.size else int(np.argmin(speed))
+    low, high = ahead[max(place - 1, 0)], ahead[min(place + 1, ahead.size - 1)]
+    for _ in range(6):  # finer grids round the minimum: 1/20 of the bracket each time
+        ahead = np.linspace(low, high, 41)
+        speed = mode * flight(orbit, segment, ahead)[:, 1]
+        place = int(np.argmin(speed))
+        low, high = ahead[max(place - 1, 0)], ahead[min(place + 1, 40)]
+    where = 0.5 * (low + high)
+    return float(where), flight(orbit, segment, np.array([where]))[0]
