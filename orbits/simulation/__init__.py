@@ -18,7 +18,11 @@ _HOME = {
     "replay": "replay",
     "Replay": "replay",
     "sweep": "sweep",
+    "sweeps": "sweep",
     "SweepRow": "sweep",
+    "find_attractors": "sweep",
+    "SimulationError": "driver",
+    "replay_nodes": "replay",
 }
 
 __all__ = sorted(_HOME)

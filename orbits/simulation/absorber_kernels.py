@@ -187,7 +187,7 @@ def advance(state, params, until, codes, modes, rows):
             k0 = -s * math.cos(psi)
             theta = psi if s < 0.0 else (psi - math.pi if psi >= math.pi else psi + math.pi)
             q0 = C * m0 - A
-        if p < 1e-6 * C and s * w == -1.0 and -m0 * C > A:
+        if p < 1e-6 * C and s * w == -1.0 and -m0 * C > A and not (alpha <= theta < math.pi - alpha):
             # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
             push = -m0 * C
             factor = r * math.sqrt((push - A) / (push + A))

@@ -81,10 +81,10 @@ class Attractor:
 
     @property
     def word(self) -> Any:
-        """The cycle as an `orbits.words.Word`; None where the motion has none (chaos, persistent contact)."""
+        """The cycle as an `orbits.words.Word`; None where the motion has none (chaos, persistent contact, frictionless motion off the walls)."""
         from orbits.words import Word
 
-        if not self.recurrent or np.any(self.codes > 4):
+        if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
             return None
         frictionless = self.model.friction_acceleration(self.params) == 0.0
         return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), frictionless)
@@ -96,8 +96,11 @@ class Attractor:
             return self.word.text
         return self.letters if self.periods else ""
 
+    @property
     def orbit(self) -> Any:
         """The attractor as an `orbits.orbit.Orbit`, ready for continuation.
+
+        A motion without impacts is moved so that the mean of its w is 0, which continuation pins.
 
         Raises
         ------
@@ -109,7 +112,7 @@ class Attractor:
         word = self.word
         if word is None:
             raise ValueError(f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits")
-        return Orbit(self.model, word, self.periods, self.nodes, self.params)
+        return Orbit(self.model, word, self.periods, centred(self.codes, self.nodes), self.params)
 
     def distance(self, other: Attractor) -> float:
         """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.

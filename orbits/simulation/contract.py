@@ -72,3 +72,8 @@ class Machine:
     sample: Callable
     works: Callable
     energies: Callable
+
+    def __reduce__(self):
+        from orbits.simulation.driver import machine
+
+        return machine, (self.name,)

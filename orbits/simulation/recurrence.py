@@ -87,6 +87,8 @@ def settle(
             window.record(state, max_period)
         if status == REST or window.at_rest:
             return _attractor(model, engine, params, "stuck", 0, window, state)
+        if not len(window.codes):  # without friction a free motion between the walls has no events
+            return _attractor(model, engine, params, "sliding", 1, window, state)
         found = _recognise(engine, params, window, max_period, tolerance, last=attempt == patience)
         if found is not None:
             return _cycle(model, engine, params, state, window, *found)
@@ -205,7 +207,7 @@ def _cycle(
     codes, modes = window.codes[-length:], window.modes[-length:]
     nodes = window.nodes[-length:]
     # polish from an impact where there is one, else from a turn: there all unknowns of a node are free
-    for wanted in ((0, 1), (2,), (3, 4)):
+    for wanted in ((0, 1), (2,), (3,), (4, 5)):
         places = np.flatnonzero(np.isin(codes, wanted))
         if len(places):
             break

@@ -27,7 +27,10 @@ class Samples(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """Where the energy went: change = excitation - damping - friction - impacts, up to `error` (relative)."""
+    """Where the energy went: change = excitation - damping - friction - impacts, up to `error`.
+
+    `error` is relative to all work done, up or down, plus the kinetic energy that the cavity's speed stands for.
+    """
 
     change: float
     excitation: float
@@ -148,6 +151,26 @@ class Trajectory:
         eps = self.params[self.model.parameter_names.index("mass_ratio")]
         return Samples(phases, w, w_rate, v, v_rate, (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps))
 
+    def peak_cavity(self, per_period: int = 200) -> float:
+        """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
+        seen = self.sample(per_period=per_period)
+        eps = self.params[self.model.parameter_names.index("mass_ratio")]
+        marks = np.concatenate([seen.phase, self.phases])
+        marks = np.unique(marks[(marks >= seen.phase[0]) & (marks <= seen.phase[-1])])
+        seen = self.sample(marks)
+        speed = seen.v_rate + eps * seen.w_rate
+        turn = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
+        lo, hi = marks[turn], marks[turn + 1]
+        below = speed[turn]
+        peak = float(np.abs(seen.cavity).max())
+        for _ in range(30 if turn.size else 0):  # bisection, all at once; the peak's error is the interval's squared
+            middle = 0.5 * (lo + hi)
+            here = self.sample(middle)
+            same = (here.v_rate + eps * here.w_rate) * below > 0.0
+            lo, hi = np.where(same, middle, lo), np.where(same, hi, middle)
+            peak = max(peak, float(np.abs(here.cavity).max()))
+        return peak
+
     def balance(self) -> Balance:
         """Energy balance over the run, in the energy that the model's kernels define."""
         works = np.empty((len(self) + 1, 3))
@@ -163,7 +186,10 @@ class Trajectory:
         change = float(ends[1] - ends[0])
         impacts = float(lost.sum())
         gap = change - (excitation - damping - friction - impacts)
-        scale = float(np.abs(works).sum() + np.abs(lost).sum() + ends.max())
+        ahead = np.arange(8) * (TWO_PI / 8.0)
+        cavity = np.empty((8, 4))
+        self.machine.sample(np.tile(self.start, (8, 1)), self.params, ahead, cavity)
+        scale = float(np.abs(works).sum() + np.abs(lost).sum() + ends.max() + 0.5 * np.square(cavity[:, 3]).max())
         error = abs(gap) / scale if scale > 0.0 else 0.0
         return Balance(change, float(excitation), float(damping), float(friction), impacts, float(error))
 
