@@ -15,14 +15,14 @@ _HOME = {
     "Trajectory": "trajectory",
     "find_attractor": "recurrence",
     "Attractor": "attractor",
-    "replay": "replay",
-    "Replay": "replay",
-    "sweep": "sweep",
-    "sweeps": "sweep",
-    "SweepRow": "sweep",
-    "find_attractors": "sweep",
+    "replay": "replaying",
+    "Replay": "replaying",
+    "sweep": "sweeping",
+    "sweeps": "sweeping",
+    "SweepRow": "sweeping",
+    "find_attractors": "sweeping",
     "SimulationError": "driver",
-    "replay_nodes": "replay",
+    "replay_nodes": "replaying",
 }
 
 __all__ = sorted(_HOME)

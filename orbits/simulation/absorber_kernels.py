@@ -387,7 +387,8 @@ def works(states, params, ahead, out):
         k0 = -s * math.cos(psi)
         m1 = -s * math.sin(psi + x)
         k1 = -s * math.cos(psi + x)
-        way = p * x + C * (k0 * x - m1 + m0) - 0.5 * A * x * x
+        _sine, _versine, third, fourth = _remainders(x)
+        way = p * x + 0.5 * (C * m0 - A) * x * x + C * (k0 * third - m0 * fourth)
         out[i, 0] = (
             C * omega * omega * ((p + C * k0) * (k0 - k1) - 0.5 * C * (m1 * m1 - m0 * m0) - A * (m1 - m0 - x * k1))
         )
