@@ -66,8 +66,8 @@ class SweepSection(Section):
 
     within: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     count: Annotated[int, Field(ge=2)] = 400
-    transient: Annotated[int, Field(ge=0)] = 400
-    window: Annotated[int, Field(ge=1)] = 256
+    transient: Annotated[int, Field(ge=0)] = 200
+    max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
 class StudyFile(Section):

@@ -1,29 +1,188 @@
 """`contvines sweep`: brute-force simulation over the continuation parameter."""
 
+import csv
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from contvines.command.study import Study
+
+COLUMNS = ("value", "direction", "attractor", "word", "periods", "impacts")
 
 
 def sweep(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY.toml", help="The study; its [sweep] section is optional.")
     ],
-    down: Annotated[
-        bool, typer.Option("--down", help="From the upper end of the interval to the lower.")
-    ] = False,
+    down: Annotated[bool, typer.Option("--down", help="From the interval's upper end to the lower.")] = False,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE.csv", help="Where to; by default STUDY.csv here."),
     ] = None,
     plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the attractors.")
+        Path | None,
+        typer.Option("--plot", metavar="FILE.png", help="Draw the attractors: B at every impact."),
     ] = None,
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
     """Simulate over the parameter, carrying the state on; tell the attractor at each value."""
-    raise ValueError("the sweep is not built yet")
+    from contvines.command.compose import beside, check_place, say
+    from contvines.command.study import read_study
+
+    read = read_study(study)
+    target = output or beside(study, ".csv")
+    check_place(target)
+    if target.resolve() == study.resolve():
+        raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
+    graph: Any = None
+    if over is not None:
+        from contvines.store import load
+
+        graph = load(over)
+        if graph.parameter != read.parameter:
+            raise ValueError(
+                f"{over} continues in {graph.parameter}, the study sweeps over {read.parameter}."
+            )
+        if plot is None:
+            raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
+    if plot is not None:
+        from contvines.plots.style import check_picture
+
+        check_picture(plot)
+    rows = _simulate(read, down, target, quiet)
+    say(f"kept in {target}", quiet)
+    if not quiet:
+        typer.echo(_summary(rows, read.parameter))
+    if plot is not None:
+        from contvines.plots.style import save_figure
+        from contvines.plots.sweep import plot_sweep
+
+        points = [(row.value, b) for row in rows for b in _impacts(row)]
+        save_figure(plot_sweep(points, read.parameter, graph), plot)
+        say(f"drawn in {plot}", quiet)
+
+
+def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any]:
+    """All rows, each written to the file as soon as it is there."""
+    import numpy as np
+
+    from contvines.command.compose import loose, machine
+    from orbits.simulation.sweep import measure_names
+    from orbits.simulation.sweep import sweep as simulate
+
+    model = machine(study)
+    low, high = study.sweep.within or study.within
+    values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
+    others = {k: v for k, v in loose(study).items() if k != study.parameter}
+    names = [n for n in measure_names(model) if n not in COLUMNS]
+    rows: list[Any] = []
+    with target.open("w", newline="", encoding="utf-8") as file, _counter(len(values), quiet) as count:
+        writer = csv.writer(file)
+        writer.writerow([*COLUMNS, *names])
+
+        def keep(row: Any) -> None:
+            first = [repr(row.value), row.direction, row.attractor, row.word, row.periods, row.impacts]
+            writer.writerow(first + [repr(float(row.measures[n])) for n in names])
+            file.flush()
+            rows.append(row)
+            count()
+
+        try:
+            simulate(
+                model,
+                study.parameter,
+                values,
+                transient=study.sweep.transient,
+                max_period=study.sweep.max_period,
+                progress=keep,
+                **others,
+            )
+        except KeyboardInterrupt:
+            rest = (
+                f"[sweep] within = [{low!r}, {rows[-1].value!r}]"
+                if down
+                else f"within = [{rows[-1].value!r}, {high!r}]"
+            )
+            rest = rest if rows else "the same command"
+            typer.echo(
+                f"\ncontvines: stopped; {len(rows)} of {len(values)} values are kept in {target}; "
+                f"{rest} with another -o does the rest.",
+                err=True,
+            )
+            raise typer.Exit(130) from None
+    return rows
+
+
+class _counter:
+    """Counts values on a terminal, silent elsewhere."""
+
+    def __init__(self, total: int, quiet: bool):
+        import sys
+
+        self.total, self.shown = total, sys.stderr.isatty() and not quiet
+        self.done, self.progress = 0, None
+
+    def __enter__(self) -> Any:
+        if self.shown:
+            from rich.console import Console
+            from rich.progress import Progress
+
+            self.progress = Progress(console=Console(stderr=True), transient=True)
+            self.progress.start()
+            self.task = self.progress.add_task("sweep", total=self.total)
+        return self
+
+    def __call__(self) -> None:
+        if self.progress is not None:
+            self.progress.advance(self.task)
+
+    def __exit__(self, *_: object) -> None:
+        if self.progress is not None:
+            self.progress.stop()
+
+
+def _summary(rows: list[Any], parameter: str) -> str:
+    """Runs of equal attractors, one line each."""
+    lines = []
+    first = 0
+    for i in range(1, len(rows) + 1):
+        if i == len(rows) or _kind(rows[i]) != _kind(rows[first]):
+            word = f" {rows[first].word}  k = {rows[first].periods}" if rows[first].word else ""
+            lines.append(
+                f"{parameter} {rows[first].value:.6g} to {rows[i - 1].value:.6g}: {rows[first].attractor}{word}"
+            )
+            first = i
+    return "\n".join(lines)
+
+
+def _kind(row: Any) -> tuple[Any, ...]:
+    return row.attractor, row.word, row.periods
+
+
+def _impacts(row: Any) -> list[float]:
+    """B = (B+ + B-)/2, positive away from the wall, at every impact of the motion; nothing where there is none."""
+    from orbits.simulation.contract import RATE, V_RATE
+    from orbits.simulation.sweep import follow
+
+    run = follow(row.detail)
+    hits = run.codes < 2
+    if not hits.any():
+        return []
+    model, params = row.detail.model, row.detail.params
+    names = list(model.parameter_names)
+    after = run.states[1:][hits]
+    if "amplitude" in names:
+        from numpy import cos
+
+        amplitude, omega = params[names.index("amplitude")], params[names.index("frequency")]
+        v_rate = amplitude * omega * cos(run.phases[hits])
+    else:
+        v_rate = after[:, V_RATE]
+    before = run.rows[hits, 3]
+    away = 1.0 - 2.0 * run.codes[hits]
+    return list(away * (v_rate - 0.5 * (after[:, RATE] + before)))

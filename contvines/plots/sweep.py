@@ -1,0 +1,47 @@
+"""A brute-force sweep as dots, over the continued branches if there are any."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .diagram import plot_diagram
+from .style import axis_label, new_axes, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..graph.graph import Graph
+
+
+def plot_sweep(points: list[tuple[float, float]], parameter: str, graph: "Graph | None" = None) -> "Figure":
+    """Draw the impacts of a sweep's attractors.
+
+    Parameters
+    ----------
+    points : (parameter value, B at an impact), as many as there are impacts.
+    parameter : name of the parameter.
+    graph : branches drawn beneath; they show the same B at their first impact.
+    """
+    values = np.array(points, float).reshape(-1, 2)
+    with styled():
+        figure, axes = new_axes(None)
+        if graph is not None:
+            plot_diagram(graph, x=parameter, y="B", axes=axes)
+        dots: Any = axes.plot(
+            values[:, 0],
+            values[:, 1],
+            linestyle="none",
+            marker=".",
+            markersize=2.4,
+            color="0.45",
+            label="simulated: B at every impact",
+            zorder=2,
+        )[0]
+        legend = axes.get_legend()
+        handles = [*(legend.legend_handles if legend else []), dots]
+        axes.legend(
+            handles=handles, labels=[str(h.get_label()) for h in handles], loc="best", handlelength=2.6
+        )
+        axes.set_xlabel(axis_label(parameter))
+        axes.set_ylabel("$B$ at the impacts")
+    return figure
