@@ -1,0 +1,139 @@
+"""Test functions: numbers that change sign at a special point.
+
+Multipliers are taken one by one: ``("plus", k)`` is the logarithm of the k-th largest real multiplier, so two multipliers
+that cross at once are two events. A product of test functions would not change sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..continuation.engine import Engine, Solved
+
+LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
+
+
+def counts(spectrum: np.ndarray, kind: str) -> np.ndarray:
+    """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
+
+    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part.
+    """
+    real = spectrum.imag == 0.0
+    upper = spectrum.imag > 0.0
+    if kind == "map":
+        columns = (
+            real & (spectrum.real > 1.0),
+            real & (spectrum.real < -1.0),
+            upper & (np.abs(spectrum) > 1.0),
+        )
+    elif kind == "flow":
+        columns = (real & (spectrum.real > 0.0), np.zeros_like(real), upper & (spectrum.real > 0.0))
+    else:
+        return np.zeros((len(spectrum), 3), dtype=int)
+    return np.stack([column.sum(axis=1) for column in columns], axis=1)
+
+
+def crossing(spectrum: np.ndarray, kind: str, name: str, k: int) -> float:
+    """The test function of the k-th multiplier of a sort at one point: positive past the circle."""
+    if name == "pair":
+        part = spectrum[spectrum.imag > 0.0]
+        values = np.sort(np.abs(part) if kind == "map" else part.real)[::-1]
+    else:
+        values = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
+    if len(values) < k:
+        return -LIMIT
+    value = float(values[k - 1])
+    if kind == "map":
+        value = float(np.log(value)) if value > 0.0 else -LIMIT
+    return min(max(value, -LIMIT), LIMIT)
+
+
+class SymmetryTest:
+    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period.
+
+    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks.
+    """
+
+    def __init__(self, symmetry: Any, n: int, period_shift: np.ndarray | None) -> None:
+        self.symmetry, self.kind = symmetry, symmetry.kind
+        self.shift = None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
+        rng = np.random.default_rng(1)
+        probe, check = rng.uniform(0.1, 0.9, n), rng.uniform(0.1, 0.9, n)
+        self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        try:
+            constant = np.asarray(symmetry.apply(np.zeros(n)), dtype=float)
+            image = np.asarray(symmetry.apply(probe), dtype=float) - constant
+            order = np.empty(n, dtype=int)
+            order[np.argsort(np.abs(image), kind="stable")] = np.argsort(probe, kind="stable")
+            signs = np.sign(image)
+            wrong = np.abs(signs * check[order] + constant - symmetry.apply(check)).max()
+            if np.abs(signs * probe[order] - image).max() < 1e-9 and wrong < 1e-9:
+                self.affine = (order, signs, constant)
+        except (ArithmeticError, ValueError, IndexError):
+            self.affine = None
+
+    def part(self, points: np.ndarray) -> np.ndarray:
+        """u - T(u) for points of shape (n, N)."""
+        if self.affine is not None:
+            order, signs, constant = self.affine
+            gap = points - (signs * points[:, order] + constant)
+        else:
+            gap = points - np.array([self.symmetry.apply(u) for u in points])
+        if self.shift is not None:
+            turns = np.round(gap @ self.shift / (self.shift @ self.shift))
+            gap = gap - turns[:, None] * self.shift
+        return gap
+
+    def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Derivative of T at u applied to v."""
+        if self.affine is not None:
+            order, signs, _ = self.affine
+            return signs * v[order]
+        scale = 1e-5 / max(float(np.abs(v).max()), 1e-300)
+        return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)
+
+
+def user_function(engine: Engine, function: Any) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """A user function as (points, values) -> array.
+
+    ``function`` is a callable (u, p) -> float, or a pair (name of a measure, value): zero where the measure has the value.
+    """
+    problem = engine.problem
+    if callable(function):
+        return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
+    try:
+        name, value = function
+        value = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"user function {function!r} must be a callable (u, p) -> float or a pair (measure, value)"
+        ) from None
+    if name == problem.parameter:
+        return lambda points, values: values - value
+    return lambda points, values: problem.measures((name,), points, values)[name] - value
+
+
+class DeterminantTest:
+    """A smooth function with a simple zero where [[F_u, F_p], [border]] is singular: 1 / (c . M^-1 b).
+
+    b is a fixed vector, c the direction of M^-1 b near the zero.
+    """
+
+    def __init__(self, engine: Engine, border: np.ndarray) -> None:
+        self.engine, self.border = engine, border
+        self.side = np.random.default_rng(2).standard_normal(engine.n + 1)
+        self.side[-1] = 0.0
+        self.row: np.ndarray | None = None
+
+    def __call__(self, point: Solved) -> float:
+        engine = self.engine
+        engine.residual(point.u, point.p)
+        x = engine.apply_inverse(self.border, self.side)
+        if self.row is None:
+            x2 = engine.apply_inverse(self.border, np.append(x[:-1], 0.0))
+            self.row = x2 / max(float(np.abs(x2).max()), 1e-300)
+        value = float(self.row @ x)
+        return 1.0 / value if value != 0.0 else np.nan

@@ -1,0 +1,160 @@
+"""Locating a special point on a segment."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..continuation.engine import Solved
+from .roots import bracketed_root, chebyshev_fit, chebyshev_nodes, chebyshev_value
+from .segment import Segment
+
+NODES = 8
+JUMP = 1e-2  # a test function that differs by more than this across the final bracket has a jump there
+
+
+class Root(NamedTuple):
+    """A located zero of a test function.
+
+    Attributes
+    ----------
+    position : float
+        s in [0, 1] on the segment.
+    point : Solved
+    error : float
+        Estimated error of the parameter value.
+    continuous : bool
+        False: the test function jumps over zero.
+    """
+
+    position: float
+    point: Solved
+    error: float
+    continuous: bool = True
+
+
+def locate(
+    segment: Segment,
+    test: Callable[[Solved], float],
+    tolerance: float = 1e-14,
+    fallback_zero: bool = False,
+) -> Root | None:
+    """The zero of a test function whose bordered system is regular there.
+
+    Parameters
+    ----------
+    segment : Segment
+    test : callable
+        Solved -> float, of opposite signs at the two ends.
+    tolerance : float
+        Width of the final bracket relative to the segment.
+    fallback_zero : bool
+        Where the ends do not have opposite signs after all, take the end at which the test is smallest.
+
+    Returns
+    -------
+    Root or None
+        None if the ends do not bracket a zero or the segment cannot be solved.
+    """
+    solved: dict[float, Solved] = {}
+
+    def value(s: float) -> float:
+        point = segment.at(s)
+        if point is None:
+            return float("nan")
+        solved[s] = point
+        return float(test(point))
+
+    fa, fb = value(0.0), value(1.0)
+    if not (np.isfinite(fa) and np.isfinite(fb)):
+        return None
+    if fa * fb > 0.0:
+        if not fallback_zero:
+            return None
+        s = 0.0 if abs(fa) < abs(fb) else 1.0
+        return Root(s, solved[s], 0.0)
+    s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance)
+    width = abs(solved[high].p - solved[low].p) + 4e-16 * abs(solved[s].p)
+    return Root(s, solved[s], max(width, solved[s].correction * 1e-3), abs(fhigh - flow) <= JUMP)
+
+
+def locate_singular(
+    segment: Segment, test: Callable[[Solved], float], rough: float, width: float = 0.2
+) -> Root | None:
+    """The zero of a test function at a branch point, where the bordered system is singular.
+
+    Newton's method loses digits near such a point, so the branch is solved at Chebyshev nodes beside it, and the point and
+    the test function are interpolated. The interpolation converges like (width/2)^8.
+
+    Parameters
+    ----------
+    segment, test
+        As for :func:`locate`.
+    rough : float
+        Approximate position.
+    width : float
+        Half of the window, relative to the segment.
+    """
+    best: Root | None = None
+    best_residual = np.inf
+    for _ in range(7):
+        found = _interpolated(segment, test, rough, width)
+        if found is not None:
+            root, residual = found
+            if residual < best_residual:
+                best, best_residual = root, residual
+            if residual < 1e-13 * (1.0 + np.abs(root.point.u).max()) and root.error < 1e-13:
+                break
+            rough = root.position
+        width *= 0.5
+    return best
+
+
+def _interpolated(
+    segment: Segment, test: Callable[[Solved], float], rough: float, width: float
+) -> tuple[Root, float] | None:
+    engine = segment.engine
+    nodes = chebyshev_nodes(NODES)
+    points, values = [], []
+    # nearest to the singular point first: a test may choose its reference there
+    for x in sorted(nodes, key=abs):
+        point = segment.at(rough + width * float(x))
+        if point is None:
+            return None
+        points.append((float(x), point))
+        values.append((float(x), float(test(point))))
+    points.sort(key=lambda pair: -pair[0])
+    values.sort(key=lambda pair: -pair[0])
+    f = np.array([value for _, value in values])
+    if not np.all(np.isfinite(f)):
+        return None
+    series = chebyshev_fit(f)
+    grid = np.linspace(-1.2, 1.2, 49)
+    on_grid = chebyshev_value(series, grid)
+    changes = np.flatnonzero(on_grid[:-1] * on_grid[1:] <= 0.0)
+    if not len(changes):
+        return None
+    i = int(changes[np.argmin(np.abs(grid[changes] + 0.025))])
+    x = bracketed_root(
+        lambda t: float(chebyshev_value(series, t)), grid[i], grid[i + 1], on_grid[i], on_grid[i + 1]
+    )[0]
+    z = chebyshev_fit(np.array([engine.join(p.u, p.p) for _, p in points]))
+    tangent = chebyshev_fit(np.array([p.tangent for _, p in points]))
+    rows = chebyshev_fit(np.array([np.where(np.isfinite(p.row), p.row, 1e300) for _, p in points]))
+    here = chebyshev_value(z, x)
+    u, p = np.ascontiguousarray(here[:-1]), float(here[-1])
+    residual = engine.residual(u, p)
+    row = chebyshev_value(rows, x)
+    row = np.where(row > 1e290, np.inf, row)
+    polished = engine.polish(u, p, segment.border, float(segment.border @ here), segment.direction)
+    if polished is not None:
+        row = polished.row
+    slope = abs(float(chebyshev_value(np.polynomial.chebyshev.chebder(series), x)))
+    error = float(np.abs(z[-1, -1]) + np.abs(z[-2, -1]))
+    if slope > 0.0:
+        shift = (np.abs(series[-1]) + np.abs(series[-2])) / slope
+        error += float(shift * abs(np.polynomial.chebyshev.chebval(x, np.polynomial.chebyshev.chebder(z[:, -1]))))
+    point = Solved(u, p, engine.unit(chebyshev_value(tangent, x)), row, 0.0, residual, error)
+    return Root(rough + width * x, point, error), residual

@@ -1,0 +1,87 @@
+"""Roots of a function of one variable: bracketed, and interpolated through a singularity of its evaluation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+
+def bracketed_root(
+    f: Callable[[float], float], a: float, b: float, fa: float, fb: float, tolerance: float = 1e-14
+) -> tuple[float, float, float, float, float]:
+    """Root of f between a and b by Chandrupatla's method (Adv. Eng. Software 28 (1997) 145).
+
+    Bisection with inverse quadratic steps where they are safe; f need not be continuous.
+
+    Parameters
+    ----------
+    f : callable
+        May return NaN where it cannot be evaluated; such a point is replaced by a bisection nearby.
+    a, b, fa, fb : float
+        Bracket, fa and fb of opposite sign (or one of them zero).
+    tolerance : float
+        Width of the final bracket relative to the first one.
+
+    Returns
+    -------
+    (root, low, high, f(low), f(high)) : tuple of float
+        The best estimate and the final bracket.
+    """
+    if fa == 0.0:
+        return a, a, a, fa, fa
+    if fb == 0.0:
+        return b, b, b, fb, fb
+    width = abs(b - a)
+    x1, x2, f1, f2 = b, a, fb, fa
+    x3, f3 = x1, f1
+    t = 0.5
+    for _ in range(100):
+        x = x1 + t * (x2 - x1)
+        fx = f(x)
+        if not np.isfinite(fx):
+            x = x1 + 0.37 * (x2 - x1)
+            fx = f(x)
+            if not np.isfinite(fx):
+                break
+        if (fx > 0.0) == (f1 > 0.0):
+            x3, f3 = x1, f1
+        else:
+            x3, f3 = x2, f2
+            x2, f2 = x1, f1
+        x1, f1 = x, fx
+        if f1 == 0.0:
+            return x1, x1, x1, f1, f1
+        best = x1 if abs(f1) < abs(f2) else x2
+        limit = 0.5 * tolerance * width / max(abs(x2 - x1), 1e-300)
+        if limit > 0.5 or abs(x2 - x1) <= tolerance * width:
+            break
+        xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2) if f3 != f2 else 2.0
+        if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
+            t = (f1 / (f2 - f1)) * (f3 / (f2 - f3)) + ((x3 - x1) / (x2 - x1)) * (f1 / (f3 - f1)) * (f2 / (f3 - f2))
+        else:
+            t = 0.5
+        t = min(1.0 - limit, max(limit, t))
+    best = x1 if abs(f1) < abs(f2) else x2
+    (low, flow), (high, fhigh) = sorted(((x1, f1), (x2, f2)))
+    return best, low, high, flow, fhigh
+
+
+def chebyshev_nodes(n: int) -> np.ndarray:
+    """The n roots of the Chebyshev polynomial T_n, none of them 0 for even n."""
+    return np.cos((2.0 * np.arange(n) + 1.0) * np.pi / (2 * n))
+
+
+def chebyshev_fit(values: np.ndarray) -> np.ndarray:
+    """Coefficients of the Chebyshev series through values at ``chebyshev_nodes(n)``; shape (n, ...)."""
+    n = len(values)
+    k = np.arange(n)
+    angles = (2.0 * np.arange(n) + 1.0) * np.pi / (2 * n)
+    coefficients = 2.0 / n * np.cos(np.outer(k, angles)) @ values.reshape(n, -1)
+    coefficients[0] *= 0.5
+    return coefficients.reshape(values.shape)
+
+
+def chebyshev_value(coefficients: np.ndarray, x: float) -> np.ndarray:
+    """The Chebyshev series at x."""
+    return np.polynomial.chebyshev.chebval(x, coefficients)
