@@ -3,32 +3,30 @@
 Every model brings its own compiled stepper (``absorber_kernels``, ``coupled_kernels``); the contract that
 they share is written down in :mod:`orbits.simulation.contract`. Everything else here is model-agnostic.
 
-Importing this package is cheap: compiled code is loaded by the first simulation.
+Importing this package is cheap: compiled code is loaded by the first simulation. The functions `replay` and `sweep`
+hide the modules of the same names; ``from orbits.simulation.sweep import ...`` reaches into those.
 """
 
-from __future__ import annotations
+from orbits.simulation.attractor import Attractor
+from orbits.simulation.driver import SimulationError, simulate
+from orbits.simulation.recurrence import find_attractor
+from orbits.simulation.replay import Replay, replay, replay_nodes
+from orbits.simulation.sweep import SweepRow, find_attractors, sweep, sweeps
+from orbits.simulation.trajectory import Balance, Samples, Trajectory
 
-import importlib
-
-_HOME = {
-    "simulate": "driver",
-    "Trajectory": "trajectory",
-    "find_attractor": "recurrence",
-    "Attractor": "attractor",
-    "replay": "replaying",
-    "Replay": "replaying",
-    "sweep": "sweeping",
-    "sweeps": "sweeping",
-    "SweepRow": "sweeping",
-    "find_attractors": "sweeping",
-    "SimulationError": "driver",
-    "replay_nodes": "replaying",
-}
-
-__all__ = sorted(_HOME)
-
-
-def __getattr__(name: str):
-    if name in _HOME:
-        return getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = [
+    "Attractor",
+    "Balance",
+    "Replay",
+    "Samples",
+    "SimulationError",
+    "SweepRow",
+    "Trajectory",
+    "find_attractor",
+    "find_attractors",
+    "replay",
+    "replay_nodes",
+    "simulate",
+    "sweep",
+    "sweeps",
+]

@@ -14,6 +14,8 @@ from orbits.simulation.return_map import go_round, monodromy, nodes_of
 from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
+UNSTABLE = 1e-5
+ALIKE = 1e-7
 _MIRROR = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
 
 
@@ -91,7 +93,10 @@ def settle(
             return _attractor(model, engine, params, "sliding", 1, window, state)
         found = _recognise(engine, params, window, max_period, tolerance, last=attempt == patience)
         if found is not None:
-            return _cycle(model, engine, params, state, window, *found)
+            cycle = _cycle(model, engine, params, state, window, *found)
+            if attempt == patience or not np.any(np.abs(cycle.multipliers) > 1.0 + UNSTABLE):
+                return cycle
+            state[RATE] *= 1.0 + 1e-6  # a motion that only rounding keeps where it is: help it to leave
         length *= 4.0
     kind = "chatter" if np.any(window.codes == HOLD) else "chaotic"
     return _attractor(model, engine, params, kind, 0, window, state)
@@ -214,12 +219,29 @@ def _cycle(
     speeds = np.abs(window.rows[-length:][places, 4])
     codes, modes, nodes = _rotate(codes, modes, nodes, int(places[np.argmax(speeds)]), periods)
     nodes, residual, multipliers = _polish(engine, params, codes, modes, nodes, periods)
+    root = _root(codes, modes, nodes, periods)
+    if root < length:  # a slow approach that alternates looks like a longer recurrence
+        codes, modes, nodes, periods = codes[:root], modes[:root], nodes[:root], periods * root // length
+        nodes, residual, multipliers = _polish(engine, params, codes, modes, nodes, periods)
     codes, modes, nodes = _rotate(codes, modes, nodes, _first(codes, modes, nodes), periods)
     impacts = int(np.count_nonzero(codes < 2))
     kind = "chatter" if np.any(codes == HOLD) else "periodic" if impacts else "sliding"
     return _attractor(
         model, engine, params, kind, periods, window, state, codes, modes, nodes, residual, multipliers
     )
+
+
+def _root(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int) -> int:
+    """Events of the shortest cycle of which this one is a repetition."""
+    n = len(codes)
+    for times in range(periods, 1, -1):
+        if n % times or periods % times:
+            continue
+        part = n // times
+        same = np.array_equal(codes, np.roll(codes, part)) and np.array_equal(modes, np.roll(modes, part))
+        if same and cyclic_distance(nodes, np.roll(nodes, part, axis=0)) < ALIKE:
+            return part
+    return n
 
 
 def _rotate(

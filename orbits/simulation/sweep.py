@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -198,5 +196,8 @@ def _many(work: Callable[[Any], Any], jobs: Sequence[Any], workers: int) -> list
         raise SimulationError(f"workers = {workers}: give a number of processes, 1 or above")
     if workers == 1 or len(jobs) < 2:
         return [work(job) for job in jobs]
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
     with ProcessPoolExecutor(min(workers, len(jobs)), mp_context=get_context("spawn")) as pool:
         return list(pool.map(work, jobs, chunksize=max(1, len(jobs) // (4 * workers))))
