@@ -1,0 +1,188 @@
+"""Following a branch in one direction with its events, and joining two directions into one Branch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .branch import Branch
+from .continuation.engine import Engine, Solved
+from .continuation.status import Status
+from .continuation.trace import chunks
+from .events.watch import Located, Watch
+
+
+@dataclass
+class Half:
+    """A branch in one direction from its start: arrays, and the events with their indices in them."""
+
+    points: np.ndarray
+    values: np.ndarray
+    tangents: np.ndarray
+    rows: np.ndarray
+    events: list[tuple[int, Located]] = field(default_factory=list)
+    status: Status = Status.RUNNING
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def reversed(self) -> Half:
+        """The same points in opposite order, tangents turned round."""
+        last = len(self) - 1
+        events = [
+            (last - i, e._replace(point=e.point._replace(tangent=-e.point.tangent))) for i, e in self.events[::-1]
+        ]
+        return Half(
+            self.points[::-1], self.values[::-1], -self.tangents[::-1], self.rows[::-1], events, self.status
+        )
+
+    def extended(self, other: Half, skip: int = 0) -> Half:
+        """This half, then the other one without its first ``skip`` points."""
+        shift = len(self) - skip
+        return Half(
+            np.vstack([self.points, other.points[skip:]]),
+            np.concatenate([self.values, other.values[skip:]]),
+            np.vstack([self.tangents, other.tangents[skip:]]),
+            np.vstack([self.rows, other.rows[skip:]]),
+            self.events + [(i + shift, e) for i, e in other.events],
+            other.status,
+        )
+
+
+def single(point: Solved) -> Half:
+    """A half of one point."""
+    return Half(
+        point.u[None, :].copy(), np.array([point.p]), point.tangent[None, :].copy(), point.row[None, :].copy()
+    )
+
+
+def follow(
+    engine: Engine,
+    start: Solved,
+    watch: Watch,
+    journal: Any,
+    key: str,
+    real: bool = True,
+    first_step: float | None = None,
+    notice: Callable[[int, float], None] | None = None,
+) -> Half:
+    """Follow a branch from a point in the direction of its tangent until it ends.
+
+    A real branch ends at its first border, a virtual one where all margins are positive again; both end where they come
+    back to the fixed space of a symmetry. Special points are put between the points.
+
+    Parameters
+    ----------
+    engine : Engine
+    start : Solved
+    watch : Watch
+    journal, key
+        Chunks and their events are asked for, and recorded, under ``key/number`` and ``key/number/events``.
+    real : bool
+    first_step : float, optional
+    notice : callable, optional
+        Called after each chunk with the number of points so far and the parameter value.
+    """
+    half = single(start)
+    stop = real and engine.problem.n_margins > 0
+    for number, chunk in enumerate(chunks(engine, start, journal, key, stop, first_step)):
+        name = f"{key}/{number}/events"
+        known = journal.recall(name)
+        if known is None:
+            events = watch.look(chunk, real=real)
+            journal.record(name, pack(events, engine))
+        else:
+            events = unpack(known)
+        status = chunk.status
+        if events and (events[-1].kind == "meets" or events[-1].note == "border"):
+            status = Status.BORDER
+            chunk = chunk.cut(int(events[-1].position) + 1)
+        elif status == Status.BORDER:
+            # the loop saw a negative margin that could not be located: keep what is certainly real
+            chunk = chunk.cut(len(chunk) - 1)
+        where = np.array([int(e.position) + 1 for e in events], dtype=int)
+        part = Half(chunk.points, chunk.values, chunk.tangents, chunk.rows, [], status)
+        if len(where):
+            part = Half(
+                np.insert(chunk.points, where, np.array([e.point.u for e in events]), axis=0),
+                np.insert(chunk.values, where, [e.point.p for e in events]),
+                np.insert(chunk.tangents, where, np.array([e.point.tangent for e in events]), axis=0),
+                np.insert(chunk.rows, where, np.array([e.point.row for e in events]), axis=0),
+                [(int(w) + i, e) for i, (w, e) in enumerate(zip(where, events))],
+                status,
+            )
+        half = half.extended(part, skip=1)
+        if notice is not None:
+            notice(len(half), float(half.values[-1]))
+        if status != Status.RUNNING:
+            break
+    return half
+
+
+def make_branch(
+    label: str, engine: Engine, half: Half, real: bool, ended: tuple[str, str], closed: bool, seed: str | None
+) -> Branch:
+    """A Branch from joined arrays; ``marks`` are left to the caller."""
+    problem = engine.problem
+    stable = engine.stable(half.rows)
+    special = np.zeros(len(half), dtype=bool)
+    special[[i for i, _ in half.events]] = True
+    if len(half) > 1:
+        # a special point is stable when one of its neighbours is
+        before = np.append(False, stable[:-1] & ~special[:-1])
+        after = np.append(stable[1:] & ~special[1:], False)
+        stable = np.where(special, before | after, stable)
+        if not special[0]:
+            stable[0] = stable[0] or (seed is not None and stable[1])
+    return Branch(
+        label=label,
+        problem=problem,
+        points=np.ascontiguousarray(half.points),
+        values=np.ascontiguousarray(half.values),
+        tangents=np.ascontiguousarray(half.tangents),
+        multipliers=engine.multipliers(half.rows),
+        margin=engine.smallest_margin(half.rows),
+        stable=stable,
+        real=real,
+        ended=ended,
+        closed=closed,
+        seed=seed,
+        description=dict(problem.describe()),
+        parameter=problem.parameter,
+    )
+
+
+def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
+    """Located events as arrays and JSON scalars, for a journal."""
+    n, m = engine.n, engine.row_size
+    points = [e.point for e in events]
+    return {
+        "kind": [e.kind for e in events],
+        "note": [e.note for e in events],
+        "index": [int(e.index) for e in events],
+        "numbers": np.array(
+            [[e.position, e.error, *e.bracket, e.point.p, e.point.sign, e.point.residual, e.point.correction]
+             for e in events]
+        ).reshape(len(events), 8),
+        "u": np.array([p.u for p in points]).reshape(len(events), n),
+        "tangent": np.array([p.tangent for p in points]).reshape(len(events), n + 1),
+        "row": np.array([p.row for p in points]).reshape(len(events), m),
+    }
+
+
+def unpack(record: dict[str, Any]) -> list[Located]:
+    """Located events from a journal."""
+    events = []
+    for i, kind in enumerate(record["kind"]):
+        position, error, low, high, p, sign, residual, correction = (float(x) for x in record["numbers"][i])
+        point = Solved(
+            np.array(record["u"][i]), p, np.array(record["tangent"][i]), np.array(record["row"][i]), sign, residual,
+            correction,
+        )
+        events.append(
+            Located(position, kind, int(record["index"][i]), point, (low, high), error, record["note"][i])
+        )
+    return events

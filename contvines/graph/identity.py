@@ -1,0 +1,116 @@
+"""Identity: the same solution? the same branch? the same special point?"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+
+from ..branch import Branch
+from ..continuation.engine import Engine
+from ..special import SpecialPoint
+
+SAME = 1e-6
+
+
+def same_vector(a: np.ndarray, b: np.ndarray, tolerance: float = SAME) -> bool:
+    """Equal up to the tolerance, relative to 1 + largest entry."""
+    return a.shape == b.shape and bool(np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0)))
+
+
+class Register:
+    """Known branches by the key of their solutions; a seed is compared only with branches of its own key."""
+
+    def __init__(self) -> None:
+        self.by_key: dict[Hashable, list[tuple[Branch, Engine]]] = {}
+
+    def add(self, branch: Branch, engine: Engine) -> None:
+        """Remember a branch under the key of its inner points."""
+        keys = {
+            engine.problem.canonical(branch.points[i], float(branch.values[i]))[0]
+            for i in {len(branch) // 2, len(branch) // 3, (2 * len(branch)) // 3}
+        }
+        for key in sorted(keys, key=repr):
+            self.by_key.setdefault(key, []).append((branch, engine))
+
+    def find(self, problem: Any, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
+        """The known branch on which a solution lies, or None.
+
+        Where a branch passes the parameter value it is interpolated, solved there and compared.
+        """
+        key, vector = problem.canonical(u, p)
+        for branch, engine in self.by_key.get(key, []):
+            if real is not None and branch.real != real:
+                continue
+            if _passes(branch, engine, key, vector, p):
+                return branch
+        return None
+
+
+def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> bool:
+    gaps = branch.values - p
+    for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
+        guess = _at_value(branch, engine, int(i), p)
+        here, near = engine.problem.canonical(guess, p)
+        if here == key and not same_vector(near, vector, 0.1):
+            continue
+        found = engine.at_value(guess, p)
+        if found is None:
+            if here == key and same_vector(near, vector, 1e-4):
+                return True
+            continue
+        here, near = engine.problem.canonical(found.u, p)
+        if here == key and same_vector(near, vector):
+            return True
+    return False
+
+
+def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
+    """u at parameter value p on the cubic between points i and i + 1."""
+    za = np.append(branch.points[i], branch.values[i])
+    zb = np.append(branch.points[i + 1], branch.values[i + 1])
+    ta, tb = branch.tangents[i], branch.tangents[i + 1]
+    d = engine.norm(zb - za)
+
+    def at(t: float) -> np.ndarray:
+        return (
+            (1 + 2 * t) * (1 - t) ** 2 * za
+            + t * (1 - t) ** 2 * d * ta
+            + t * t * (3 - 2 * t) * zb
+            + t * t * (t - 1) * d * tb
+        )
+
+    low, high, flow = 0.0, 1.0, za[-1] - p
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        value = at(middle)[-1] - p
+        if (value > 0.0) == (flow > 0.0):
+            low, flow = middle, value
+        else:
+            high = middle
+    return at(0.5 * (low + high))[:-1]
+
+
+def same_special(
+    known: SpecialPoint, kind: str, problem: Any, u: np.ndarray, p: float, unit: float, loose: bool = False
+) -> bool:
+    """Whether a located point is a known special point.
+
+    Parameters
+    ----------
+    known : SpecialPoint
+    kind, problem, u, p
+        The located point.
+    unit : float
+        Length of the parameter interval.
+    loose : bool
+        Do not insist on equal unknowns, only on kind and parameter value: for one point seen in two problems.
+    """
+    if known.kind != kind or abs(known.value - p) > 1e-8 * unit:
+        return False
+    key, vector = problem.canonical(u, p)
+    other_key, other = known.problem.canonical(known.u, known.value)
+    if key == other_key and same_vector(vector, other):
+        return True
+    return loose and abs(known.value - p) <= 1e-9 * unit
