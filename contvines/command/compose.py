@@ -9,6 +9,27 @@ if TYPE_CHECKING:
     from contvines.graph.graph import Graph
 
 
+def checked_study(path: Path) -> "Study":
+    """A study whose values, machine and word can all be; see `read_study`.
+
+    Raises
+    ------
+    ValueError
+        With a sentence that names the file, the field, the value and what would do.
+    """
+    from contvines.command.study import read_study
+    from orbits.words import Word
+
+    study = read_study(path)
+    try:
+        vector = machine(study).vector(loose(study))
+        frictionless = machine(study).friction_acceleration(vector) == 0.0
+        Word.parse(study.word, frictionless=frictionless)
+    except ValueError as error:
+        raise ValueError(f"{path}: [start] {error}") from error
+    return study
+
+
 def machine(study: "Study") -> Any:
     """The machine of a study, `[start]`'s overrides included."""
     from orbits.models import build

@@ -148,14 +148,13 @@ def _orbit(file: Path, label: str | None) -> Any:
     from contvines.command.study import is_database
 
     if not is_database(file) and file.suffix == ".toml":
-        from contvines.command.compose import first_orbit
-        from contvines.command.study import read_study
+        from contvines.command.compose import checked_study, first_orbit
 
         if label is not None:
             raise ValueError(
                 f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
             )
-        return first_orbit(read_study(file))
+        return first_orbit(checked_study(file))
     from contvines.store import load
 
     graph = load(file)

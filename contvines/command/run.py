@@ -57,7 +57,6 @@ def switch(
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
     from contvines.command.progress import watched
-    from contvines.graph.diagram import extend
     from contvines.journal import NullJournal
     from contvines.store import Store
 
@@ -69,6 +68,8 @@ def switch(
         if not hasattr(point, "kind"):
             specials = ", ".join(graph.special) or "none"
             raise ValueError(f"{label} is a branch; give a special point of {file}: {specials}.")
+        from contvines.graph.diagram import extend
+
         before = set(graph.branches)
         with _interruptible(f"{file} is as it was"), watched(NullJournal(), quiet=quiet) as journal:
             extend(graph, label, journal=journal)
@@ -94,11 +95,10 @@ def _run(
     x: str | None,
     y: str | None,
 ) -> None:
-    from contvines.command.compose import beside, check_place, first_orbit, run_diagram, say
-    from contvines.command.study import read_study
+    from contvines.command.compose import beside, check_place, checked_study, first_orbit, run_diagram, say
     from contvines.store import Store
 
-    study = read_study(path)
+    study = checked_study(path)
     target = output or beside(path, ".vines")
     check_place(target)
     if target.resolve() == path.resolve():

@@ -165,24 +165,14 @@ def _kind(row: Any) -> tuple[Any, ...]:
 
 
 def _impacts(row: Any) -> list[float]:
-    """B = (B+ + B-)/2, positive away from the wall, at every impact of the motion; nothing where there is none."""
-    from orbits.simulation.contract import RATE, V_RATE
+    """B = (B+ - B-)/2, positive away from the wall, at every impact of the motion.
+
+    B = v' - w', and v' does not change at an impact: B is half the jump of -w'.
+    """
+    from orbits.simulation.contract import RATE
     from orbits.simulation.sweep import follow
 
     run = follow(row.detail)
     hits = run.codes < 2
-    if not hits.any():
-        return []
-    model, params = row.detail.model, row.detail.params
-    names = list(model.parameter_names)
-    after = run.states[1:][hits]
-    if "amplitude" in names:
-        from numpy import cos
-
-        amplitude, omega = params[names.index("amplitude")], params[names.index("frequency")]
-        v_rate = amplitude * omega * cos(run.phases[hits])
-    else:
-        v_rate = after[:, V_RATE]
-    before = run.rows[hits, 3]
-    away = 1.0 - 2.0 * run.codes[hits]
-    return list(away * (v_rate - 0.5 * (after[:, RATE] + before)))
+    away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
+    return list(0.5 * away * (run.rows[hits, 3] - run.states[1:][hits, RATE]))

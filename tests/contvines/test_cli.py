@@ -1,0 +1,260 @@
+"""The command line on files that are there already, and on bad input: sentences, exit statuses, untouched files."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from contvines.command.cli import main
+from contvines.store import Store, save
+
+_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
+assert _spec is not None and _spec.loader is not None
+fakes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(fakes)
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "friction.toml"
+
+
+@pytest.fixture
+def run(capsys, monkeypatch, tmp_path):
+    """Runs `contvines ...` in an empty folder; returns (exit status, stdout, stderr)."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def go(*words):
+        try:
+            main([str(w) for w in words])
+            status = 0
+        except SystemExit as end:
+            status = end.code or 0
+        out, err = capsys.readouterr()
+        return status, out, err
+
+    return go
+
+
+@pytest.fixture
+def vines(tmp_path):
+    save(fakes.pitchfork_graph(), tmp_path / "g.vines")
+    return tmp_path / "g.vines"
+
+
+def test_help_lists_every_command(run):
+    status, out, _ = run("--help")
+    assert status == 0
+    for name in ("diagram", "trace", "switch", "show", "orbit", "plot", "export", "sweep"):
+        assert name in out
+        assert run(name, "--help")[0] == 0
+
+
+def test_help_and_version_import_nothing_heavy():
+    code = (
+        "import sys\nfrom contvines.command.cli import main\n"
+        "try: main(['--help'])\nexcept SystemExit: pass\n"
+        "print([m for m in ('numpy', 'numba', 'scipy', 'matplotlib', 'networkx', 'pydantic') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_version(run):
+    from contvines import __version__
+
+    assert run("--version")[1].strip() == f"contvines {__version__}"
+
+
+def test_show_prints_the_table_or_one_json_object(run, vines):
+    status, out, err = run("show", vines)
+    assert (status, err) == (0, "")
+    for label in ("B1", "B2", "B3", "BP1", "VG1", "EP1"):
+        assert label in out
+    status, out, _ = run("show", vines, "--json")
+    data = json.loads(out)
+    assert status == 0
+    assert data == json.loads(json.dumps(fakes.pitchfork_graph().to_dict()).replace("Infinity", "null"))
+    assert {
+        "label",
+        "kind",
+        "branch",
+        "value",
+        "multipliers",
+        "real",
+        "criticality",
+        "residual",
+        "replay",
+    } <= set(data["special"][0])
+
+
+def test_show_on_an_unfinished_file_says_so(run, tmp_path):
+    with Store.create(tmp_path / "u.vines", "f") as store:
+        store.record("B1/0", {"x": 1.0})
+    status, out, err = run("show", "u.vines")
+    assert status == 0
+    assert "unfinished" in err
+    with Store.open(tmp_path / "u.vines", write=True) as store:
+        store.checkpoint(fakes.pitchfork_graph(finished=False))
+    status, out, err = run("show", "u.vines")
+    assert (status, "B2" in out, "unfinished" in err) == (0, True, True)
+    assert json.loads(run("show", "u.vines", "--json")[1])["finished"] is False
+
+
+@pytest.mark.parametrize("kind", ["diagram", "multipliers", "network"])
+def test_plot(run, vines, tmp_path, kind):
+    status, out, err = run("plot", vines, "--kind", kind, "-o", "a.png")
+    assert (status, out.strip(), err) == (0, "a.png", "")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("kind", ["csv", "json", "graphml", "mat"])
+def test_export(run, vines, tmp_path, kind):
+    status, out, _ = run("export", vines, "--to", kind)
+    assert (status, out.strip()) == (0, f"g.{kind}")
+    assert (tmp_path / f"g.{kind}").stat().st_size > 100
+
+
+def test_orbit_of_a_study_is_solved_not_continued(run, tmp_path):
+    status, out, err = run("orbit", EXAMPLE, "--json", "--plot", "o.png")
+    assert (status, err) == (0, "")
+    data = json.loads(out)
+    assert {"word", "periods", "parameters", "nodes", "multipliers", "margins", "real"} <= set(data)
+    assert (data["word"], data["periods"], data["real"]) == ("LR", 1, True)
+    assert [n["event"] for n in data["nodes"]] == ["L", "R"]
+    # closed form: C sin Psi = 1 - (pi/2) beta, C cos Psi = R beta + H, beta = B+ - pi a/2 (MODEL of the LR orbit)
+    from math import cos, pi, sin
+
+    a, R, C = 1.006 * 0.5 * 0.211, 0.24 / 1.76, 0.55
+    node = data["nodes"][0]
+    beta = node["B_post"] - pi * a / 2
+    assert C * sin(node["phase"]) == pytest.approx(1 - pi / 2 * beta, abs=1e-12)
+    assert C * cos(node["phase"]) == pytest.approx(R * beta + pi / 2 * a, abs=1e-12)
+    assert list(tmp_path.iterdir()) == [tmp_path / "o.png"]
+
+
+GOOD = EXAMPLE.read_text()
+BAD_STUDIES = {
+    "restitution = 0.76": [
+        ("restitution = 1.5", "restitution = 1.5"),
+        ("restitution = 0", "restitution = 0"),
+        ("restitution = nan", "not a finite number"),
+        ("restitutoin = 0.76", "did you mean 'restitution'"),
+        ('restitution = "soft"', "not a number"),
+    ],
+    "friction = 0.5": [("friction = -0.5", "friction = -0.5")],
+    "within = [0.18, 1.27]": [
+        ("within = [1.27, 0.18]", "reversed"),
+        ("within = [0.5, 0.5]", "empty"),
+        ("within = [0.6, 1.27]", "outside"),
+        ("within = [nan, 1.27]", "not a finite number"),
+    ],
+    'word = "LR"': [
+        ('word = "LL"', "LL"),
+        ('word = "LxR"', "x"),
+        ('word = ""', "stuck"),
+    ],
+    "periods = 1": [("periods = 0", "whole number >= 1")],
+    'parameter = "amplitude"': [('parameter = "amplitudo"', "did you mean 'amplitude'")],
+    "depth = 3": [("depth = -3", "depth = -3")],
+    "[model]": [("[modle]", "did you mean 'model'"), ("[model", "not valid TOML")],
+}
+
+
+COMMANDS = ("diagram", "trace", "orbit", "sweep")
+CASES = [(c, old, new, s) for c in COMMANDS for old, cases in BAD_STUDIES.items() for new, s in cases]
+# A sweep starts from rest: it needs no word.
+CASES = [case for case in CASES if not (case[0] == "sweep" and case[1].startswith("word"))]
+
+
+@pytest.mark.parametrize(("command", "old", "new", "sentence"), CASES)
+def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, command, old, new, sentence):
+    assert old in GOOD
+    (tmp_path / "bad.toml").write_text(GOOD.replace(old, new, 1))
+    save(fakes.pitchfork_graph(), tmp_path / "other.vines")
+    before = {p: p.read_bytes() for p in tmp_path.iterdir()}
+    status, out, err = run(command, "bad.toml")
+    assert status != 0
+    assert err.startswith("contvines: bad.toml: ")
+    assert sentence in err
+    assert "Traceback" not in out + err
+    assert {p: p.read_bytes() for p in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("diagram", "none.toml"), "none.toml: there is no such file"),
+        (("show", "none.vines"), "none.vines: there is no such file"),
+        (("show", "notes.txt"), "notes.txt: this is not a .vines file"),
+        (("plot", "notes.txt"), "notes.txt: this is not a .vines file"),
+        (("orbit", "notes.txt", "B1"), "notes.txt: this is not a .vines file"),
+        (("diagram", EXAMPLE, "-o", "notes.txt"), "notes.txt: this is not a .vines file"),
+        (("diagram", EXAMPLE, "-o", "g.vines"), "g.vines: this file belongs to another study"),
+        (("diagram", EXAMPLE, "-o", "none/g.vines"), "there is no folder 'none'"),
+        (("diagram", EXAMPLE, "-o", "."), "this is a folder"),
+        (("diagram", EXAMPLE, "--plot", "a.doc"), "must end in .png"),
+        (("diagram", EXAMPLE, "--plot", "none/a.png"), "there is no folder 'none'"),
+        (("diagram", "g.vines"), "this is not a TOML file"),
+        (("orbit", "g.vines"), "Give one of the labels BP1, EP1, VG1, B1, B2, B3"),
+        (("orbit", "g.vines", "XX1"), "no label 'XX1'; it has B1, B2, B3, BP1, EP1, VG1"),
+        (("orbit", "g.vines", "B1:99"), "numbered from 0 to 40"),
+        (("orbit", EXAMPLE, "B1"), "a study has no labels"),
+        (("plot", "g.vines", "-y", "speed"), "B1 has no measure 'speed'"),
+        (("plot", "g.vines", "-o", "a.doc"), "must end in .png"),
+        (("plot", "g.vines", "--kind", "multipliers", "--branch", "B9"), "B9: there is no such branch"),
+        (("export", "g.vines", "--to", "xml"), "xml"),
+        (("export", "g.vines", "--to", "csv", "-o", "none/a.csv"), "there is no folder 'none'"),
+        (("switch", "g.vines", "B1"), "B1 is a branch"),
+        (("switch", "g.vines", "XX1"), "no label 'XX1'"),
+        (("sweep", EXAMPLE, "--over", "g.vines", "--plot", "a.png"), "g.vines continues in p"),
+        (("frobnicate",), "frobnicate"),
+    ],
+)
+def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path, words, sentence):
+    (tmp_path / "notes.txt").write_text("mine, not yours\n" * 20)
+    before = {p: p.read_bytes() for p in tmp_path.iterdir()}
+    status, out, err = run(*words)
+    assert status != 0
+    assert sentence in err
+    assert "Traceback" not in out + err
+    assert {p: p.read_bytes() for p in tmp_path.iterdir()} == before
+
+
+def test_debug_shows_the_traceback(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    for words in (["--debug", "show", "none.vines"], ["show", "none.vines", "--debug"]):
+        with pytest.raises(ValueError, match="there is no such file"):
+            main(words)
+
+
+def test_an_unexpected_error_is_a_sentence_too(run, monkeypatch, vines):
+    import contvines.store
+
+    def broken(*_, **__):
+        raise TypeError("a bug")
+
+    monkeypatch.setattr(contvines.store, "load", broken)
+    status, _, err = run("show", vines)
+    assert status == 1
+    assert "something went wrong that should not (TypeError: a bug)" in err
+    assert "--debug" in err
+
+
+def test_sweep_writes_one_row_per_value(run, tmp_path):
+    text = (
+        GOOD.replace("within = [0.18, 1.27]", "within = [0.55, 0.70]")
+        + "\n[sweep]\ncount = 4\ntransient = 60\n"
+    )
+    (tmp_path / "s.toml").write_text(text)
+    status, _, err = run("sweep", "s.toml", "--plot", "s.png")
+    assert status == 0, err
+    rows = [line.split(",") for line in (tmp_path / "s.csv").read_text().splitlines()]
+    assert rows[0][:6] == ["value", "direction", "attractor", "word", "periods", "impacts"]
+    assert [float(r[0]) for r in rows[1:]] == pytest.approx([0.55, 0.60, 0.65, 0.70])
+    assert {tuple(r[1:6]) for r in rows[1:]} == {("up", "periodic", "LR", "1", "2")}
+    assert (tmp_path / "s.png").exists()
+    status, _, _ = run("sweep", "s.toml", "--down", "-o", "d.csv")
+    down = [line.split(",") for line in (tmp_path / "d.csv").read_text().splitlines()]
+    assert (status, down[1][0], down[1][1]) == (0, "0.7", "down")
