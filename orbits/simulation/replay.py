@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from orbits.simulation.attractor import cyclic_distance
+from orbits.simulation.contract import EVENTS_FULL
 from orbits.simulation.driver import collect, machine, skip
 from orbits.simulation.return_map import go_round, monodromy, nodes_of, state_of
-from orbits.simulation.trajectory import TWO_PI
+from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,9 @@ class Replay:
         Cycles for which rounding errors allow that: ln(loss/1e-15)/ln|multiplier|, inf for a stable orbit.
     returned : bool or None
         Whether a start moved off a stable orbit comes back to it (None for others, or if not asked for).
+    motion : float
+        Where the events differ: largest difference of the positions w at the claimed nodes' phases over one period. On a
+        border events appear or vanish by rounding alone; then the events differ and the motion still agrees.
     """
 
     error: float
@@ -40,6 +44,7 @@ class Replay:
     tracked: int = 0
     expected: float = np.inf
     returned: bool | None = None
+    motion: float = 0.0
 
     @property
     def matches(self) -> bool:
@@ -94,13 +99,14 @@ def replay_nodes(
     nodes = np.asarray(nodes, dtype=float).reshape(len(codes), -1)
     there = go_round(engine, params, codes, modes, nodes[0])
     if there.message:
-        return Replay(np.inf, there.message, nothing)
+        motion = _motion(model, engine, params, codes, modes, nodes, periods)
+        return Replay(np.inf, there.message, nothing, motion=motion)
     claimed = np.roll(nodes, -1, axis=0)
     claimed[-1, 0] += TWO_PI * periods
     error = float(np.abs(there.nodes - claimed).max())
     if not thorough:
         return Replay(error, "", nothing)
-    start = _freest(codes, nodes)
+    start = _freest(codes)
     codes, modes = np.roll(codes, -start), np.roll(modes, -start)
     nodes = np.roll(nodes, -start, axis=0)
     if start:
@@ -129,9 +135,24 @@ def _stuck(model: Any, params: np.ndarray) -> Replay:
     return Replay(0.0 if held else np.inf, sentence, np.empty(0, complex))
 
 
-def _freest(codes: np.ndarray, nodes: np.ndarray) -> int:
+def _motion(
+    model: Any, engine: Any, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int
+) -> float:
+    begin = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
+    if abs(begin[1]) > 1.0:
+        return np.inf
+    state = begin.copy()
+    until = begin[4] + begin[0] / TWO_PI + periods
+    run = Trajectory(model, params, engine, begin, state, *collect(engine, state, params, until, 100 * len(codes) + 1000))
+    if run.status == EVENTS_FULL:
+        return np.inf
+    places = np.where(codes == 0, 1.0, np.where(codes == 1, -1.0, nodes[:, 1]))
+    seen = run.sample(np.append(nodes[:, 0], nodes[0, 0] + TWO_PI * periods))
+    return float(np.abs(seen.w - np.append(places, places[0])).max())
+
+
+def _freest(codes: np.ndarray) -> int:
     """An event whose node has no dependent entry: an impact, else a turn, else any."""
-    del nodes
     for wanted in ((0, 1), (2,), (3,), (4,)):
         places = np.flatnonzero(np.isin(codes, wanted))
         if len(places):

@@ -1,0 +1,169 @@
+"""Event lists against witnesses that share nothing with the stepper: an ODE integrator, and forty digits."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from orbits.models.absorber import Absorber
+from orbits.simulation import simulate
+
+
+def integrate(C, r, a, omega, psi, w, rate, count):
+    """The first `count` events (letter, phase, w, w' after) by DOP853 with event functions."""
+    time, state, mode, events = 0.0, [w, rate], np.sign(rate), []
+
+    def push(t):
+        return -C * omega**2 * np.sin(omega * t + psi)
+
+    while len(events) < count:
+        if mode == 0:
+            alpha = np.arcsin(a / (C * omega**2))
+            waits = [(root - omega * time - psi) % (2 * np.pi) for root in (alpha, np.pi + alpha)]
+            time += min(waits) / omega
+            mode = -1 if waits[0] < waits[1] else 1
+            events.append(("u", omega * time + psi, state[0], 0.0))
+            continue
+
+        def field(t, y, mode=mode):
+            return [y[1], push(t) - mode * a]
+
+        def wall(t, y, mode=mode):
+            return mode * y[0] - 1.0
+
+        def rest(t, y, mode=mode):
+            return mode * y[1]
+
+        wall.terminal = rest.terminal = True
+        wall.direction, rest.direction = 1.0, -1.0
+        options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
+        if state[1] == 0.0:  # step away from the turn or slip, where w' = 0 already
+            state = list(solve_ivp(field, (time, time + 1e-3), state, **options).y[:, -1])
+            time += 1e-3
+        run = solve_ivp(field, (time, time + 60.0), state, events=[wall, rest], max_step=0.1, **options)
+        time, state = run.t[-1], list(run.y[:, -1])
+        if run.t_events[0].size:
+            state = [mode, -r * state[1]]
+            letter, mode = ("L" if mode > 0 else "R"), -mode
+        else:
+            letter = "t" if abs(push(time)) > a else "s"
+            mode = -mode if letter == "t" else 0
+            state[1] = 0.0
+        events.append((letter, omega * time + psi, state[0], state[1]))
+    return events
+
+
+@pytest.mark.parametrize(
+    ("C", "r", "mu", "g", "omega"),
+    [(0.85, 0.76, 0.5, 0.211, 1.0), (1.3, 0.6, 0.3, 0.355, 1.3), (0.12, 0.9, 0.5, 0.211, 1.0), (2.5, 0.4, 0.9, 0.3, 1.1)],
+)
+def test_events_agree_with_an_ode_integrator(C, r, mu, g, omega):
+    machine = Absorber(restitution=r, friction=mu, gravity=g, mass_ratio=0.006, frequency=omega)
+    told = integrate(C, r, 1.006 * mu * g, omega, 0.4, 0.1, 0.9, 24)
+    run = simulate(machine, {"phase": 0.4, "w": 0.1, "w_rate": 0.9}, events=24, amplitude=C)
+    assert run.letters == "".join(event[0] for event in told)
+    assert run.phases == pytest.approx([event[1] for event in told], abs=1e-10)
+    assert run.rows[:, 2] == pytest.approx([event[2] for event in told], abs=1e-10)
+    assert run.rows[:, 4] == pytest.approx([event[3] for event in told], abs=1e-10)
+
+
+@pytest.mark.parametrize("rate", [2.0, 1.0, 1e-2, 1e-5, 1e-9])
+def test_hits_have_full_relative_accuracy(rate):
+    """A bounce off the wall that the shaking presses against, without friction: hit time against 40 digits."""
+    C, psi = 0.7, 4.2  # -sin(4.2) > 0 pushes to w = +1
+    machine = Absorber(restitution=0.9, friction=0.0, gravity=0.2)
+    run = simulate(machine, {"phase": psi, "w": 1.0, "w_rate": -rate}, events=1, amplitude=C)
+    with mp.workdps(40):
+
+        def gap(d):
+            p = mp.mpf(psi)
+            return C * (mp.sin(p + d) - mp.sin(p)) - (mp.mpf(rate) + C * mp.cos(p)) * d
+
+        def speed(d):
+            p = mp.mpf(psi)
+            return C * (mp.cos(p + d) - mp.cos(p)) - mp.mpf(rate)
+
+        if run.letters == "L":
+            guess = 2 * rate / (-C * np.sin(psi)) if rate < 0.1 else run.phases[0] - psi
+            d = mp.findroot(lambda x: gap(x) / x, guess)
+            assert run.rows[0, 3] == pytest.approx(float(speed(d)), rel=2e-14)
+        else:
+            d = mp.findroot(lambda x: gap(x) + 2, run.phases[0] - psi)
+        assert run.phases[0] == pytest.approx(psi + float(d), rel=4e-16, abs=1e-15)
+
+
+def test_flight_after_a_slip():
+    """From rest w' and w'' vanish together at the slip; the next event against 40 digits."""
+    C, mu, g = 0.3, 0.5, 0.4
+    machine = Absorber(restitution=0.8, friction=mu, gravity=g)
+    run = simulate(machine, {"w": 0.2}, events=2, amplitude=C)
+    assert run.letters[0] == "u"
+    with mp.workdps(40):
+        a = mp.mpf(mu) * mp.mpf(g)
+        alpha = mp.asin(a / mp.mpf(C))
+        assert run.phases[0] == pytest.approx(float(alpha), rel=4e-16)
+        assert run.modes[0] == -1
+
+        def speed(psi):  # w' / (psi - alpha)^2 in mode -, from w' = 0, w'' = 0 at alpha
+            return (C * (mp.cos(psi) - mp.cos(alpha)) + a * (psi - alpha)) / (psi - alpha) ** 2
+
+        end = mp.findroot(speed, run.phases[1])
+        reach = 0.2 + C * (mp.sin(end) - mp.sin(alpha)) - C * mp.cos(alpha) * (end - alpha) + a * (end - alpha) ** 2 / 2
+        assert reach > -1
+        assert run.phases[1] == pytest.approx(float(end), rel=1e-15)
+        assert run.rows[1, 2] == pytest.approx(float(reach), rel=1e-14)
+
+
+def test_stuck_forever_and_free_drift():
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    held = 1.006 * 0.5 * 0.211
+    run = simulate(machine, {"w": 0.3}, periods=50, amplitude=held)
+    assert len(run) == 0
+    assert "rest" in run.ended
+    assert run.end[1] == 0.3
+    assert simulate(machine, {"w": 0.3}, periods=2, amplitude=held * (1 + 1e-6)).letters[:2] == "us"
+    drift = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
+    bounces = simulate(drift, {"w_rate": 0.5}, events=10, amplitude=0.0)
+    assert bounces.letters == "LRLRLRLRLR"
+    assert bounces.phases == pytest.approx(2.0 + 4.0 * np.arange(10), rel=1e-14)
+
+
+def test_without_friction_a_flight_reverses_without_an_event():
+    """The limit of small friction has the same impacts, with turns between those on one wall."""
+    start = {"w_rate": 1.0}
+    free = simulate(Absorber(restitution=0.5, friction=0.0, gravity=0.2), start, events=20, amplitude=2.0)
+    slow = simulate(Absorber(restitution=0.5, friction=1e-12, gravity=0.2), start, events=60, amplitude=2.0)
+    hits = slow.codes < 2
+    assert "LL" in free.letters
+    assert "t" in slow.letters
+    assert "t" not in free.letters
+    assert np.array_equal(slow.codes[hits][:20], free.codes)
+    assert slow.phases[hits][:20] == pytest.approx(free.phases, abs=1e-7)
+
+
+def test_chatter_ends_in_contact_and_contact_in_release():
+    """Impacts pile up at the limit of their geometric sequence; the wall lets go when the shaking turns round."""
+    C, mu, g = 8.0, 0.2, 0.2
+    machine = Absorber(restitution=0.3, friction=mu, gravity=g)
+    run = simulate(machine, {"w_rate": 1.0}, periods=5, amplitude=C)
+    holds = np.flatnonzero(run.codes == 5)
+    assert len(holds) > 3
+    assert "piled up" in run.ended
+    for place in holds:
+        phases = run.phases[:place][run.codes[:place] < 2][-8:]  # Aitken's limit of the impact phases
+        last, middle, first = phases[-5], phases[-6], phases[-7]
+        limit = last - (last - middle) ** 2 / ((last - middle) - (middle - first))
+        assert run.phases[place] == pytest.approx(limit, abs=3e-7)
+        assert abs(run.rows[place, 2]) == 1.0
+        if place + 1 < len(run):
+            assert run.letters[place + 1] == "u"
+            wall = run.rows[place, 2]
+            assert -C * np.sin(run.phases[place + 1]) * wall == pytest.approx(-mu * g, abs=1e-12)
+            assert run.modes[place + 1] == -wall
+
+
+def test_elastic_bounces_do_not_pile_up():
+    machine = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
+    run = simulate(machine, {"phase": 4.0, "w": 1.0, "w_rate": -0.01}, events=200, amplitude=2.0)
+    assert not np.any(run.codes == 5)
+    assert run.impacts == 200

@@ -1,0 +1,92 @@
+"""Properties over fuzzed machines and starts: bounds, energy, order of events, mirror image, bounded work."""
+
+import numpy as np
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from orbits.models.absorber import Absorber
+from orbits.simulation import simulate
+
+FOLLOWS = {-1: "Rts", 1: "Lts", 0: "u"}
+
+
+def speeds():
+    tiny = st.sampled_from([0.0, 1e-9, -1e-9, 1e-6, -1e-4])
+    return st.one_of(st.floats(-5.0, 5.0).filter(lambda x: abs(x) > 1e-6), tiny)
+
+
+machines = st.builds(
+    Absorber,
+    restitution=st.one_of(st.floats(0.05, 1.0), st.just(1.0)),
+    friction=st.one_of(st.floats(0.01, 1.0), st.just(0.0), st.floats(1e-6, 1e-3)),
+    gravity=st.floats(0.01, 2.0),
+    mass_ratio=st.just(0.006),
+    frequency=st.floats(0.3, 3.0),
+)
+starts = st.fixed_dictionaries(
+    {
+        "phase": st.one_of(st.floats(0.0, 6.28), st.sampled_from([0.0, np.pi / 2, np.pi, 3 * np.pi / 2])),
+        "w": st.one_of(st.floats(-1.0, 1.0), st.sampled_from([1.0, -1.0, 0.0, 1.0 - 1e-12])),
+        "w_rate": speeds(),
+    }
+)
+amplitudes = st.one_of(st.floats(0.01, 20.0), st.floats(1e-4, 0.3))
+
+
+@settings(max_examples=300, deadline=None)
+@given(machine=machines, start=starts, amplitude=amplitudes)
+@example(Absorber(restitution=0.3, friction=0.0, gravity=1.0), {"phase": np.pi, "w": -1.0, "w_rate": 0.0}, 0.2)
+def test_every_run_is_a_motion(machine, start, amplitude):
+    run = simulate(machine, start, periods=25, events=12000, amplitude=amplitude)
+    assert np.all(np.abs(run.rows[:, 2]) <= 1.0)
+    assert np.all(run.lengths >= 0.0)
+    assert run.balance().error < 1e-9
+    frictionless = machine.friction == 0.0
+    mode = int(run.start[3])
+    for letter, after in zip(run.letters, run.modes):
+        if letter != "H" and not frictionless:
+            assert letter in FOLLOWS[mode]
+        mode = int(after)
+        assert mode == {"L": -1, "R": 1, "s": 0, "H": 0}.get(letter, mode)
+    if len(run) < 12000:  # in between, evaluated in closed form: inside the walls, and never against the mode
+        seen = run.sample(per_period=61)
+        assert np.abs(seen.w).max() <= 1.0 + 1e-14
+        begins = run.states[:, 0] + 2 * np.pi * run.states[:, 4]
+        place = np.clip(np.searchsorted(begins, seen.phase, side="right") - 1, 0, None)
+        if not frictionless:
+            assert (run.states[place, 3] * seen.w_rate).min() > -1e-12
+
+
+@settings(max_examples=60, deadline=None)
+@given(machine=machines, start=starts, amplitude=st.floats(0.05, 5.0))
+def test_mirror_image(machine, start, amplitude):
+    """(w, Psi) -> (-w, Psi + pi) exchanges L and R; a few events, before rounding grows."""
+    image = {"phase": start["phase"] + np.pi, "w": -start["w"], "w_rate": -start["w_rate"]}
+    run = simulate(machine, start, events=6, periods=20, amplitude=amplitude)
+    other = simulate(machine, image, events=6, periods=20, amplitude=amplitude)
+    gaps = np.diff(np.append(run.start[0], run.phases))
+    if len(run) == 0 or gaps.min() < 1e-3 or np.abs(run.rows[run.codes < 2, 3]).min(initial=1.0) < 1e-3:
+        return  # events that rounding may reorder
+    if np.any((run.codes > 1) & (np.abs(np.abs(run.rows[:, 2]) - 1.0) < 1e-6)):
+        return
+    n = min(len(run), len(other))
+    assert abs(len(run) - len(other)) <= 1
+    assert run.letters[:n].translate(str.maketrans("LR", "RL")) == other.letters[:n]
+    assert np.abs(run.rows[:n, 2] + other.rows[:n, 2]).max() < 1e-6
+
+
+def test_energy_over_ten_thousand_impacts():
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    for amplitude in (0.5, 0.9, np.sqrt(5.0)):
+        run = simulate(machine, {"w_rate": 1.0}, events=25000, amplitude=amplitude)
+        assert run.impacts > 10000
+        assert run.balance().error < 1e-12
+
+
+def test_a_run_goes_on_where_it_ended():
+    machine = Absorber(restitution=0.7, friction=0.3, gravity=0.3)
+    whole = simulate(machine, {"w_rate": 1.0}, events=40, amplitude=1.1)
+    first = simulate(machine, {"w_rate": 1.0}, events=15, amplitude=1.1)
+    rest = simulate(machine, first.end, events=25, amplitude=1.1)
+    assert first.letters + rest.letters == whole.letters
+    assert np.array_equal(np.concatenate([first.rows, rest.rows]), whole.rows)
