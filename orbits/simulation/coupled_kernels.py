@@ -206,7 +206,7 @@ def advance(state, params, until, codes, modes, rows):
             renew = -1.0
             M = 0.0
             while tau < left:
-                if tau > renew:
+                if tau >= renew:
                     u2, u3 = H2 + Z2, H3 + Z3
                     u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
                     u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
@@ -214,7 +214,7 @@ def advance(state, params, until, codes, modes, rows):
                     renew = tau + _HORIZON
                 value = whole * (H2 + Z2)
                 slope = whole * (H3 + Z3)
-                step = renew - tau + 1e-12
+                step = renew - tau
                 for m in (1.0, -1.0):
                     if m * w >= 1.0:
                         continue
@@ -235,9 +235,7 @@ def advance(state, params, until, codes, modes, rows):
                 leap = False
                 if slip != 0.0:
                     break
-                tau += step
-                if tau > left:
-                    tau = left
+                tau = min(tau + step if step < renew - tau else renew, left)
                 way, speed, H2, Z2, H3, Z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
             if tau > 0.0:
                 if status == _REST:
@@ -316,7 +314,7 @@ def advance(state, params, until, codes, modes, rows):
         if target <= 0.0:
             kind = 1
         while kind == 0:
-            if tau > renew:
+            if tau >= renew:
                 u3 = H3 + Z3
                 u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
                 M = math.sqrt(u3 * u3 + u4 * u4 / kappa) + square * omega * force * _HORIZON / math.sqrt(kappa)
@@ -341,12 +339,8 @@ def advance(state, params, until, codes, modes, rows):
                     break
                 if step > 2.0 * target / y + 0.5:  # far beyond the wall: no need to know that much
                     step = 2.0 * target / y + 0.5
-            if tau + step > renew:
-                step = renew - tau + 1e-12
             before = tau
-            tau += step
-            if tau >= left:
-                tau = left
+            tau = min(tau + step if step < renew - tau else renew, left)
             way, speed, H2, Z2, H3, Z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
             gain = s * (way - (q2_rate + 0.5 * sp * tau) * tau)
             y = Y0 + s * speed - pull * tau
