@@ -1,0 +1,136 @@
+"""What the scripts of this folder share: the paper's machines, its scales, and one way to draw and to report.
+
+Source of all figures: B. Youssef, A. Y. Karoui, R. I. Leine, "The effect of friction on the dynamics of targeted energy
+transfer by symmetric vibro-impact dampers". The oscillator's damping is not printed there. The scripts take
+``lambda = c/(m omega_0) = 0.9`` (damping ratio 0.27 %): with it the simulated claims of the paper come true at its own
+parameters (G = 3.3: symmetric impacts at Omega = 0.977, asymmetric at 0.983; G = 2.47, sigma = -2.58: sliding from rest,
+impacting from q1 = q2 = b; sigma = -9.04: stick-slip). Its half-width b = 0.02 m is printed, the natural frequency
+f_0 = 7.666 Hz follows from "sigma = -9.04 (f = 7.25 Hz)".
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib.style
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import orbits
+
+MASS_RATIO = 0.006
+DAMPING = 0.9
+HALF_WIDTH = 0.02  # m
+NATURAL_FREQUENCY = 7.666  # Hz
+STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": MASS_RATIO}
+WEAK = {"restitution": 0.76, "friction": 0.1, "gravity": 0.422, "mass_ratio": MASS_RATIO}
+MIDDLE = {"restitution": 0.76, "friction": 0.3, "gravity": 0.355, "mass_ratio": MASS_RATIO}
+WIDE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.105, "mass_ratio": MASS_RATIO}
+
+BLUE, RED, GREEN, PURPLE, GREY, PALE = "#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#5e5e5e", "#9db8d2"
+DASHED, DOTTED = (0, (5, 2.2)), (0, (1, 1.8))
+STYLE = Path(orbits.__file__).parent / "plots" / "house.mplstyle"
+
+
+def figure(*shape: float) -> Figure:
+    """A figure without a window, `shape` in inches."""
+    made = Figure(figsize=shape or (7.2, 4.6))
+    FigureCanvasAgg(made)
+    return made
+
+
+def coupled(forcing: float, *, detuning: float | None = None, frequency: float | None = None, **changes: Any):
+    """The coupled machine, strong friction unless changed."""
+    from orbits import Coupled
+
+    fields = {**STRONG, "damping": DAMPING, **changes}
+    if frequency is None:
+        frequency = 1.0 + fields["mass_ratio"] * (detuning or 0.0)
+    return Coupled(forcing=forcing, frequency=frequency, **fields)
+
+
+def on_manifold(machine: Any, amplitude: float) -> dict[str, float]:
+    """A start on the impacting manifold at amplitude C, at an impact on the left wall."""
+    from orbits import multiple_scales as ms
+
+    loss, level = ms.impact_loss(machine.restitution), ms.friction_level(machine.friction, machine.gravity)
+    b = float(ms.velocity_at(amplitude, loss, level))
+    sine, cosine = 1.0 - 0.5 * np.pi * b, float(loss * b + level)
+    return {"w": 1.0, "w_rate": cosine - (b + float(level)), "v": sine, "v_rate": cosine}
+
+
+def slow_variables(run: Any) -> dict[str, np.ndarray]:
+    """Slow variables at the impacts of a simulated motion, each shape (impacts,).
+
+    ``time`` eps tau, ``before`` and ``after`` the absorber's absolute speed (times 1 + eps), ``B`` their mean, ``C2`` from v and v',
+    ``gamma`` the phase of v relative to the forcing.
+    """
+    omega, eps = run.model.frequency, run.model.mass_ratio
+    rows = run.rows[run.codes < 2]
+    side = np.where(rows[:, 2] > 0, 1.0, -1.0)
+    before, after = side * (rows[:, 3] - rows[:, 6]), side * (rows[:, 6] - rows[:, 4])
+    amplitude = rows[:, 5] + 1j * rows[:, 6] / omega
+    phase = np.arctan2(rows[:, 5], rows[:, 6] / omega) - rows[:, 0]
+    first = run.start[0] + 2 * np.pi * run.start[4]
+    return {
+        "time": eps * (rows[:, 0] + 2 * np.pi * rows[:, 1] - first) / omega,
+        "B": 0.5 * (before + after), "before": before, "after": after,
+        "C2": np.abs(amplitude) ** 2, "gamma": np.angle(np.exp(1j * phase)),
+    }  # fmt: skip
+
+
+def peak(attractor: Any) -> float:
+    """Largest |q1| of a motion that recurs (or over 64 periods of one that does not)."""
+    from orbits.simulation import simulate
+
+    return simulate(attractor.model, attractor.state, periods=max(1, attractor.periods or 64)).peak_cavity()
+
+
+def portrait(panels: Any, machine: Any, state: Any, periods: int, *, color: str = BLUE) -> None:
+    """Displacement of the absorber over time and its phase portrait, on two axes."""
+    from orbits.simulation import simulate
+
+    seen = simulate(machine, state, periods=periods).sample(per_period=600)
+    turns = (seen.phase - seen.phase[0]) / (2 * np.pi)
+    history, plane = panels
+    history.plot(turns, seen.w, color=color, label="absorber in its cavity $w$")
+    history.plot(turns, seen.cavity, color=GREY, lw=1.0, ls=DASHED, label="oscillator $q_1/b$")
+    history.set(ylabel="$w$, $q_1/b$", xlabel="forcing periods")
+    for wall in (-1, 1):
+        history.axhline(wall, color="k", lw=0.7)
+        plane.axvline(wall, color="k", lw=0.7)
+    plane.plot(seen.w, seen.w_rate, color=color)
+    plane.set(xlabel="$w$", ylabel="$w'$")
+
+
+def run(
+    name: str, main: Callable[[], tuple[Figure, dict[str, Any]]], folder: Path | None = None
+) -> dict[str, Any]:
+    """Draw, save `name`.png, print the numbers; returns them.
+
+    Parameters
+    ----------
+    name : str
+        Name of the picture and title of the report.
+    main : callable
+        () -> figure and numbers.
+    folder : Path, optional
+        Where the picture goes; from the command line if not given, else the folder ``pictures``.
+    """
+    if folder is None:
+        parser = argparse.ArgumentParser(description=f"Draws {name}.png and prints what it shows.")
+        parser.add_argument("folder", nargs="?", type=Path, default=Path("pictures"), help="output folder")
+        folder = parser.parse_args().folder
+    folder.mkdir(parents=True, exist_ok=True)
+    with matplotlib.style.context(["default", str(STYLE)]):
+        picture, numbers = main()
+        picture.savefig(folder / f"{name}.png", dpi=130)
+    print(f"{name}: {folder / f'{name}.png'}")
+    for what, value in numbers.items():
+        shown = f"{value:.6g}" if isinstance(value, float) else value
+        print(f"  {what}: {shown}")
+    return numbers

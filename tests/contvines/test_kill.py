@@ -1,0 +1,89 @@
+"""Kill -9 in the middle of a diagram, then the same command again: the same graph as an undisturbed run."""
+
+import random
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from contvines.graph.persistence import same_graph
+from contvines.store import Store, StoreError, load
+
+HERE = Path(__file__).parent
+STUDY = HERE.parents[1] / "examples" / "friction.toml"
+COMMAND = [sys.executable, "-m", "contvines.command", "diagram", str(STUDY), "--quiet", "-o"]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    path = tmp_path_factory.mktemp("undisturbed") / "u.vines"
+    subprocess.run([*COMMAND, str(path)], check=True)
+    return load(path, problems=False)
+
+
+@pytest.mark.parametrize("where", ["before", "inside", "after"])
+def test_killed_at_chosen_writes(tmp_path, undisturbed, where):
+    path = tmp_path / "k.vines"
+    chance = random.Random(where)
+    kept = 0
+    for attempt in range(6):
+        writes = chance.randint(1, 3 + 6 * attempt)
+        words = [str(writes), where, "diagram", str(STUDY), "--quiet", "-o", str(path)]
+        done = subprocess.run([sys.executable, str(HERE / "killer.py"), *words])
+        if done.returncode == 0:
+            break
+        assert done.returncode == -signal.SIGKILL
+        with Store.open(path) as store:  # whole, and nothing lost that had been written
+            assert not store.finished
+            now = len(store)
+        # a write may be a checkpoint, which is no journal record; the one in flight is lost unless it was "after"
+        assert kept <= now
+        kept = now
+    subprocess.run([*COMMAND, str(path)], check=True)
+    assert same_graph(load(path, problems=False), undisturbed)
+
+
+def test_killed_at_random_moments(tmp_path, undisturbed):
+    path = tmp_path / "r.vines"
+    chance = random.Random(7)
+    for _ in range(5):
+        process = subprocess.Popen([*COMMAND, str(path)])
+        try:
+            process.wait(timeout=chance.uniform(0.3, 2.0))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if path.exists():
+            try:
+                load(path, problems=False)
+            except StoreError as error:  # pragma: no cover
+                pytest.fail(f"a killed run left an unreadable file: {error}")
+    subprocess.run([*COMMAND, str(path)], check=True)
+    assert same_graph(load(path, problems=False), undisturbed)
+
+
+def test_interrupted_by_ctrl_c_says_how_to_go_on(tmp_path, undisturbed):
+    path = tmp_path / "c.vines"
+    code = (
+        "import sys, _thread\nfrom contvines.store import Store\nfrom contvines.command.cli import main\n"
+        "record = Store.record\n"
+        "def once(self, *a):\n    record(self, *a)\n    raise KeyboardInterrupt\n"
+        "Store.record = once\nmain(sys.argv[1:])"
+    )
+    words = ["diagram", str(STUDY), "-o", str(path)]
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True)
+    assert done.returncode == 130
+    assert f"all finished points are kept in {path}; the same command goes on from there" in done.stderr
+    assert "Traceback" not in done.stderr
+    again = subprocess.run([*COMMAND[:-2], "-o", str(path)], capture_output=True, text=True)
+    assert again.returncode == 0
+    assert "is unfinished: going on after" in again.stderr
+    assert same_graph(load(path, problems=False), undisturbed)
+    before = path.read_bytes()
+    third = subprocess.run([*COMMAND[:-2], "-o", str(path)], capture_output=True, text=True)
+    assert third.returncode == 0
+    assert "holds the finished result of this study; nothing to compute" in third.stderr
+    assert third.stdout == again.stdout
+    assert path.read_bytes() == before
