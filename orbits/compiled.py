@@ -14,9 +14,10 @@ from types import FunctionType, SimpleNamespace
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from orbits import cyclic, periodic_qr, periodic_schur
+from orbits import kernel as compiling
+from orbits.kernel import kernel, stored_kernel
 from orbits.models.base import Model
 
 # filled in per model by `specialise`
@@ -35,7 +36,9 @@ def _inspect(data, u, p, work, row):
     multipliers(A, D, data[4], re, im, scratch)
     n = re.size
     count = n
-    if data[6] != 0:  # an impact-free motion may be moved as a whole: drop that multiplier, nearest to the twist
+    if (
+        data[6] != 0
+    ):  # an impact-free motion may be moved as a whole: drop that multiplier, nearest to the twist
         count = n - 1
         trivial = 0
         for j in range(1, n):
@@ -57,7 +60,7 @@ def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
     """
     size = u.size
     residual = linearise(data, u, p, work)
-    trial = u.copy()
+    trial = work[15]
     for iteration in range(limit):
         sign = bordered(data, work, border, 0.0, step, tangent)
         if sign == 0.0 or not np.isfinite(step[0]):
@@ -74,10 +77,11 @@ def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
             if best < residual or length < 1e-7:
                 break
             share *= 0.5
-        u[:] = trial
+        for j in range(size):
+            u[j] = trial[j]
         p += share * step[size]
         residual = best
-        if length * share < tolerance:
+        if length * share < tolerance or (residual < 1e-14 and length < 1e-9):
             return residual, iteration + 1, p
     return np.inf, limit, p
 
@@ -95,12 +99,19 @@ def specialise(function: Callable, name: str, **known: Any) -> Any:
     copy = FunctionType(function.__code__, {**function.__globals__, **known}, qualified)
     copy.__qualname__ = qualified
     copy.__module__ = function.__module__
-    return njit(cache=True, error_model="numpy")(copy)
+    return stored_kernel(copy)
 
 
 @cache
 def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
-    files = [kernels.__file__, cyclic.__file__, periodic_schur.__file__, periodic_qr.__file__, __file__]
+    files = [
+        kernels.__file__,
+        compiling.__file__,
+        cyclic.__file__,
+        periodic_schur.__file__,
+        periodic_qr.__file__,
+        __file__,
+    ]
     digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
     stamp = f"{name}_{digest}"
     eliminate = cyclic.cyclic_kernels(node).bordered
@@ -113,7 +124,7 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
             "margins": kernels.margins,
         },
     )
-    look = njit(error_model="numpy")(look)
+    look = kernel(look)
     known = {"linearise": kernels.linearise, "bordered": eliminate, "inspect": look}
     return SimpleNamespace(
         linearise=kernels.linearise,

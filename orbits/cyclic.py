@@ -16,6 +16,7 @@ from types import SimpleNamespace
 import numpy as np
 from numba import njit
 
+from orbits.kernel import OPTIONS, kernel
 from orbits.periodic_schur import scratch_size
 
 TINY = 1e-300
@@ -27,9 +28,11 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
     Returns
     -------
     tuple
-        ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im)`` with shapes ``(L, n)``,
+        ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im,
+        order, trial)`` with shapes ``(L, n)``,
         ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
-        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.periodic_schur`, and ``(n,)`` twice.
+        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
+        ``(L n,)``.
     """
     n = node
     return (
@@ -47,6 +50,8 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         np.zeros(scratch_size(length, n)),
         np.zeros(n),
         np.zeros(n),
+        np.zeros(n + 1, np.int64),
+        np.zeros(length * n),
     )
 
 
@@ -63,7 +68,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
     width = 3 * n + 2  # columns x_i | x_0 | x_{i+1} | p | right-hand side
     at_first, at_next, at_p, at_rhs = n, 2 * n, 3 * n, 3 * n + 1
 
-    @njit(cache=False, error_model="numpy", fastmath={"contract", "nsz", "arcp"})
+    @njit(forceinline=True, fastmath={"contract", "nsz", "arcp"}, **OPTIONS)
     def triangularise(panel):
         """Householder reflections that clear the first n columns of the 2n rows; returns the sign of the factor."""
         sign = 1.0
@@ -92,11 +97,10 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                 sign = -sign
         return sign
 
-    @njit(cache=False, error_model="numpy")
-    def close(small, solution):
+    @kernel
+    def close(small, solution, order):
         """Solve n equations in x_0 and p by complete pivoting: a particular and a null solution, and a sign."""
         sign = 1.0
-        order = np.empty(n + 1, np.int64)
         for j in range(n + 1):
             order[j] = j
         for j in range(n):
@@ -138,7 +142,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
             solution[1, where] = null / small[j, j]
         return sign
 
-    @njit(cache=False, error_model="numpy")
+    @kernel
     def bordered(data, work, border, target, step, tangent):
         """Solve [[J, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`.
 
@@ -190,7 +194,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                 small[i, c] = panel[i, at_first + c] + (panel[i, c] if c == 0 else twist * panel[i, c])
             small[i, n] = panel[i, at_p]
             small[i, n + 1] = panel[i, at_rhs]
-        sign *= close(small, solution)
+        sign *= close(small, solution, work[14])
         for block in range(length - 1, 0, -1):
             for i in range(n - 1, -1, -1):
                 pivot = stored[block, i, i]

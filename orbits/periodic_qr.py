@@ -12,6 +12,8 @@ import math
 import numpy as np
 from numba import njit
 
+from orbits.kernel import kernel
+
 UNIT_ROUNDOFF = 2.0**-53
 LARGE, SMALL = 2.0**200, 2.0**-200  # a running product is rescaled outside this range
 LARGEST, LEAST = 2.0**1023, 2.0**-1021  # multipliers beyond these are clamped (never to 0 or infinity)
@@ -22,7 +24,7 @@ def scratch_size(length, n):
     return length * (3 * n * n + 2) + 8 * n * n + 8 * n
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def scaled(mantissa, exponent):
     """mantissa * 2**exponent, clamped away from 0 and infinity (an exact 0 stays 0)."""
     if mantissa == 0.0 or not math.isfinite(mantissa):

@@ -10,18 +10,22 @@ relative accuracy however small it is). Otherwise the periodic QR algorithm (`or
 factors. Both cost O(L) time and memory, and neither allocates.
 """
 
+import ctypes
 import math
 
-from numba import njit
+import numpy as np
+from llvmlite.binding import add_symbol
+from numba import types
 
+from orbits.kernel import kernel
 from orbits.periodic_qr import LARGE, SMALL, UNIT_ROUNDOFF, periodic_multipliers, scaled, scratch_size
 
 __all__ = ["multipliers", "periodic_multipliers", "scratch_size"]
 
-CERTIFIED = 1e-11  # relative error of a multiplier up to which the scaled product is trusted
+CERTIFIED = 1e-11, 1e-13  # relative error up to which the scaled product is trusted: in all, and per factor
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _fast_two(A, D, twist, re, im, scratch):
     """Multipliers of 2 x 2 factors from the scaled product; False where the error bound is too large."""
     length = A.shape[0]
@@ -42,11 +46,11 @@ def _fast_two(A, D, twist, re, im, scratch):
         det *= (f * g - e * h) * inverse
         k = 6 * i
         scratch[k], scratch[k + 1], scratch[k + 2], scratch[k + 3] = m00, m01, m10, m11
-        scratch[k + 4] = norm * (abs(m00) + abs(m01) + abs(m10) + abs(m11))
+        scratch[k + 4] = norm * math.sqrt(m00 * m00 + m01 * m01 + m10 * m10 + m11 * m11)
         scratch[k + 5] = power
         p00, p10 = m00 * p00 + m01 * p10, m10 * p00 + m11 * p10
         p01, p11 = m00 * p01 + m01 * p11, m10 * p01 + m11 * p11
-        norm = abs(p00) + abs(p01) + abs(p10) + abs(p11)
+        norm = math.sqrt(p00 * p00 + p01 * p01 + p10 * p10 + p11 * p11)
         if not SMALL < norm < LARGE:
             if norm == 0.0 or not norm < math.inf:
                 return False
@@ -91,7 +95,7 @@ def _fast_two(A, D, twist, re, im, scratch):
         m00, m01, m10, m11 = scratch[k], scratch[k + 1], scratch[k + 2], scratch[k + 3]
         s00, s01 = s00 * m00 + s01 * m10, s00 * m01 + s01 * m11
         s10, s11 = s10 * m00 + s11 * m10, s10 * m01 + s11 * m11
-        norm = abs(s00) + abs(s01) + abs(s10) + abs(s11)
+        norm = math.sqrt(s00 * s00 + s01 * s01 + s10 * s10 + s11 * s11)
         if not SMALL < norm < LARGE:
             if norm == 0.0 or not norm < math.inf:
                 return False
@@ -100,7 +104,7 @@ def _fast_two(A, D, twist, re, im, scratch):
             s00, s01, s10, s11 = s00 * factor, s01 * factor, s10 * factor, s11 * factor
             norm *= factor
             back += shift
-    if not bound * UNIT_ROUNDOFF <= CERTIFIED * modulus:
+    if not bound * UNIT_ROUNDOFF <= (CERTIFIED[0] + CERTIFIED[1] * length) * modulus:
         return False
     if disc >= 0.0:
         first = scaled(root, power)
@@ -115,7 +119,44 @@ def _fast_two(A, D, twist, re, im, scratch):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@ctypes.CFUNCTYPE(
+    ctypes.c_int32, *[ctypes.c_void_p] * 2, *[ctypes.c_int64] * 2, ctypes.c_double, *[ctypes.c_void_p] * 3
+)
+def _late(A, D, length, n, twist, re, im, scratch):
+    """`periodic_multipliers`, called by address from compiled code: most runs never need it, nor wait for it."""
+
+    def array(address, *shape):
+        return np.ctypeslib.as_array((ctypes.c_double * math.prod(shape)).from_address(address)).reshape(
+            shape
+        )
+
+    return periodic_multipliers(
+        array(A, length, n, n),
+        array(D, length, n, n),
+        twist,
+        array(re, n),
+        array(im, n),
+        array(scratch, scratch_size(length, n)),
+    )
+
+
+add_symbol("contvines_periodic_multipliers", ctypes.cast(_late, ctypes.c_void_p).value)
+_periodic = types.ExternalFunction(
+    "contvines_periodic_multipliers",
+    types.int32(
+        types.uintp,
+        types.uintp,
+        types.int64,
+        types.int64,
+        types.float64,
+        types.uintp,
+        types.uintp,
+        types.uintp,
+    ),
+)
+
+
+@kernel
 def multipliers(A, D, twist, re, im, scratch):
     """Multipliers of a cycle: eigenvalues of diag(1, twist, ..) M_{L-1} .. M_0, M_i = -D_i^{-1} A_i.
 
@@ -137,4 +178,8 @@ def multipliers(A, D, twist, re, im, scratch):
     """
     if A.shape[1] == 2 and _fast_two(A, D, twist, re, im, scratch):
         return True
-    return periodic_multipliers(A, D, twist, re, im, scratch)
+    length, n = A.shape[0], A.shape[1]
+    found = _periodic(
+        A.ctypes.data, D.ctypes.data, length, n, twist, re.ctypes.data, im.ctypes.data, scratch.ctypes.data
+    )
+    return found != 0

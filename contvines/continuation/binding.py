@@ -21,6 +21,10 @@ class Bound(NamedTuple):
     march: Callable[..., Any]
 
 
+# Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in and out of
+# every call would cost more than the mathematics of a small problem.
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
+
 _bound: dict[tuple[Any, ...], Bound] = {}
 
 
@@ -53,7 +57,9 @@ def _make(kernels: Any) -> Bound:
     from ..problem import kernels_digest
 
     suffix = "_" + kernels_digest(kernels)
-    compile_ = njit(cache=True, error_model="numpy")
+    compile_ = njit(cache=True, forceinline=True, **OPTIONS)
     correct = compile_(copy_with(source.correct, suffix, **functions))
     predict = compile_(copy_with(source.predict, suffix))
-    return Bound(correct, compile_(copy_with(source.march, suffix, correct=correct, predict=predict, **functions)))
+    return Bound(
+        correct, compile_(copy_with(source.march, suffix, correct=correct, predict=predict, **functions))
+    )

@@ -13,13 +13,14 @@ Parameters in order: amplitude C, restitution r, friction mu, gravity g, mass_ra
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from orbits.kernel import kernel
 
 NODE = 2
 AMPLITUDE, RESTITUTION, FRICTION, GRAVITY, MASS_RATIO, FREQUENCY = range(6)
 
 
-@njit(error_model="numpy")
+@kernel
 def linearise(data, u, p, work):
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
@@ -155,6 +156,28 @@ def linearise(data, u, p, work):
                 Q[i, 0] = q
                 Q[i, 1] = W_p
             else:
+                if event >= 2:
+                    # from rest to rest: V/d, whose solutions leave out the flight of no duration
+                    half = 0.5 * (psi1 - psi0)
+                    middle = 0.5 * (psi1 + psi0)
+                    sine, cosine = np.sin(middle), np.cos(middle)
+                    if abs(half) > 1e-3:
+                        ratio = np.sin(half) / half
+                        slope = (np.cos(half) - ratio) / half
+                    else:
+                        ratio = 1.0 - half * half / 6.0
+                        slope = half * (half * half / 30.0 - 1.0 / 3.0)
+                    peak = speed * omega
+                    V = -peak * sine * ratio - sa
+                    V_psi0 = -0.5 * peak * (cosine * ratio - sine * slope)
+                    V_psi1 = -0.5 * peak * (cosine * ratio + sine * slope)
+                    V_y0 = 0.0
+                    if ip == AMPLITUDE:
+                        V_p = -omega * omega * sine * ratio
+                    elif ip == FREQUENCY:
+                        V_p = -2.0 * speed * sine * ratio
+                    else:
+                        V_p = -mode * da
                 F[i, 0] = V
                 F[i, 1] = W - y1
                 A[i, 0, 0] = V_psi0
@@ -177,7 +200,7 @@ def linearise(data, u, p, work):
     return largest
 
 
-@njit(error_model="numpy")
+@kernel
 def _pin(F, A, D, Q, u, twist, pin):
     """Replace the last displacement equation by w_{L-1} + w_L = 0; what was there goes to `pin`."""
     last = F.shape[0] - 1
@@ -193,7 +216,7 @@ def _pin(F, A, D, Q, u, twist, pin):
     Q[last, 1] = 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
     if data[6] == 1:
@@ -204,7 +227,7 @@ def unpin(data, work):
             D[last, 1, c] = pin[2 + c]
 
 
-@njit(error_model="numpy")
+@kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility, all positive for an orbit that a machine can follow .
 

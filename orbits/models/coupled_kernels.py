@@ -28,15 +28,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from orbits.kernel import kernel
 from orbits.models.coupled_flow import derivative, first_zero, harmonic, oscillation, rates, transition, wave
 
 NODE = 4
 FORCING, FREQUENCY, DAMPING, MASS_RATIO, RESTITUTION, FRICTION, GRAVITY, EXCITATION = range(8)
 
 
-@njit(error_model="numpy")
+@kernel
 def _response(par, ip, mass):
     """X, Y, alpha, beta of the oscillator with the given mass, and their derivatives with respect to parameter `ip`."""
     G, omega, lam, eps, chi = par[0], par[1], par[2], par[3], par[7]
@@ -74,7 +74,7 @@ def _response(par, ip, mass):
     return X, Y, alpha, beta, dX, dY, d_alpha, d_beta
 
 
-@njit(error_model="numpy")
+@kernel
 def linearise(data, u, p, work):
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
@@ -311,7 +311,7 @@ def linearise(data, u, p, work):
     return largest
 
 
-@njit(error_model="numpy")
+@kernel
 def _pin(F, A, D, Q, u, pin):
     """Replace the last displacement equation by w_{L-1} + w_L = 0; what was there goes to `pin`."""
     last = F.shape[0] - 1
@@ -327,7 +327,7 @@ def _pin(F, A, D, Q, u, pin):
     Q[last, 1] = 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
     if data[6] and data[4] > 0.0:
@@ -338,7 +338,7 @@ def unpin(data, work):
             D[last, 1, c] = pin[4 + c]
 
 
-@njit(error_model="numpy")
+@kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility, all positive for an orbit that a machine can follow.
 
