@@ -36,10 +36,10 @@ def _remainders(x):
     """sin x, 1 - cos x, x - sin x and x^2/2 - 1 + cos x, each to full relative accuracy for small x."""
     z = x * x
     if z < 0.25:
-        third = x * z * (1 / 6 - z * (1 / 120 - z * (1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z / 6227020800)))))
-        fourth = z * z * (
-            1 / 24 - z * (1 / 720 - z * (1 / 40320 - z * (1 / 3628800 - z * (1 / 479001600 - z / 87178291200))))
-        )
+        third = 1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z / 6227020800))
+        third = x * z * (1 / 6 - z * (1 / 120 - z * third))
+        fourth = 1 / 40320 - z * (1 / 3628800 - z * (1 / 479001600 - z / 87178291200))
+        fourth = z * z * (1 / 24 - z * (1 / 720 - z * fourth))
         return x - third, 0.5 * z - fourth, third, fourth
     sine = math.sin(x)
     versine = 1.0 - math.cos(x)
@@ -124,7 +124,9 @@ def advance(state, params, until, codes, modes, rows):
     s = state[3]
     turns = state[4]
     low = state[5]
-    if not (math.isfinite(psi) and math.isfinite(w) and math.isfinite(p) and math.isfinite(C) and math.isfinite(A)):
+    if not (
+        math.isfinite(psi) and math.isfinite(w) and math.isfinite(p) and math.isfinite(C) and math.isfinite(A)
+    ):
         return 0, _FAILED
     room = codes.shape[0]
     driven = C - A > 1e-12 * C
@@ -194,7 +196,7 @@ def advance(state, params, until, codes, modes, rows):
             rest = p * (1.0 / (push + A) + 1.0 / math.sqrt((push - A) * (push + A)))
             if factor < 1.0:
                 rest /= 1.0 - factor
-            if rest * rest * C < 1e-16 * (push - A) and factor < 1.0 or p < 1e-13 * C:
+            if (rest * rest * C < 1e-16 * (push - A) and factor < 1.0) or p < 1e-13 * C:
                 if p < 1e-13 * C:
                     rest = min(rest, 1e-13)
                 psi, more = _wrap(psi + rest)
@@ -278,7 +280,7 @@ def advance(state, params, until, codes, modes, rows):
             if kind == 2:
                 if before < x:
                     x = _fall(before, x, p, q0, C, A, k0, m0)
-                    sine, versine, third, fourth = _remainders(x)
+                    _sine, versine, third, fourth = _remainders(x)
                     y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                 else:
                     y = 0.0
@@ -390,7 +392,10 @@ def works(states, params, ahead, out):
         _sine, _versine, third, fourth = _remainders(x)
         way = p * x + 0.5 * (C * m0 - A) * x * x + C * (k0 * third - m0 * fourth)
         out[i, 0] = (
-            C * omega * omega * ((p + C * k0) * (k0 - k1) - 0.5 * C * (m1 * m1 - m0 * m0) - A * (m1 - m0 - x * k1))
+            C
+            * omega
+            * omega
+            * ((p + C * k0) * (k0 - k1) - 0.5 * C * (m1 * m1 - m0 * m0) - A * (m1 - m0 - x * k1))
         )
         out[i, 2] = A * omega * omega * abs(way)
 

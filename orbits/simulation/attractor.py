@@ -25,8 +25,9 @@ class Attractor:
     params : ndarray, shape (P,)
         Parameter vector.
     kind : str
-        ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts pile up into
-        persistent contact, periodically or not) or ``chaotic`` (nothing recurs within the periods looked at).
+        ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts
+        pile up into persistent contact, periodically or not) or ``chaotic`` (nothing recurs within the
+        periods looked at).
     periods : int
         Forcing periods k until the motion recurs; 0 if it does not.
     codes, modes : ndarray of int8, shape (n,)
@@ -62,7 +63,9 @@ class Attractor:
     impact_speed: float
 
     def __repr__(self) -> str:
-        return f"Attractor({self.kind}, word={self.letters!r}, periods={self.periods}, impacts={self.impacts})"
+        return (
+            f"Attractor({self.kind}, word={self.letters!r}, periods={self.periods}, impacts={self.impacts})"
+        )
 
     @property
     def letters(self) -> str:
@@ -81,7 +84,10 @@ class Attractor:
 
     @property
     def word(self) -> Any:
-        """The cycle as an `orbits.words.Word`; None where the motion has none (chaos, persistent contact, frictionless motion off the walls)."""
+        """The cycle as an `orbits.words.Word`.
+
+        None where the motion has none: chaos, persistent contact, frictionless motion off the walls.
+        """
         from orbits.words import Word
 
         if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
@@ -111,7 +117,9 @@ class Attractor:
 
         word = self.word
         if word is None:
-            raise ValueError(f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits")
+            raise ValueError(
+                f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits"
+            )
         return Orbit(self.model, word, self.periods, centred(self.codes, self.nodes), self.params)
 
     def distance(self, other: Attractor) -> float:
@@ -131,7 +139,9 @@ class Attractor:
         best = np.inf
         for codes, modes, nodes in images:
             for k in range(len(codes)):
-                if np.array_equal(np.roll(codes, -k), other.codes) and np.array_equal(np.roll(modes, -k), other.modes):
+                if np.array_equal(np.roll(codes, -k), other.codes) and np.array_equal(
+                    np.roll(modes, -k), other.modes
+                ):
                     best = min(best, cyclic_distance(np.roll(nodes, -k, axis=0), target))
         return best
 

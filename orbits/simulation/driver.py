@@ -15,6 +15,7 @@ from orbits.simulation.trajectory import Trajectory
 
 CHUNK = 16384
 MOST_EVENTS = 1_000_000
+FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
 _KEYS = {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}
 _BODIES = ("q1", "q2", "q1_rate", "q2_rate")
 
@@ -81,11 +82,12 @@ def simulate(
     params = model.vector(parameters)
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
-    until = math.inf if periods is None else state[TURNS] + state[PSI] / (2.0 * math.pi) + periods
-    if periods is None:
-        until = state[TURNS] + 1e9
+    length = FOREVER if periods is None else periods
+    until = state[TURNS] + state[PSI] / (2.0 * math.pi) + length
     begin = state.copy()
-    codes, modes, rows, status = collect(engine, state, params, until, MOST_EVENTS if events is None else events)
+    codes, modes, rows, status = collect(
+        engine, state, params, until, MOST_EVENTS if events is None else events
+    )
     if status == FAILED:
         raise SimulationError(
             f"the motion of {model.name!r} left the range of numbers: give parameters and a start of moderate size"
@@ -100,7 +102,9 @@ def first_state(
     state = np.zeros(engine.state)
     if isinstance(start, np.ndarray):
         if start.shape != state.shape:
-            raise SimulationError(f"the start has shape {start.shape}: a state of {model.name!r} has {state.shape}")
+            raise SimulationError(
+                f"the start has shape {start.shape}: a state of {model.name!r} has {state.shape}"
+            )
         state[:] = start
         _check(state)
         return state
@@ -134,7 +138,7 @@ def _check(state: np.ndarray) -> None:
 def collect(
     engine: Machine, state: np.ndarray, params: np.ndarray, until: float, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Run on from `state` (changed in place) and return codes, modes and rows of at most `most` events, and the status."""
+    """Run on from `state` (changed in place) for at most `most` events; returns codes, modes, rows and the status."""
     parts = []
     status = EVENTS_FULL
     left = most

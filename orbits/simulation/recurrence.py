@@ -84,7 +84,9 @@ def settle(
     for attempt in range(patience + 1):
         status = skip(engine, state, params, state[TURNS] + length, int(EVENTS_PER_PERIOD * (length + 1)))
         if status == FAILED:
-            raise SimulationError(f"the motion of {model.name!r} is not finite: give parameters of moderate size")
+            raise SimulationError(
+                f"the motion of {model.name!r} is not finite: give parameters of moderate size"
+            )
         if status != REST:
             window.record(state, max_period)
         if status == REST or window.at_rest:
@@ -130,14 +132,17 @@ def _recognise(
 ) -> tuple[int, int] | None:
     """Events and periods of the shortest recurrence at the window's end.
 
-    At the last attempt a slowly converging motion may still be recognised: looser, but then the orbit must exist and be stable.
+    At the last attempt a slowly converging motion may still be recognised: looser, but then the orbit must
+    exist and be stable.
     """
     for slack in (tolerance, 1e-3) if last else (tolerance,):
         for length, periods in _returns(window, max_period, slack):
             if slack <= tolerance:
                 return length, periods
             codes, modes = window.codes[-length:], window.modes[-length:]
-            nodes, residual, multipliers = _polish(engine, params, codes, modes, window.nodes[-length:], periods)
+            nodes, residual, multipliers = _polish(
+                engine, params, codes, modes, window.nodes[-length:], periods
+            )
             gap = cyclic_distance(nodes, window.nodes[-length:])
             if residual < 1e-9 and gap < 10.0 * slack and np.all(np.abs(multipliers) < 1.0 + 1e-6):
                 return length, periods
@@ -201,12 +206,20 @@ def _polish(
         node = node + step
     if matrix is None:
         matrix = monodromy(engine, params, codes, modes, best[0])
-    multipliers = np.full(len(node), np.nan + 0j) if matrix is None else np.linalg.eigvals(matrix).astype(complex)
+    multipliers = (
+        np.full(len(node), np.nan + 0j) if matrix is None else np.linalg.eigvals(matrix).astype(complex)
+    )
     return best, error, multipliers
 
 
 def _cycle(
-    model: Any, engine: Machine, params: np.ndarray, state: np.ndarray, window: _Window, length: int, periods: int
+    model: Any,
+    engine: Machine,
+    params: np.ndarray,
+    state: np.ndarray,
+    window: _Window,
+    length: int,
+    periods: int,
 ) -> Attractor:
     """The polished attractor of a recurrence, in canonical order."""
     codes, modes = window.codes[-length:], window.modes[-length:]
@@ -270,7 +283,9 @@ def _symmetric(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, toleranc
     if n == 0 or n % 2:
         return False
     half = n // 2
-    if not (np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))):
+    if not (
+        np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))
+    ):
         return False
     nodes = centred(codes, nodes)
     image = -nodes
@@ -297,7 +312,13 @@ def _attractor(
     modes = np.empty(0, np.int8) if modes is None else modes
     nodes = np.empty((0, width)) if nodes is None else nodes
     hits = np.abs(window.rows[window.codes < 2, 3])
-    rate = np.count_nonzero(codes < 2) / periods if periods else hits.size / window.length if window.length else 0.0
+    rate = (
+        np.count_nonzero(codes < 2) / periods
+        if periods
+        else hits.size / window.length
+        if window.length
+        else 0.0
+    )
     return Attractor(
         model=model,
         params=params,

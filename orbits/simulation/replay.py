@@ -21,12 +21,12 @@ class Replay:
     Attributes
     ----------
     error : float
-        Largest difference between claimed and simulated nodes over one period, the return included; inf if the events
-        differ.
+        Largest difference between claimed and simulated nodes over one period, the return included; inf if
+        the events differ.
     message : str
         "" or a sentence that says where the simulation departs from the claim.
     multipliers : ndarray of complex
-        Eigenvalues of the simulated return map's central differences (empty if they were not asked for or not to be had).
+        Eigenvalues of the simulated return map's central differences (empty if not asked for or not to be had).
     tracked : int
         Cycles for which the simulation, started on the orbit, stayed within `loss` of it (0 if not asked for).
     expected : float
@@ -34,8 +34,8 @@ class Replay:
     returned : bool or None
         Whether a start moved off a stable orbit comes back to it (None for others, or if not asked for).
     motion : float
-        Where the events differ: largest difference of the positions w at the claimed nodes' phases over one period. On a
-        border events appear or vanish by rounding alone; then the events differ and the motion still agrees.
+        Where the events differ: largest difference of the positions w at the claimed nodes' phases over one
+        period. On a border events appear or vanish by rounding alone: the motion still agrees.
     """
 
     error: float
@@ -75,7 +75,9 @@ def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int 
     word = getattr(orbit, "word", None)
     codes = word.codes if word is not None else orbit.codes
     modes = word.mode_codes if word is not None else orbit.modes
-    return replay_nodes(orbit.model, orbit.params, codes, modes, orbit.nodes, orbit.periods, thorough, loss, most)
+    return replay_nodes(
+        orbit.model, orbit.params, codes, modes, orbit.nodes, orbit.periods, thorough, loss, most
+    )
 
 
 def replay_nodes(
@@ -113,7 +115,9 @@ def replay_nodes(
         nodes[-start:, 0] += TWO_PI * periods
     matrix = monodromy(engine, params, codes, modes, nodes[0])
     if matrix is None:
-        return Replay(error, "the return map is not smooth here: a displaced start takes other events", nothing)
+        return Replay(
+            error, "the return map is not smooth here: a displaced start takes other events", nothing
+        )
     multipliers = np.linalg.eigvals(matrix).astype(complex)
     free = 0 if np.any(codes < 2) else 1  # a motion without impacts may be moved as a whole
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
@@ -129,21 +133,33 @@ def replay_nodes(
 def _stuck(model: Any, params: np.ndarray) -> Replay:
     """The empty word: the absorber must not slip."""
     if model.name != "absorber":
-        return Replay(np.inf, "a motion without events has no node to start from: simulate it from its state", np.empty(0))
+        return Replay(
+            np.inf,
+            "a motion without events has no node to start from: simulate it from its state",
+            np.empty(0),
+        )
     held = params[0] * params[5] ** 2 <= model.friction_acceleration(params)
     sentence = "" if held else "friction does not hold the absorber: C Omega^2 exceeds (1 + eps) mu g"
     return Replay(0.0 if held else np.inf, sentence, np.empty(0, complex))
 
 
 def _motion(
-    model: Any, engine: Any, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int
+    model: Any,
+    engine: Any,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    periods: int,
 ) -> float:
     begin = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
     if abs(begin[1]) > 1.0:
         return np.inf
     state = begin.copy()
     until = begin[4] + begin[0] / TWO_PI + periods
-    run = Trajectory(model, params, engine, begin, state, *collect(engine, state, params, until, 100 * len(codes) + 1000))
+    run = Trajectory(
+        model, params, engine, begin, state, *collect(engine, state, params, until, 100 * len(codes) + 1000)
+    )
     if run.status == EVENTS_FULL:
         return np.inf
     places = np.where(codes == 0, 1.0, np.where(codes == 1, -1.0, nodes[:, 1]))

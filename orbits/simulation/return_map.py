@@ -1,7 +1,7 @@
 """Once round a periodic orbit by simulation: the return map from one of its events to itself.
 
-Nothing here knows the equations that continuation solves, so it can serve as a witness for them. Derivatives are central
-differences of the simulated map.
+Nothing here knows the equations that continuation solves, so it can serve as a witness for them. Derivatives
+are central differences of the simulated map.
 """
 
 from __future__ import annotations
@@ -10,7 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.simulation.contract import FAILED, HOLD, MODE, PSI, RATE, TIME_REACHED, TURNS, V, V_RATE, Machine, W
+from orbits.simulation.contract import (
+    FAILED,
+    HOLD,
+    MODE,
+    PSI,
+    RATE,
+    TIME_REACHED,
+    TURNS,
+    V_RATE,
+    Machine,
+    V,
+    W,
+)
 from orbits.simulation.driver import buffers
 from orbits.simulation.trajectory import LETTERS, TWO_PI, event_states
 
@@ -44,7 +56,9 @@ def state_of(engine: Machine, params: np.ndarray, code: int, mode: int, node: np
     return state
 
 
-def nodes_of(engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def nodes_of(
+    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
+) -> np.ndarray:
     """Nodes, shape (n, NODE), of events; phases are counted through (2 pi per turn)."""
     states = event_states(engine, modes, rows)
     nodes = np.empty((len(rows), 4 if engine.state > V else 2))
@@ -62,7 +76,12 @@ def _cavity_speed(engine: Machine, params: np.ndarray, states: np.ndarray) -> np
 
 
 def go_round(
-    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, node: np.ndarray, times: int = 1
+    engine: Machine,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    node: np.ndarray,
+    times: int = 1,
 ) -> Round:
     """Start exactly at the first event of a cycle and simulate it `times` times.
 
@@ -97,7 +116,9 @@ def go_round(
         if seen[i] != told[i] or (after[i] != told_modes[i] and seen[i] != HOLD):
             return Round(nodes[: i + 1], _difference(i, told[i], told_modes[i], seen[i], after[i]))
     if count < times * n:
-        why = {FAILED: "the motion is not finite", TIME_REACHED: "no event came"}.get(status, "the motion came to rest")
+        why = {FAILED: "the motion is not finite", TIME_REACHED: "no event came"}.get(
+            status, "the motion came to rest"
+        )
         return Round(nodes, f"after {count} events {why}, where {LETTERS[told[count]]} was listed")
     return Round(nodes, "")
 
@@ -109,7 +130,12 @@ def _difference(place: int, told: int, told_mode: int, seen: int, mode: int) -> 
 
 
 def monodromy(
-    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, node: np.ndarray, step: float = 1e-6
+    engine: Machine,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    node: np.ndarray,
+    step: float = 1e-6,
 ) -> np.ndarray | None:
     """Derivative of the return map at the first node, shape (NODE, NODE), by central differences.
 

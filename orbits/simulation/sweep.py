@@ -1,4 +1,4 @@
-"""Sweeps: the attractor at each value of a parameter, the state carried on from value to value; and many starts at once."""
+"""Sweeps: the attractor at each value of a parameter, the state carried on; and many starts at once."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class SweepRow:
 def measure_names(model: Any) -> tuple[str, ...]:
     """Measures in a sweep's rows.
 
-    ``max_abs_w``; ``max_abs_q1``: largest displacement of the cavity; ``impact_speed``: mean |w'-|; ``impacts_per_period``: per
-    forcing period; in the reduced model ``C2``: squared amplitude of the cavity's motion.
+    ``max_abs_w``; ``impact_speed``: mean |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
+    ``max_abs_q1``: largest displacement of the cavity; in the reduced model ``C2``: squared amplitude of its motion.
     """
     own = ("C2",) if "amplitude" in model.parameter_names else ("max_abs_q1",)
     return (*own, "max_abs_w", "impact_speed", "impacts_per_period")
@@ -85,7 +85,8 @@ def sweep(
     transient, max_period
         As for `find_attractor`, at every value.
     nudge : float
-        The velocity is changed by this at each value, as noise would: a motion that has become unstable is then left. 0 for none.
+        The velocity is changed by this at each value, as noise would: a motion that has become unstable is then
+        left. 0 for none.
     progress : callable, optional
         Called with each row.
     **parameters
@@ -102,10 +103,14 @@ def sweep(
     """
     numbers = [float(value) for value in values]
     if over not in model.parameter_names:
-        raise SimulationError(f"{over!r} is no parameter of {model.name!r}; it has " + ", ".join(model.parameter_names))
+        raise SimulationError(
+            f"{over!r} is no parameter of {model.name!r}; it has " + ", ".join(model.parameter_names)
+        )
     if not numbers:
         raise SimulationError(f"no values of {over} to sweep over: give at least one")
-    vectors = [model.vector({**parameters, over: value}) for value in numbers]  # all refused before work starts
+    vectors = [
+        model.vector({**parameters, over: value}) for value in numbers
+    ]  # all refused before work starts
     engine = machine(model.name)
     state = first_state(model, engine, vectors[0], start)
     direction = "up" if numbers[-1] >= numbers[0] else "down"

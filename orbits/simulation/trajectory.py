@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orbits.simulation.contract import HOLD, MODE, PSI, RATE, STATUS, TURNS, V, V_RATE, W, Machine
+from orbits.simulation.contract import HOLD, MODE, PSI, RATE, STATUS, TURNS, V_RATE, Machine, V, W
 
 TWO_PI = 2.0 * np.pi
 LETTERS = "LRtsuH"
@@ -163,7 +163,9 @@ class Trajectory:
         lo, hi = marks[turn], marks[turn + 1]
         below = speed[turn]
         peak = float(np.abs(seen.cavity).max())
-        for _ in range(30 if turn.size else 0):  # bisection, all at once; the peak's error is the interval's squared
+        for _ in range(
+            30 if turn.size else 0
+        ):  # bisection, all at once; the peak's error is the interval's squared
             middle = 0.5 * (lo + hi)
             here = self.sample(middle)
             same = (here.v_rate + eps * here.w_rate) * below > 0.0
@@ -189,7 +191,9 @@ class Trajectory:
         ahead = np.arange(8) * (TWO_PI / 8.0)
         cavity = np.empty((8, 4))
         self.machine.sample(np.tile(self.start, (8, 1)), self.params, ahead, cavity)
-        scale = float(np.abs(works).sum() + np.abs(lost).sum() + ends.max() + 0.5 * np.square(cavity[:, 3]).max())
+        scale = float(
+            np.abs(works).sum() + np.abs(lost).sum() + ends.max() + 0.5 * np.square(cavity[:, 3]).max()
+        )
         error = abs(gap) / scale if scale > 0.0 else 0.0
         return Balance(change, float(excitation), float(damping), float(friction), impacts, float(error))
 

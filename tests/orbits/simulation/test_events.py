@@ -55,7 +55,12 @@ def integrate(C, r, a, omega, psi, w, rate, count):
 
 @pytest.mark.parametrize(
     ("C", "r", "mu", "g", "omega"),
-    [(0.85, 0.76, 0.5, 0.211, 1.0), (1.3, 0.6, 0.3, 0.355, 1.3), (0.12, 0.9, 0.5, 0.211, 1.0), (2.5, 0.4, 0.9, 0.3, 1.1)],
+    [
+        (0.85, 0.76, 0.5, 0.211, 1.0),
+        (1.3, 0.6, 0.3, 0.355, 1.3),
+        (0.12, 0.9, 0.5, 0.211, 1.0),
+        (2.5, 0.4, 0.9, 0.3, 1.1),
+    ],
 )
 def test_events_agree_with_an_ode_integrator(C, r, mu, g, omega):
     machine = Absorber(restitution=r, friction=mu, gravity=g, mass_ratio=0.006, frequency=omega)
@@ -108,7 +113,12 @@ def test_flight_after_a_slip():
             return (C * (mp.cos(psi) - mp.cos(alpha)) + a * (psi - alpha)) / (psi - alpha) ** 2
 
         end = mp.findroot(speed, run.phases[1])
-        reach = 0.2 + C * (mp.sin(end) - mp.sin(alpha)) - C * mp.cos(alpha) * (end - alpha) + a * (end - alpha) ** 2 / 2
+        reach = (
+            0.2
+            + C * (mp.sin(end) - mp.sin(alpha))
+            - C * mp.cos(alpha) * (end - alpha)
+            + a * (end - alpha) ** 2 / 2
+        )
         assert reach > -1
         assert run.phases[1] == pytest.approx(float(end), rel=1e-15)
         assert run.rows[1, 2] == pytest.approx(float(reach), rel=1e-14)

@@ -1,0 +1,88 @@
+"""Replay of true and of false claims."""
+
+import numpy as np
+import pytest
+from scipy.optimize import fsolve
+
+from orbits.models.absorber import Absorber
+from orbits.simulation import find_attractor, replay, replay_nodes
+
+R, A = 0.76, 1.006 * 0.5 * 0.211
+MACHINE = Absorber(restitution=R, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+def symmetric_nodes(c):
+    """LR solved from its half flight, L to R in half a period, in bare sines."""
+
+    def equations(x):
+        psi, rate = x
+        slope = rate - c * np.cos(psi)
+        landing = 1 - 2 * c * np.sin(psi) + slope * np.pi + A * np.pi**2 / 2
+        arrival = slope - c * np.cos(psi) + A * np.pi
+        return landing + 1, -R * arrival + rate
+
+    psi, rate = fsolve(equations, [np.pi + 0.6, -1.2], xtol=1e-13)
+    plus = c * np.cos(psi) - rate
+    return np.array([[psi, plus], [psi + np.pi, -plus]])
+
+
+def test_an_unstable_orbit_is_tracked_as_long_as_it_can_be():
+    c = np.sqrt(0.65)
+    nodes = symmetric_nodes(c)
+    params = MACHINE.vector({"amplitude": c})
+    told = replay_nodes(MACHINE, params, np.array([0, 1]), np.array([-1, 1]), nodes, 1, thorough=True)
+    assert told.error < 1e-12
+    assert told.message == ""
+    growth = np.abs(told.multipliers).max()
+    assert growth > 1.05
+    assert np.prod(told.multipliers).real == pytest.approx(R**4, rel=1e-6)
+    assert told.returned is None
+    assert told.tracked >= 0.8 * min(told.expected, 200)
+
+
+def test_a_stable_orbit_is_found_again():
+    for c2 in (0.3, 0.6, 0.75, 0.9, 1.14, 1.7):
+        found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(c2))
+        told = replay(found, thorough=True)
+        assert told.error < 1e-12
+        assert told.returned is True
+        assert told.tracked == 200
+
+
+def test_a_wrong_event_list_is_refused():
+    found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.9))
+    assert sorted(found.text) == sorted("LRtt")
+    impacts = found.codes < 2
+    told = replay_nodes(
+        MACHINE, found.params, found.codes[impacts], found.modes[impacts], found.nodes[impacts], 1
+    )
+    assert told.error == np.inf
+    assert not told.matches
+    assert "is t, listed was" in told.message
+    assert told.motion < 1e-12  # the same motion, told with other events
+
+
+def test_a_wrong_node_shows_in_the_error():
+    found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.6))
+    nodes = found.nodes + np.array([[0.0, 0.0], [1e-5, 0.0]])
+    told = replay_nodes(MACHINE, found.params, found.codes, found.modes, nodes, 1)
+    assert told.error == pytest.approx(1e-5, rel=1e-6)
+
+
+def test_stuck_and_slipping():
+    empty = np.empty(0, np.int8)
+    for amplitude, ok in ((0.1, True), (0.11, False)):
+        params = MACHINE.vector({"amplitude": amplitude})
+        assert replay_nodes(MACHINE, params, empty, empty, np.empty((0, 2)), 1).matches is ok
+
+
+@pytest.mark.parametrize("c2", [0.012, 0.03, 0.1, 0.5, 0.74, 0.75, 0.9])
+def test_every_event_can_be_the_first(c2):
+    found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(c2))
+    for k in range(len(found.codes)):
+        nodes = np.roll(found.nodes, -k, axis=0)
+        nodes[len(nodes) - k :, 0] += 2 * np.pi * found.periods
+        told = replay_nodes(
+            MACHINE, found.params, np.roll(found.codes, -k), np.roll(found.modes, -k), nodes, found.periods
+        )
+        assert told.error < 1e-11, (k, told.message)
