@@ -12,10 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.compiled import assemble
-from orbits.monitors import PER_NODE
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
-from orbits.rewriting import Edit, apply, edit
+from orbits.rewriting import Edit, applied, edits_at
 from orbits.words import Word
 
 NEAR = 1e-7  # margins this small vanish together
@@ -83,23 +82,18 @@ def _proposals(
     """Solutions next to the border with the words that the local rules propose."""
     orbit = problem.orbit(u, p)
     values = _row(problem, u, p)
-    together = [j for j in range(problem.n_margins) if j == index or abs(values[j]) < NEAR]
-    edits: dict[int, Edit] = {}
-    for j in [index, *together]:
-        if any(j // PER_NODE == k for k in edits):
-            continue
-        change = edit(orbit, j, problem.values(p))
-        if change is not None and not any(_overlap(change, other) for other in edits.values()):
-            edits[j // PER_NODE] = change
-    if not edits:
-        return
-    choices = [list(edits.values())]
-    if len(edits) > 1 and index // PER_NODE in edits:
-        choices.append([edits[index // PER_NODE]])
-    for chosen in choices:
-        found = _grow(problem, orbit, p, chosen)
-        if found is not None:
-            yield (*found, chosen[0].note)
+    together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
+    for first in edits_at(orbit, index):
+        chosen = [first]
+        for j in together:
+            for change in edits_at(orbit, j):
+                if change.note == first.note and not any(_overlap(change, other) for other in chosen):
+                    chosen.append(change)
+                    break
+        for edits in [chosen, [first]] if len(chosen) > 1 else [chosen]:
+            found = _grow(problem, orbit, p, edits)
+            if found is not None:
+                yield (*found, first.note)
 
 
 def _overlap(a: Edit, b: Edit) -> bool:
@@ -114,11 +108,11 @@ def _grow(
         half = problem.length
         if any(change.stop > half and change.start != half for change in edits):
             return None
-        word, nodes, first = apply(orbit.word.head(half), orbit.nodes[:half], edits)
+        word, nodes, first = applied(orbit.word.head(half), orbit.nodes[:half], edits)
         mirrored = word.mirror()
         word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.frictionless)
     else:
-        word, nodes, first = apply(orbit.word, orbit.nodes, edits)
+        word, nodes, first = applied(orbit.word, orbit.nodes, edits)
     if not len(word):
         return None
     try:
@@ -136,11 +130,11 @@ def _grow(
     u, q = guess.copy(), p
     for wanted in SIZES:
         border = np.zeros(size + 1)
-        if edits[0].grows == "duration":
+        if edits[0].grows == "gap":
             border[first * n], border[(first + 1) * n] = -1.0, 1.0
-            have = u[(first + 1) * n] - u[first * n]
-            u[first * n] += have - wanted if edits[0].note.startswith("a stick appears") else 0.0
-            if not edits[0].note.startswith("a stick appears"):
+            if edits[0].start == edits[0].stop:  # the later event stays: friction gives way there
+                u[first * n] = u[(first + 1) * n] - wanted
+            else:
                 u[(first + 1) * n] = u[first * n] + wanted
         else:
             sign = 1.0 if edits[0].events[0] == "L" else -1.0

@@ -207,7 +207,7 @@ class Orbit:
 
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period (inf: other events)."""
-        from orbits.simulation import replay
+        from orbits.simulation.replay import replay
 
         return float(replay(self).error)
 

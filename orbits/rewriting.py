@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from orbits.monitors import DURATION, EVENT, FLIGHT, PER_NODE, WALL
+from orbits.monitors import EVENT, FLIGHT, PER_NODE, WALL
 from orbits.orbit import Orbit
-from orbits.sampling import slowest
+from orbits.sampling import flight, lengths, slowest
 from orbits.words import Word
 
 FIRST = 2e-3  # size of what grows from nothing: radians of phase, or speed
@@ -35,8 +35,8 @@ class Edit:
     modes : tuple of int
     nodes : float array (m, n)
     grows : str
-        What vanishes at the border and grows beyond: ``duration`` of the stick at the first new event, ``speed`` of the
-        impact that is the first new event, or ``margin`` where nothing was inserted.
+        What vanishes at the border and grows beyond: the ``gap`` in phase between the first two new events, the
+        ``speed`` of the impact that is the first new event, or a ``margin`` of the new word where nothing was inserted.
     note : str
     """
 
@@ -49,8 +49,8 @@ class Edit:
     note: str
 
 
-def edit(orbit: Orbit, index: int, params: np.ndarray) -> Edit | None:
-    """The edit that margin `index` asks for at the border orbit; None if no local rule applies.
+def edits_at(orbit: Orbit, index: int) -> list[Edit]:
+    """The edits that margin `index` may ask for at the border orbit, the likeliest first.
 
     Parameters
     ----------
@@ -58,95 +58,98 @@ def edit(orbit: Orbit, index: int, params: np.ndarray) -> Edit | None:
         The border orbit, over its whole cycle.
     index : int
         Index of the vanishing margin, four per node.
-    params : float array (P,)
     """
     place, column = divmod(index, PER_NODE)
     word, n = orbit.word, len(orbit.word)
     letter = word.events[place]
-    after, before = word.modes[place], word.modes[place - 1]
+    after = word.modes[place]
     node = orbit.nodes[place]
     if word.frictionless:
         return _frictionless(orbit, place, column)
     if column == FLIGHT and after != 0:
-        ahead, (w, _, v, v_rate) = slowest(orbit, place)
-        full = np.array([node[0] + ahead, w, v, v_rate])[: orbit.nodes.shape[1]]
-        early = full.copy()
+        ahead, state = slowest(orbit, place)
+        late = np.array([node[0] + ahead, state[0], *state[2:]])[: node.size]
+        early = late.copy()
         early[0] -= FIRST
-        return Edit(
-            place + 1, place + 1, ("s", "u"), (0, after), np.array([early, full]), "duration",
-            "a stick appears inside a flight",
-        )  # fmt: skip
-    if letter == "s" and (column == FLIGHT or column == DURATION or column == EVENT) and place + 1 < n:
-        out = word.modes[place + 1]
-        if out == before:
-            return Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight")
-        middle = node.copy()
-        middle[0] = 0.5 * (node[0] + orbit.nodes[place + 1, 0])
-        return Edit(place, place + 2, ("t",), (out,), middle[None], "margin", "a stick becomes a turn")
-    if letter == "t" and column == EVENT:
+        nodes = np.array([early, late])
+        return [Edit(place + 1, place + 1, ("s", "u"), (0, after), nodes, "gap", "a stick appears inside a flight")]
+    if letter == "t" and column != WALL:
+        found = []
+        if place + 1 < n and word.events[place + 1] == "s":
+            held = orbit.nodes[place + 1][None]
+            found = [Edit(place, place + 2, ("s",), (0,), held, "margin", "a turn before a stick disappears")]
         late = node.copy()
         late[0] += FIRST
-        return Edit(place, place + 1, ("s", "u"), (0, after), np.array([node, late]), "duration", "a turn becomes a stick")
-    if letter == "t" and column == WALL:
-        wall = "L" if node[1] > 0.0 else "R"
-        if before != (1 if wall == "L" else -1):
-            return None
-        return Edit(place, place + 1, (wall,), (after,), _impact(orbit, place, wall)[None], "speed", "a turn hits the wall")
-    if letter in "su" and column == WALL:
-        if letter == "u":
-            place -= 1
-            node, before = orbit.nodes[place], word.modes[place - 1]
-        wall = "L" if node[1] > 0.0 else "R"
-        if before != (1 if wall == "L" else -1):
-            return None
-        late = node.copy()
-        late[0] += FIRST
-        late[1] -= np.sign(node[1]) * 0.1 * FIRST**2
-        hit = _impact(orbit, place, wall)
-        return Edit(
-            place, place + 1, (wall, "s"), (-before, 0), np.array([hit, late]), "speed", "a stick hits the wall"
-        )  # fmt: skip
+        nodes = np.array([node, late])
+        return [*found, Edit(place, place + 1, ("s", "u"), (0, after), nodes, "gap", "a turn becomes a stick")]
+    if letter in "tsu" and column == WALL:
+        return _wall(orbit, place - 1 if letter == "u" else place)
+    if letter == "s" and place + 1 < n:
+        return _stick(orbit, place)
     if letter in "LR" and column == EVENT:
         soft = node.copy()
         soft[1] = 1.0 if letter == "L" else -1.0
-        if word.events[(place + 1) % n] == "s" and place + 1 < n:
+        found = [Edit(place, place + 1, ("t",), (after,), soft[None], "margin", "an impact becomes a turn")]
+        if place + 1 < n and word.events[place + 1] == "s":
+            soft = soft.copy()
             soft[0] = orbit.nodes[place + 1, 0]
-            return Edit(place, place + 2, ("s",), (0,), soft[None], "margin", "an impact before a stick vanishes")
-        return Edit(place, place + 1, ("t",), (after,), soft[None], "margin", "an impact becomes a turn")
-    return None
+            merged = Edit(place, place + 2, ("s",), (0,), soft[None], "margin", "an impact before a stick vanishes")
+            found.insert(0, merged)
+        return found
+    return []
 
 
-def _frictionless(orbit: Orbit, place: int, column: int) -> Edit | None:
+def _stick(orbit: Orbit, place: int) -> list[Edit]:
+    """A stick that vanishes, or that is about to be preceded by a turn."""
+    word, node = orbit.word, orbit.nodes[place]
+    before, out = word.modes[place - 1], word.modes[place + 1]
+    late = node.copy()
+    late[0] += FIRST
+    turned = Edit(
+        place, place + 1, ("t", "s"), (-before, 0), np.array([node, late]), "gap", "a turn appears before a stick"
+    )  # fmt: skip
+    if out == before:
+        return [Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight"), turned]
+    middle = node.copy()
+    middle[0] = 0.5 * (node[0] + orbit.nodes[place + 1, 0])
+    return [Edit(place, place + 2, ("t",), (out,), middle[None], "margin", "a stick becomes a turn"), turned]
+
+
+def _wall(orbit: Orbit, place: int) -> list[Edit]:
+    """A turn or stick that reaches a wall: an impact of vanishing speed takes its place."""
+    word, node = orbit.word, orbit.nodes[place]
+    wall, side = ("L", 1) if node[1] > 0.0 else ("R", -1)
+    if word.modes[place - 1] != side:
+        return []
+    hit = node.copy()
+    hit[1] = orbit.events.v_rate[place] + side * FIRST  # B+ = v' - w'+
+    if word.events[place] == "t":
+        return [Edit(place, place + 1, (wall,), (-side,), hit[None], "speed", "a turn hits the wall")]
+    late = node.copy()
+    late[0] += FIRST
+    late[1] -= side * 0.1 * FIRST**2
+    return [Edit(place, place + 1, (wall, "s"), (-side, 0), np.array([hit, late]), "speed", "a stick hits the wall")]
+
+
+def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
     word = orbit.word
     if column == EVENT:
-        return Edit(place, place + 1, (), (), orbit.nodes[:0], "margin", "an impact vanishes")
+        return [Edit(place, place + 1, (), (), orbit.nodes[:0], "margin", "an impact vanishes")]
     if column != FLIGHT:
-        return None
-    from orbits.sampling import flight, lengths
-
+        return []
     ahead = np.linspace(0.0, float(lengths(orbit)[place]), 20002)[1:-1]
     path = flight(orbit, place, ahead)
     inner = np.flatnonzero(np.diff(np.sign(path[:, 1])) != 0)
     if not inner.size:
-        return None
+        return []
     touch = inner[np.argmax(np.abs(path[inner, 0]))]
-    wall = "L" if path[touch, 0] > 0.0 else "R"
-    speed = FIRST if wall == "L" else -FIRST
-    node = np.array([orbit.nodes[place, 0] + ahead[touch], path[touch, 3] + speed, *path[touch, 2:]])
-    return Edit(
-        place + 1, place + 1, (wall,), (-1 if wall == "L" else 1,), node[None, : orbit.nodes.shape[1]], "speed",
-        "a flight touches the wall",
-    )  # fmt: skip
+    wall, side = ("L", 1) if path[touch, 0] > 0.0 else ("R", -1)
+    node = np.array([orbit.nodes[place, 0] + ahead[touch], path[touch, 3] + side * FIRST, *path[touch, 2:]])
+    node = node[None, : orbit.nodes.shape[1]]
+    return [Edit(place + 1, place + 1, (wall,), (-side,), node, "speed", "a flight touches the wall")]
 
 
-def _impact(orbit: Orbit, place: int, wall: str) -> np.ndarray:
-    """The node of an impact of vanishing speed in place of a turn or stick: B+ = v' - w'+."""
-    node = orbit.nodes[place].copy()
-    node[1] = orbit.events.v_rate[place] + (FIRST if wall == "L" else -FIRST)
-    return node
-
-
-def apply(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
+def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
     """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand."""
     events, modes = list(word.events), list(word.modes)
     rows = [row for row in nodes]

@@ -164,7 +164,7 @@ def _simulated(
     model: Model, word: Word, periods: int, params: np.ndarray
 ) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
-    from orbits.simulation import find_attractor
+    from orbits.simulation.recurrence import find_attractor
 
     target = word.canonical()
     values = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
