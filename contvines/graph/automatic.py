@@ -1,0 +1,152 @@
+"""The automatic diagram: trace, switch, cross, until nothing new is found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from ..continuation.settings import Settings
+from ..continuation.starts import check_interval
+from ..journal import NullJournal
+from .builder import Builder, Progress
+from .graph import Graph
+from .pending import Pending
+
+
+def problem_and_start(seed: Any, over: str | None) -> tuple[Any, Any, float]:
+    """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``."""
+    if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
+        if over is not None and over != seed.parameter:
+            raise ValueError(f"over = {over!r}, but this problem continues in {seed.parameter!r}")
+        return seed, seed.u0, float(seed.p0)
+    if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
+        raise TypeError(
+            f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}"
+        )
+    if over is None:
+        raise ValueError("over = None: name the parameter to continue in, for example over=\"amplitude\"")
+    problem = seed.problem(over)
+    u, p = seed.seed(problem)
+    return problem, u, float(p)
+
+
+def diagram(
+    seed: Any,
+    over: str | None = None,
+    within: tuple[float, float] | None = None,
+    depth: int = 3,
+    virtual: bool = False,
+    user_functions: Mapping[str, Any] | None = None,
+    journal: Any = None,
+    progress: Callable[[Progress], None] | None = None,
+    settings: Settings | Mapping[str, Any] | None = None,
+) -> Graph:
+    """All branches that hang together with a solution: traced, switched, each listed once.
+
+    Parameters
+    ----------
+    seed : orbit or Problem
+        An object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, or a problem with ``u0`` and ``p0``.
+    over : str, optional
+        Name of the continuation parameter; may be left out for a problem, which has its own.
+    within : (float, float)
+        Interval of the parameter.
+    depth : int
+        How many switches deep. Crossing a border where the branch goes on with another word is not a switch.
+    virtual : bool
+        Follow branches beyond a border, too (marked real=False).
+    user_functions : mapping, optional
+        name -> callable (u, p) -> float, or (measure, value); their zeros become special points of kind "user".
+    journal : Journal, optional
+        What it remembers is not computed again; see :mod:`contvines.journal`.
+    progress : callable, optional
+        Called with a :class:`Progress` after each chunk and each branch.
+    settings : Settings or mapping, optional
+
+    Returns
+    -------
+    Graph
+
+    Raises
+    ------
+    ValueError
+        If the interval, a setting or the start will not do; the sentence says why.
+    """
+    problem, u, p = problem_and_start(seed, over)
+    if within is None:
+        raise ValueError(f"within = None: give the interval of {problem.parameter}, for example within=(0.2, 1.3)")
+    if not (isinstance(depth, int) and depth >= 0):
+        raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
+    settings = Settings.of(settings)  # type: ignore[arg-type]
+    description = problem.describe()
+    model = description.get("model") or {"name": description.get("name", type(problem).__name__)}
+    graph = Graph(
+        parameter=problem.parameter,
+        model=dict(model) if isinstance(model, Mapping) else {"name": model},
+        within=check_interval(within),
+        settings={**settings.to_dict(), "depth": depth, "virtual": virtual},
+    )
+    builder = Builder(graph, settings, journal or NullJournal(), depth, virtual, user_functions, progress)
+    builder.begin(problem, u, p)
+    builder.run()
+    return graph
+
+
+def switch(
+    graph: Graph,
+    label: str,
+    depth: int = 0,
+    user_functions: Mapping[str, Any] | None = None,
+    journal: Any = None,
+    progress: Callable[[Progress], None] | None = None,
+    settings: Settings | Mapping[str, Any] | None = None,
+) -> list[str]:
+    """Follow the branches that leave a special point of a graph; the graph is extended in place.
+
+    Parameters
+    ----------
+    graph : Graph
+    label : str
+        A special point; its problem must be attached.
+    depth : int
+        How many more switches deep to go on from the new branches.
+    user_functions, journal, progress, settings
+        As for :func:`diagram`; the settings of the graph are the default.
+
+    Returns
+    -------
+    list of str
+        Labels of the new branches; empty where nothing leaves or everything is known already.
+
+    Raises
+    ------
+    KeyError, ValueError
+        If there is no such special point, or it has no problem.
+    """
+    if label not in graph.special:
+        known = ", ".join(graph.special) or "none"
+        raise KeyError(f"the graph has no special point {label!r}; it has {known}")
+    point = graph.special[label]
+    if point.problem is None:
+        raise ValueError(f"{label} has no problem attached; use graph.attach(problem) first")
+    if settings is None:
+        names = Settings().to_dict()
+        settings = {name: value for name, value in graph.settings.items() if name in names}
+    before = list(graph.branches)
+    builder = Builder(
+        graph,
+        Settings.of(settings),  # type: ignore[arg-type]
+        journal or NullJournal(),
+        depth + 1,
+        bool(graph.settings.get("virtual", False)),
+        user_functions,
+        progress,
+    )
+    builder.adopt()
+    builder.leave(replace(point), graph.branches[point.branch], depth=0)
+    builder.run()
+    return [name for name in graph.branches if name not in before]
+
+
+__all__ = ["Pending", "Progress", "diagram", "problem_and_start", "switch"]

@@ -1,0 +1,54 @@
+"""Pending: a branch that is waiting to be traced."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..continuation.engine import Solved
+
+
+@dataclass
+class Pending:
+    """A branch that is waiting to be traced.
+
+    Attributes
+    ----------
+    problem : Problem
+    u, p : ndarray, float
+        Where to begin.
+    tangent : ndarray or None
+    kind : {"start", "switch", "border", "root", "rest"}
+        "start", "border", "root": both ways from (u, p). "switch": from the first points of a departure. "rest": on from a
+        border in the same problem, one way.
+    depth : int
+        Switches used so far.
+    source : str or None
+        Label of the branch from which it was reached.
+    point : str or None
+        Label of the special point at which it was reached.
+    note : str
+        For the switch.
+    real : bool or None
+        None: the margins decide.
+    origin, ahead, back : Solved or None
+        Of a departure.
+    first_step : float or None
+    """
+
+    problem: Any
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray | None = None
+    kind: str = "start"
+    depth: int = 0
+    source: str | None = None
+    point: str | None = None
+    note: str = ""
+    real: bool | None = None
+    origin: Solved | None = None
+    ahead: Solved | None = None
+    back: Solved | None = None
+    first_step: float | None = None
