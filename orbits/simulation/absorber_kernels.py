@@ -236,7 +236,7 @@ def advance(state, params, until, codes, modes, rows):
         rate = p
         if top > 0.0:
             x = min(top, end)
-            sine, versine, third, fourth = _remainders(x)
+            _sine, versine, third, fourth = _remainders(x)
             rate = p + q0 * x + C * (k0 * versine - m0 * third)
             y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
             if target <= 0.0:
@@ -252,7 +252,7 @@ def advance(state, params, until, codes, modes, rows):
                     if not step > 2.3e-16 * x:
                         break
                     x -= step
-                    sine, versine, third, fourth = _remainders(x)
+                    _sine, versine, third, fourth = _remainders(x)
                     rate = p + q0 * x + C * (k0 * versine - m0 * third)
                     y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
         if kind == 0 and x < end:
@@ -272,7 +272,7 @@ def advance(state, params, until, codes, modes, rows):
                 x += step
                 if x > end:
                     x = end
-                sine, versine, third, fourth = _remainders(x)
+                _sine, versine, third, fourth = _remainders(x)
                 rate = p + q0 * x + C * (k0 * versine - m0 * third)
                 y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
             else:

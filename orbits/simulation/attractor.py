@@ -120,7 +120,13 @@ class Attractor:
             raise ValueError(
                 f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits"
             )
-        return Orbit(self.model, word, self.periods, centred(self.codes, self.nodes), self.params)
+        return Orbit(
+            self.model, word, self.periods, centred(self.codes, self.nodes, self._mass_ratio), self.params
+        )
+
+    @property
+    def _mass_ratio(self) -> float:
+        return float(self.params[self.model.parameter_names.index("mass_ratio")])
 
     def distance(self, other: Attractor) -> float:
         """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.
@@ -132,7 +138,8 @@ class Attractor:
         if not len(self.codes):
             return 0.0
         mirror = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
-        own, target = centred(self.codes, self.nodes), centred(other.codes, other.nodes)
+        eps = self._mass_ratio
+        own, target = centred(self.codes, self.nodes, eps), centred(other.codes, other.nodes, eps)
         image = -own
         image[:, 0] = own[:, 0] + np.pi
         images = [(self.codes, self.modes, own), (mirror[self.codes], -self.modes, image)]
@@ -153,10 +160,13 @@ def cyclic_distance(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(gap).max()) if gap.size else 0.0
 
 
-def centred(codes: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-    """The nodes; of a motion without impacts with the mean of w moved to 0."""
+def centred(codes: np.ndarray, nodes: np.ndarray, eps: float) -> np.ndarray:
+    """The nodes; of a motion without impacts with the absorber moved so that the mean of w is 0 (q1 stays)."""
     if np.any(codes < 2) or np.any(codes > 4):
         return nodes
     moved = nodes.copy()
-    moved[:, 1] -= nodes[:, 1].mean()
+    mean = nodes[:, 1].mean()
+    moved[:, 1] -= mean
+    if nodes.shape[1] > 2:
+        moved[:, 2] += eps * mean
     return moved

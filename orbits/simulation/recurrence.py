@@ -278,7 +278,9 @@ def _first(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray) -> int:
     return min(starts, key=rank)
 
 
-def _symmetric(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, tolerance: float = 1e-7) -> bool:
+def _symmetric(
+    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, eps: float, tolerance: float = 1e-7
+) -> bool:
     n = len(codes)
     if n == 0 or n % 2:
         return False
@@ -287,7 +289,7 @@ def _symmetric(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, toleranc
         np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))
     ):
         return False
-    nodes = centred(codes, nodes)
+    nodes = centred(codes, nodes, eps)
     image = -nodes
     image[:, 0] = nodes[:, 0] + np.pi
     return cyclic_distance(image, np.roll(nodes, half, axis=0)) < tolerance
@@ -311,6 +313,7 @@ def _attractor(
     codes = np.empty(0, np.int8) if codes is None else codes
     modes = np.empty(0, np.int8) if modes is None else modes
     nodes = np.empty((0, width)) if nodes is None else nodes
+    eps = float(params[model.parameter_names.index("mass_ratio")])
     hits = np.abs(window.rows[window.codes < 2, 3])
     rate = (
         np.count_nonzero(codes < 2) / periods
@@ -330,7 +333,7 @@ def _attractor(
         nodes=nodes,
         residual=residual,
         multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
-        symmetric=kind == "stuck" or _symmetric(codes, modes, nodes),
+        symmetric=kind == "stuck" or _symmetric(codes, modes, nodes, eps),
         state=state.copy(),
         impacts_per_period=0.0 if kind == "stuck" else float(rate),
         impact_speed=float(hits.mean()) if hits.size and kind != "stuck" else 0.0,
