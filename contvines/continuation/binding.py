@@ -15,14 +15,15 @@ from . import march as source
 
 
 class Bound(NamedTuple):
-    """``correct`` and ``march`` with the kernels of a problem inside."""
+    """``correct``, ``march`` and ``solve`` with the kernels of a problem inside."""
 
     correct: Callable[..., Any]
     march: Callable[..., Any]
+    solve: Callable[..., Any]
 
 
-# Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in and out of
-# every call would cost more than the mathematics of a small problem.
+# Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
+# and out of every call would cost more than the mathematics of a small problem.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 
 _bound: dict[tuple[Any, ...], Bound] = {}
@@ -51,7 +52,8 @@ def _make(kernels: Any) -> Bound:
     functions = {"linearise": kernels.linearise, "bordered": kernels.bordered, "inspect": kernels.inspect}
     if not kernels.compiled:
         correct = copy_with(source.correct, **functions)
-        return Bound(correct, copy_with(source.march, correct=correct, predict=source.predict, **functions))
+        march = copy_with(source.march, correct=correct, predict=source.predict, **functions)
+        return Bound(correct, march, copy_with(source.solve, **functions))
     from numba import njit
 
     from ..problem import kernels_digest
@@ -60,6 +62,5 @@ def _make(kernels: Any) -> Bound:
     compile_ = njit(cache=True, forceinline=True, **OPTIONS)
     correct = compile_(copy_with(source.correct, suffix, **functions))
     predict = compile_(copy_with(source.predict, suffix))
-    return Bound(
-        correct, compile_(copy_with(source.march, suffix, correct=correct, predict=predict, **functions))
-    )
+    march = compile_(copy_with(source.march, suffix, correct=correct, predict=predict, **functions))
+    return Bound(correct, march, compile_(copy_with(source.solve, suffix, **functions)))

@@ -12,6 +12,7 @@ from .binding import bind
 from .settings import Settings
 
 TIGHT = 1e-12
+NO_ROW = np.zeros(1)
 
 
 class Solved(NamedTuple):
@@ -118,16 +119,12 @@ class Engine:
         size: float = 0.0,
     ) -> Solved | None:
         """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
-        kernels, n = self.problem.kernels, self.n
-        residual = kernels.linearise(self.data, u, p, self.work)
-        if not residual < 1e300:
-            return None
-        gap = target - float(np.dot(border[:n], u)) - border[n] * p
-        sign = kernels.bordered(self.data, self.work, border, gap, self.step, self.tangent)
-        if not np.all(np.isfinite(self.tangent)):
-            return None
         row = np.zeros(self.row_size)
-        kernels.inspect(self.data, u, p, self.work, row)
+        residual, sign = self.bound.solve(
+            self.data, self.work, u, p, border, target, self.step, self.tangent, row, source.EVERYTHING
+        )
+        if not residual < 1e300 or not np.all(np.isfinite(self.tangent)):
+            return None
         tangent = self.unit(self.tangent)
         if along is not None and self.inner(along, tangent) < 0.0:
             tangent = -tangent
@@ -160,12 +157,19 @@ class Engine:
 
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual."""
-        return float(self.problem.kernels.linearise(self.data, np.ascontiguousarray(u), float(p), self.work))
+        u, p = np.ascontiguousarray(u), float(p)
+        found, _ = self.bound.solve(
+            self.data, self.work, u, p, self.border, 0.0, self.step, self.tangent, NO_ROW, source.LINEARISE
+        )
+        return float(found)
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
         self.work[0].reshape(-1)[:] = -side[: self.n]
-        self.problem.kernels.bordered(self.data, self.work, border, float(side[self.n]), self.step, self.tangent)
+        target = float(side[self.n])
+        self.bound.solve(
+            self.data, self.work, self.u, 0.0, border, target, self.step, self.tangent, NO_ROW, source.ELIMINATE
+        )
         return self.step.copy()
 
     # ------------------------------------------------------------------ rows

@@ -14,6 +14,9 @@ import math
 METRIC_U, METRIC_P, ANGLE, MIN_STEP, MAX_STEP, TOLERANCE, LOWER, UPPER, STOP_AT_BORDER, SWEEPS, ROW_MARGINS = range(11)
 CONTROL_SIZE = 11
 
+# what `solve` does
+LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
+
 # status codes (contvines.continuation.status)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
 
@@ -92,6 +95,31 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
                 return p, sweep + 1, residual, sign, size
         before = size
     return p, -1, residual, sign, size
+
+
+def solve(data, work, u, p, border, target, step, tangent, row, what):
+    """One call of the kernels: LINEARISE only, ELIMINATE only (with the linearisation at hand), or EVERYTHING.
+
+    Returns
+    -------
+    residual : float
+        0 if there was no linearisation.
+    sign : float
+        Of the bordered determinant; 0 if there was no elimination.
+    """
+    residual = 0.0
+    sign = 0.0
+    if what != ELIMINATE:
+        residual = linearise(data, u, p, work)
+        if what == LINEARISE or not residual < 1e300:
+            return residual, sign
+        target -= border[u.shape[0]] * p
+        for i in range(u.shape[0]):
+            target -= border[i] * u[i]
+    sign = bordered(data, work, border, target, step, tangent)
+    if what == EVERYTHING:
+        inspect(data, u, p, work, row)
+    return residual, sign
 
 
 def predict(points, values, tangents, i, h, metric_u, metric_p, u):
@@ -209,7 +237,7 @@ def march(
         for j in range(n):
             points[i, j] = u[j]
         guess = p
-        p, sweeps, residual, sign, size = correct(
+        p, sweeps, _, sign, size = correct(
             data, work, u, p, border, target, control[TOLERANCE], sweeps_allowed, step, tangent
         )
         if sweeps < 0:
