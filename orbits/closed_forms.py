@@ -84,7 +84,7 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     curvature = 0.25 * np.pi**2 + R**2
     least = float(fold_square(R, H))
     middle = float(fold_beta(R, H))
-    if C**2 < least:
+    if C**2 < least * (1.0 - 1e-14):
         raise ParameterError(
             f"amplitude = {C:g} has no symmetric orbit with two impacts per period: it begins at {np.sqrt(least):.10g}"
         )

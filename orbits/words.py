@@ -290,5 +290,6 @@ def _refuse_impossible(events: Sequence[str], modes: Sequence[int], shown: str) 
             heading = {-1: "moving to the right", 1: "moving to the left", 0: "stuck"}[mode]
             raise WordError(
                 f"word {shown!r} cannot be: after the {here} ({events[place]}) the absorber is {heading}, "
-                f"so the {there} ({event}) cannot come next{hint}"
+                f"so {'a turn that leads to the next event' if event == 't' else 'the ' + there} ({event}) "
+                f"cannot come next{hint}"
             )

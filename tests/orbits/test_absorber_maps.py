@@ -1,0 +1,153 @@
+"""The elementary maps against finite differences, the paper's tables and a dense solver."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from orbits import Absorber
+from orbits.compiled import assemble
+from orbits.models import absorber_kernels
+from orbits.problem import OrbitProblem
+from orbits.words import Word
+
+MACHINE = Absorber(restitution=0.7, friction=0.4, gravity=0.3, mass_ratio=0.02, frequency=1.2)
+CASES = [("LR", 1, False), ("LR", 1, True), ("RLtL", 1, False), ("LRts", 1, False), ("tt", 1, True), ("tt", 1, False),
+         ("ss", 1, True), ("ss", 1, False), ("LRtt", 2, False), ("LsRs", 1, True), ("sttstt", 1, True), ("Lt", 1, False)]  # fmt: skip
+
+
+def some_nodes(problem, seed):
+    generator = np.random.default_rng(seed)
+    u = generator.normal(size=problem.dimension)
+    u[::2] = np.sort(generator.uniform(0.0, 2.0 * np.pi, problem.length))
+    return u
+
+
+def residual(problem, u, p):
+    work = problem.workspace()
+    absorber_kernels.linearise(problem.data, u, p, work)
+    return work[0].ravel().copy()
+
+
+def dense(problem, u, p):
+    """F, and the matrix [dF/du, dF/dp] put together from the blocks."""
+    work = problem.workspace()
+    absorber_kernels.linearise(problem.data, u, p, work)
+    F, A, D, Q = work[:4]
+    n, N = 2, problem.dimension
+    J = np.zeros((N, N + 1))
+    for i in range(problem.length):
+        rows = slice(n * i, n * i + n)
+        j = (i + 1) % problem.length
+        closing = np.array([1.0, problem.twist]) if i == problem.length - 1 else 1.0
+        J[rows, n * i : n * i + n] += A[i]
+        J[rows, n * j : n * j + n] += D[i] * closing
+        J[rows, N] = Q[i]
+    return F.ravel().copy(), J, work
+
+
+@pytest.mark.parametrize(("text", "periods", "symmetric"), CASES)
+@pytest.mark.parametrize("parameter", MACHINE.parameter_names)
+def test_derivatives_are_those_of_finite_differences(text, periods, symmetric, parameter):
+    params = MACHINE.vector({"amplitude": 0.6})
+    problem = OrbitProblem(MACHINE, Word.parse(text), periods, parameter, params, symmetric)
+    u, p, h = some_nodes(problem, 3), params[problem.index], 1e-5
+    _, J, _ = dense(problem, u, p)
+    for j in range(problem.dimension + 1):
+        def moved(step, j=j):
+            v = u.copy()
+            if j < v.size:
+                v[j] += step
+                return residual(problem, v, p)
+            return residual(problem, v, p + step)
+        # fourth-order central difference
+        slope = (8.0 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12.0 * h)
+        np.testing.assert_allclose(J[:, j], slope, atol=2e-9 * max(1.0, np.abs(slope).max()))
+
+
+@pytest.mark.parametrize(("text", "periods", "symmetric"), CASES)
+def test_structured_elimination_is_the_dense_solution(text, periods, symmetric):
+    params = MACHINE.vector({"amplitude": 0.6})
+    problem = OrbitProblem(MACHINE, Word.parse(text), periods, "amplitude", params, symmetric)
+    bordered = assemble(MACHINE).bordered
+    signs = []
+    for seed in range(20):
+        u = some_nodes(problem, seed)
+        F, J, work = dense(problem, u, 0.6)
+        border = np.random.default_rng(100 + seed).normal(size=problem.dimension + 1)
+        step, tangent = np.empty_like(border), np.empty_like(border)
+        sign = bordered(problem.data, work, border, 0.3, step, tangent)
+        full = np.vstack([J, border])
+        condition = np.linalg.cond(full)
+        wanted = np.linalg.solve(full, np.r_[-F, 0.3])
+        along = np.linalg.solve(full, np.r_[np.zeros_like(F), 1.0])
+        np.testing.assert_allclose(step, wanted, atol=1e-14 * condition * (1 + np.abs(wanted).max()))
+        np.testing.assert_allclose(tangent, along, atol=1e-14 * condition * (1 + np.abs(along).max()))
+        signs.append(sign * np.sign(np.linalg.det(full)))
+    assert len(set(signs)) == 1  # the sign of the determinant, up to a constant of the word
+
+
+def test_alternating_impacts_are_the_published_maps():
+    """G+_LR and G+_RL as printed by Youssef, Karoui, Leine (their table of elementary mappings)."""
+    params = MACHINE.vector({"amplitude": 0.6})
+    C, r, mu, g, eps, omega = params
+    problem = OrbitProblem(MACHINE, Word.parse("LR"), 1, "amplitude", params)
+    u = np.array([0.3, 1.1, 3.0, -0.9])
+    end = u[:2] + [2.0 * np.pi, 0.0]
+    pull = mu * g * (1.0 + eps)
+
+    def G(a, b, s):
+        return [
+            b[1] + r * a[1] - (1 + r) * C * omega * np.cos(b[0]) - s * r * pull / omega * (b[0] - a[0]),
+            -a[1] / omega * (b[0] - a[0])
+            + C * (np.sin(b[0]) - np.sin(a[0]))
+            + s * 0.5 * pull / omega**2 * (b[0] - a[0]) ** 2
+            + 2.0 * s,
+        ]
+
+    np.testing.assert_allclose(residual(problem, u, C), [*G(u[:2], u[2:], 1.0), *G(u[2:], end, -1.0)], atol=1e-14)
+
+
+def pre_impact_multipliers(orbit):
+    """Multipliers of the published pre-impact maps G-_LR, G-_RL, derivatives by complex steps."""
+    C, r, mu, g, eps, omega = orbit.params
+    pull = mu * g * (1.0 + eps)
+
+    def G(a, b, s):
+        d = b[0] - a[0]
+        leave = r * a[1] - (1 + r) * C * omega * np.cos(a[0])
+        return np.array(
+            [
+                leave + b[1] + s * pull / omega * d,
+                C * (np.sin(b[0]) - np.sin(a[0])) + 2.0 * s + 0.5 * s * pull / omega**2 * d**2 + leave * d / omega,
+            ]
+        )
+
+    nodes = np.column_stack([orbit.nodes[:, 0], orbit.events.B_pre])
+    nodes = np.vstack([nodes, nodes[:1] + [2.0 * np.pi, 0.0]])
+    product = np.eye(2)
+    for i, s in ((0, 1.0), (1, -1.0)):
+        blocks = []
+        for which in (0, 1):
+            block = np.empty((2, 2))
+            for c in range(2):
+                pair = [nodes[i].astype(complex), nodes[i + 1].astype(complex)]
+                pair[which][c] += 1e-30j
+                block[:, c] = G(*pair, s).imag / 1e-30
+            blocks.append(block)
+        assert np.abs(G(nodes[i], nodes[i + 1], s)).max() < 1e-12
+        product = -np.linalg.solve(blocks[1], blocks[0]) @ product
+    return np.linalg.eigvals(product)
+
+
+@settings(max_examples=40, deadline=None)
+@given(r=st.floats(0.2, 1.0), mu=st.floats(0.0, 0.6), omega=st.floats(0.5, 2.0), above=st.floats(0.01, 0.5))
+def test_pre_impact_maps_have_the_same_multipliers(r, mu, omega, above):
+    from orbits.closed_forms import fold_square, friction_number, restitution_ratio
+
+    machine = Absorber(restitution=r, friction=mu, gravity=0.2, mass_ratio=0.01, frequency=omega)
+    least = float(fold_square(restitution_ratio(r), friction_number(mu, 0.2, 0.01, omega)))
+    orbit = machine.symmetric_orbit(amplitude=np.sqrt(least + above))
+    ours = np.sort_complex(np.round(orbit.multipliers, 14))
+    theirs = np.sort_complex(np.round(pre_impact_multipliers(orbit), 14))
+    np.testing.assert_allclose(ours, theirs, atol=1e-10, rtol=1e-10)

@@ -1,0 +1,188 @@
+"""Orbits: closed forms, determinant identities, long words, mirror images, energy."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from orbits import Absorber, ParameterError
+from orbits.closed_forms import (
+    fold_beta,
+    fold_square,
+    friction_number,
+    restitution_ratio,
+    sliding_squares,
+    symmetric_square,
+    symmetry_breaking_beta,
+    symmetry_breaking_square,
+)
+from orbits.start import StartError, polish
+
+PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+machines = st.builds(
+    Absorber,
+    restitution=st.floats(0.15, 1.0),
+    friction=st.floats(0.0, 0.8),
+    gravity=st.floats(0.05, 0.4),
+    mass_ratio=st.floats(0.0, 0.05),
+    frequency=st.floats(0.5, 2.0),
+)
+
+
+def numbers(machine):
+    R = restitution_ratio(machine.restitution)
+    H = friction_number(machine.friction, machine.gravity, machine.mass_ratio, machine.frequency)
+    return float(R), float(H)
+
+
+def test_published_bounds():
+    """C^2 at fold and symmetry breaking: Youssef, Karoui, Leine, for both of their parameter sets (six digits)."""
+    for mu, g, fold, breaking in ((0.5, 0.211, 0.0637942, 0.5282903), (0.1, 0.422, 0.0233851, 0.4961028)):
+        R, H = restitution_ratio(0.76), friction_number(mu, g, 0.006)
+        assert float(fold_square(R, H)) == pytest.approx(fold, abs=6e-8)
+        assert float(symmetry_breaking_square(R, H)) == pytest.approx(breaking, abs=6e-8)
+
+
+@settings(max_examples=60, deadline=None)
+@given(machines, st.floats(0.0, 1.0))
+def test_closed_form_solves_the_maps(machine, above):
+    R, H = numbers(machine)
+    assume(H * R < 1.2)
+    orbit = machine.symmetric_orbit(np.sqrt(float(fold_square(R, H)) + above))
+    assert orbit.residual < 1e-12 * (1.0 + orbit.nodes.max())
+    assert orbit.symmetric
+
+
+@settings(max_examples=40, deadline=None)
+@given(machines)
+def test_half_multiplier_is_one_at_the_fold_and_minus_one_at_the_breaking(machine):
+    R, H = numbers(machine)
+    assume(R * H < 1.2)
+    for beta, wanted in ((fold_beta(R, H), 1.0), (symmetry_breaking_beta(R, H), -1.0)):
+        square = float(symmetric_square(beta, R, H))
+        orbit = machine.symmetric_orbit(np.sqrt(square) * (1 + 1e-15), stable=True)
+        # at the fold a multiplier is 1 + O(sqrt(rounding))
+        assert np.abs(orbit.half_multipliers - wanted).min() < (2e-6 if wanted > 0 else 1e-9)
+
+
+@settings(max_examples=40, deadline=None)
+@given(machines, st.floats(0.01, 0.8))
+def test_determinant_of_alternating_impacts(machine, above):
+    R, H = numbers(machine)
+    assume(R * H < 1.2)
+    orbit = machine.symmetric_orbit(np.sqrt(float(fold_square(R, H)) + above))
+    assert np.prod(orbit.multipliers) == pytest.approx(machine.restitution**4, rel=1e-9)
+
+
+def test_determinant_with_turns():
+    """det A = prod r^2 over impacts * prod (|v''| - a)/(|v''| + a) over turns."""
+    orbit = PAPER.orbit("LRtt", amplitude=0.95)
+    a = 1.006 * 0.5 * 0.211
+    shaking = [abs(0.95 * np.sin(psi)) for psi, letter in zip(orbit.nodes[:, 0], orbit.word.events) if letter == "t"]
+    wanted = 0.76**4 * np.prod([(v - a) / (v + a) for v in shaking])
+    assert np.prod(orbit.multipliers).real == pytest.approx(wanted, rel=1e-10)
+
+
+def test_a_stick_forgets():
+    orbit = PAPER.orbit("LRs", amplitude=np.sqrt(0.74))
+    assert np.abs(orbit.multipliers).min() == 0.0
+    assert orbit.real
+
+
+@pytest.mark.parametrize("times", [2, 16, 256])
+def test_long_words_lose_nothing(times):
+    orbit = PAPER.symmetric_orbit(0.55)
+    long = orbit.repeat(times)
+    assert long.residual < 1e-12
+    # powers in logarithms: the numbers themselves underflow
+    np.testing.assert_allclose(
+        np.log(np.abs(long.multipliers)), times * np.log(np.abs(orbit.multipliers)), rtol=1e-11
+    )
+    short, problem = orbit.problem("amplitude"), long.problem("amplitude", symmetric=False)
+    tangents = []
+    for each, source in ((short, orbit), (problem, long)):
+        u, p = source.seed(each)
+        border = np.zeros(each.dimension + 1)
+        border[-1] = 1.0
+        step, tangent = np.empty_like(border), np.empty_like(border)
+        work = each.workspace()
+        each.kernels.linearise(each.data, u, p, work)
+        each.kernels.bordered(each.data, work, border, 0.0, step, tangent)
+        tangents.append(tangent)
+    full = short.expand(np.r_[tangents[0][:-1]])
+    full[1, 0] -= short.shift
+    np.testing.assert_allclose(tangents[1][:-1], np.tile(full.ravel(), times), atol=1e-9)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.3, 1.2), st.integers(0, 3))
+def test_descriptions_of_one_orbit_agree(amplitude, places):
+    orbit = PAPER.symmetric_orbit(amplitude)
+    for other in (orbit.mirror(), orbit.rotate(places), orbit.repeat(3)):
+        assert other.residual < 1e-11
+        problem, twin = orbit.problem(), other.problem(symmetric=False)
+        key, vector = problem.canonical(*orbit.seed(problem))
+        key2, vector2 = twin.canonical(*other.seed(twin))
+        assert key == key2
+        np.testing.assert_allclose(vector, vector2, atol=1e-10)
+
+
+def test_losses_balance_the_work_of_the_cavity():
+    """Work of the shaking on the relative motion, by quadrature of the samples, against the losses."""
+    orbit = PAPER.symmetric_orbit(0.6)
+    s = orbit.sample(40001)
+    inside = np.diff(s["segment"]) == 0
+    # d(w'^2/2)/dtau = w' v'' - a |w'|; per unit of m/(1 + eps)
+    push = -0.6 * np.sin(s["phase"]) * s["w_rate"]
+    work = np.sum(0.5 * (push[1:] + push[:-1]) * np.diff(s["tau"]) * inside) / 1.006
+    assert orbit.measure("impact_loss") + orbit.measure("friction_loss") == pytest.approx(work, rel=1e-7)
+    assert np.abs(s["w"]).max() <= 1.0 + 1e-12
+    np.testing.assert_allclose(s["cavity"] - s["absorber"], s["w"], atol=1e-12)
+
+
+def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
+    low, high = (float(x) for x in sliding_squares(friction_number(0.5, 0.211, 0.006)))
+    for square, word in ((0.5 * (low + high), "tt"), (1.01 * low, "tt"), (0.99 * low, "ss"), (0.5 * low, "ss")):
+        orbit = PAPER.orbit(word, amplitude=np.sqrt(square))
+        assert orbit.real and orbit.symmetric and orbit.residual < 1e-12
+        assert len(orbit.multipliers) == 1
+        assert abs(orbit.multipliers[0]) < 1.0
+
+
+def test_without_friction_words_need_no_turns():
+    """The same physical motion for a -> 0: three impacts, once with a turn (small a), once without (a = 0)."""
+    free = Absorber(restitution=0.76, friction=0.0, gravity=0.211, mass_ratio=0.006)
+    rough = free.changed(friction=1e-7)
+    guess = rough.orbit("LRtR", amplitude=1.35)
+    hits = [i for i, letter in enumerate(guess.word.events) if letter in "LR"]
+    smooth = free.orbit("LRR", amplitude=1.35, guess=guess.nodes[hits])
+    assert smooth.real and guess.real
+    np.testing.assert_allclose(smooth.nodes, guess.nodes[hits], atol=1e-5)
+    np.testing.assert_allclose(np.sort(np.abs(smooth.multipliers)), np.sort(np.abs(guess.multipliers)), rtol=1e-5)
+
+
+def test_polish_returns_the_orbit_itself():
+    orbit = PAPER.symmetric_orbit(0.55)
+    moved = type(orbit)(orbit.model, orbit.word, 1, orbit.nodes + 0.02, orbit.params)
+    again = polish(moved)
+    assert again is not None
+    np.testing.assert_allclose(again.nodes, orbit.nodes, atol=1e-12)
+
+
+def test_bad_input_has_sentences():
+    with pytest.raises(ParameterError, match="restitution = 1.4"):
+        Absorber(restitution=1.4, friction=0.1, gravity=0.1)
+    with pytest.raises(ParameterError, match="friction = -0.1"):
+        Absorber(restitution=0.4, friction=-0.1, gravity=0.1)
+    with pytest.raises(ParameterError, match="not finite"):
+        Absorber(restitution=0.4, friction=float("nan"), gravity=0.1)
+    with pytest.raises(ParameterError, match="begins at"):
+        PAPER.symmetric_orbit(0.1)
+    with pytest.raises(ParameterError, match="amplitude is missing"):
+        PAPER.orbit("LR")
+    with pytest.raises(StartError, match="periods = 0"):
+        PAPER.orbit("LR", periods=0, amplitude=0.5)
+    with pytest.raises(StartError, match="one \\[phase"):
+        PAPER.orbit("LR", amplitude=0.5, guess=[[1.0, 2.0]])
+    with pytest.raises(StartError, match="simulator finds"):
+        PAPER.orbit("LRLtLt", amplitude=0.3)
