@@ -87,8 +87,9 @@ def _fall(lo, hi, p0, q0, C, A, k0, m0):
         new = x - p / q if q < 0.0 else lo
         if not (lo < new < hi):
             new = 0.5 * (lo + hi)
-        if abs(new - x) <= 2.3e-16 * x or hi - lo <= 2.3e-16 * hi:
-            return new
+        change = abs(new - x)
+        if change <= 1e-8 * x and C * change * change <= -1e-16 * q * x or hi - lo <= 2.3e-16 * hi:
+            return new  # what is left is of second order
         x = new
     return x
 
@@ -252,9 +253,16 @@ def advance(state, params, until, codes, modes, rows):
                     if not step > 2.3e-16 * x:
                         break
                     x -= step
-                    _sine, versine, third, fourth = _remainders(x)
+                    sine, versine, third, fourth = _remainders(x)
                     rate = p + q0 * x + C * (k0 * versine - m0 * third)
                     y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
+                    step = (y - target) / rate
+                    pull = q0 + C * (k0 * sine - m0 * versine)
+                    if step <= 1e-5 * x and abs(pull) * step <= 1e-5 * rate:
+                        step *= 1.0 + 0.5 * step * pull / rate  # the last step from values at hand
+                        x -= step
+                        rate -= step * (pull - 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
+                        break
         if kind == 0 and x < end:
             before = x
             for _ in range(200):  # concave: from the left
@@ -272,9 +280,17 @@ def advance(state, params, until, codes, modes, rows):
                 x += step
                 if x > end:
                     x = end
-                _sine, versine, third, fourth = _remainders(x)
+                sine, versine, third, fourth = _remainders(x)
                 rate = p + q0 * x + C * (k0 * versine - m0 * third)
                 y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
+                step = (target - y) / rate
+                pull = q0 + C * (k0 * sine - m0 * versine)
+                if 0.0 < step <= 1e-5 * x and abs(pull) * step <= 1e-5 * rate and x + step < end:
+                    step *= 1.0 - 0.5 * step * pull / rate  # the last step from values at hand
+                    x += step
+                    rate += step * (pull + 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
+                    kind = 1
+                    break
             else:
                 kind = 1
             if kind == 2:
