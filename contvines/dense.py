@@ -56,7 +56,7 @@ def bordered(
         sign = float(np.linalg.slogdet(matrix)[0])
     except np.linalg.LinAlgError:
         left, values, right = np.linalg.svd(matrix)
-        values = np.maximum(values, 1e-200)
+        values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
         with np.errstate(all="ignore"):
             solution = right.T @ ((left.T @ sides) / values[:, None])
         sign = 0.0

@@ -123,20 +123,21 @@ def follow(
 
 
 def make_branch(
-    label: str, engine: Engine, half: Half, real: bool, ended: tuple[str, str], closed: bool, seed: str | None
+    label: str, engine: Engine, half: Half, real: bool, ended: tuple[str, str], closed: bool, seed: str | None,
+    origin: int | None = None,
 ) -> Branch:
-    """A Branch from joined arrays; ``marks`` are left to the caller."""
+    """A Branch from joined arrays; ``marks`` are left to the caller, ``origin`` is the point at which it was reached."""
     problem = engine.problem
     stable = engine.stable(half.rows)
     special = np.zeros(len(half), dtype=bool)
     special[[i for i, _ in half.events]] = True
+    if origin is not None:
+        special[origin] = True
     if len(half) > 1:
         # a special point is stable when one of its neighbours is
         before = np.append(False, stable[:-1] & ~special[:-1])
         after = np.append(stable[1:] & ~special[1:], False)
         stable = np.where(special, before | after, stable)
-        if not special[0]:
-            stable[0] = stable[0] or (seed is not None and stable[1])
     return Branch(
         label=label,
         problem=problem,

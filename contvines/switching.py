@@ -45,31 +45,33 @@ class Departure:
 
 
 def null_vectors(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> list[np.ndarray]:
-    """Null vectors of [[F_u, F_p], [tangent]] by inverse (subspace) iteration; unit length, orthogonal in the metric.
+    """Null vectors of [[F_u, F_p], [tangent]]: images of random vectors under its inverse, made orthonormal in the metric.
+
+    One application of the inverse is enough: the matrix is singular to roundoff. (Its eigenvectors are not asked for:
+    iterating with a matrix this far from normal need not converge to the null vector.)
 
     The tangent of the branch itself is excluded by the last row. Usually there is one; two where two multipliers cross
     at once; none where (u, p) is not a branch point.
     """
-    border = engine.weights * tangent
     engine.residual(u, p)
+    border = engine.weights * tangent
     rng = np.random.default_rng(3)
-    count = min(3, engine.n)
-    vectors = [engine.unit(rng.standard_normal(engine.n + 1)) for _ in range(count)]
-    growth = [0.0] * count
-    for _ in range(6):
-        done: list[np.ndarray] = []
-        for i, vector in enumerate(vectors):
-            image = engine.apply_inverse(border, vector)
-            if not np.all(np.isfinite(image)):
-                image = vector
-            for other in done:
-                image = image - engine.inner(image, other) * other
-                image = image - engine.inner(image, other) * other
-            growth[i] = engine.norm(image)
-            done.append(engine.unit(image) if growth[i] > 0.0 else vector)
-        vectors = done
-    scale = max(growth[-1], 1.0) if count > 2 else 1.0
-    found = [v for v, g in zip(vectors, growth) if g > scale / SINGULAR]
+    found: list[np.ndarray] = []
+    first = 0.0
+    for _ in range(min(3, engine.n)):
+        side = np.append(rng.standard_normal(engine.n), 0.0)
+        image = engine.apply_inverse(border, side)
+        size = float(np.abs(image).max())
+        if not np.isfinite(size):
+            break
+        image = image / size
+        for other in found * 2:
+            image = image - engine.inner(image, other) * other
+        growth = size * engine.norm(image) / engine.norm(side)
+        first = max(first, growth)
+        if growth < 1.0 / SINGULAR or growth < 1e-9 * first:
+            break
+        found.append(engine.unit(image))
     return found[:2]
 
 
@@ -84,7 +86,7 @@ def departures(
 ) -> list[Departure]:
     """The branches that leave a branch point of the engine's problem.
 
-    A point at distance ``amplitude`` along the null vector is corrected in the hyperplane through it; the first sweep of
+    With one null vector: a point at distance ``amplitude`` along the null vector is corrected in the hyperplane through it; the first sweep of
     Newton's method there solves the algebraic branching equation, so the part along the known branch need not be known.
 
     Parameters
@@ -103,20 +105,56 @@ def departures(
     if directions is None:
         directions = null_vectors(engine, u, p, tangent)
     if len(directions) == 2:
-        a, b = directions
-        angles = np.arange(8) * np.pi / 8
-        directions = [np.cos(t) * a + np.sin(t) * b for t in angles]
-    found: list[Departure] = []
-    for direction in directions:
-        departure = _depart(engine, u, p, tangent, amplitude, one_sided, direction)
-        if departure is not None and not any(_same(engine, departure, other) for other in found):
-            found.append(departure)
-    return found
+        return _double(engine, u, p, tangent, amplitude, one_sided, directions)
+    found = [_depart(engine, u, p, tangent, amplitude, one_sided, direction) for direction in directions]
+    return [departure for departure in found if departure is not None]
 
 
-def _at(engine: Engine, z: np.ndarray, direction: np.ndarray, amplitude: float) -> Solved | None:
+def _double(
+    engine: Engine,
+    u: np.ndarray,
+    p: float,
+    tangent: np.ndarray,
+    amplitude: float,
+    one_sided: bool,
+    directions: list[np.ndarray],
+) -> list[Departure]:
+    """Two null vectors: starts all round the circle that they span, and at the parameter values found on the way."""
+    z = engine.join(u, p)
+    found: list[tuple[np.ndarray, float]] = []
+
+    def search(offsets: list[float]) -> None:
+        for t in np.arange(16) * np.pi / 16:
+            start = np.cos(t) * directions[0] + np.sin(t) * directions[1]
+            for offset in offsets:
+                point = _at(engine, z, start, amplitude, offset)
+                if point is None:
+                    continue
+                gap = engine.join(point.u, point.p) - z
+                direction = sum(engine.inner(gap, vector) * vector for vector in directions)
+                size = engine.norm(direction)
+                direction = direction / size
+                near = (1.0 - abs(engine.inner(direction, other)) for other, _ in found)
+                if all(distance > 1e-4 for distance in near):
+                    found.append((direction, (point.p - p) / size**2))
+
+    search([0.0])
+    curvatures = [curvature for _, curvature in found]
+    search(sorted({c * amplitude**2 * share for c in curvatures for share in (0.7, 1.4, -1.0)}))
+    result = []
+    for direction, curvature in found[:8]:
+        departure = _depart(engine, u, p, tangent, amplitude, one_sided, direction, curvature)
+        if departure is not None:
+            result.append(departure)
+    return result
+
+
+def _at(
+    engine: Engine, z: np.ndarray, direction: np.ndarray, amplitude: float, offset: float = 0.0
+) -> Solved | None:
     border = engine.weights * direction
     guess = z + amplitude * direction
+    guess[-1] += offset
     along = direction if amplitude > 0.0 else -direction
     found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), along)
     if found is None:
@@ -133,14 +171,18 @@ def _depart(
     amplitude: float,
     one_sided: bool,
     direction: np.ndarray,
+    bend: float = 0.0,
 ) -> Departure | None:
     z = engine.join(u, p)
     best: Departure | None = None
     for _ in range(7):
-        ahead, near = _at(engine, z, direction, amplitude), _at(engine, z, direction, 0.5 * amplitude)
+        half, offset = 0.5 * amplitude, bend * amplitude**2
+        ahead, near = (_at(engine, z, direction, x, y) for x, y in ((amplitude, offset), (half, 0.25 * offset)))
         back = behind = None
         if not one_sided:
-            back, behind = _at(engine, z, direction, -amplitude), _at(engine, z, direction, -0.5 * amplitude)
+            back, behind = (
+                _at(engine, z, direction, x, y) for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
+            )
         if ahead is not None and near is not None and (one_sided or (back is not None and behind is not None)):
             if one_sided:
                 wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / (0.5 * amplitude) ** 2, 0.0
@@ -160,8 +202,3 @@ def _depart(
                 return best
         amplitude *= 0.5
     return best
-
-
-def _same(engine: Engine, one: Departure, other: Departure) -> bool:
-    gap = engine.join(one.ahead.u, one.ahead.p) - engine.join(other.ahead.u, other.ahead.p)
-    return engine.norm(gap) < 1e-3 * one.amplitude

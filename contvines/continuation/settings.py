@@ -27,6 +27,8 @@ class Settings:
         Points per call of the compiled loop: the first call, later calls.
     amplitude : float
         Distance from a special point at which the branch that leaves it is first corrected.
+    escape : float
+        A branch whose unknowns are further than this (rms) from its start has run away.
     max_branches : int
         The automatic diagram stops there.
     """
@@ -41,6 +43,7 @@ class Settings:
     first_chunk: int = 64
     chunk: int = 256
     amplitude: float = 2e-3
+    escape: float = 50.0
     max_branches: int = 200
 
     def __post_init__(self) -> None:
@@ -52,6 +55,8 @@ class Settings:
             value = getattr(self, name)
             if not (isinstance(value, int) and value >= 1):
                 raise ValueError(f"settings: {name} = {value!r} must be a whole number of at least 1")
+        if not self.escape > 0.0:
+            raise ValueError(f"settings: escape = {self.escape!r} must be a positive number")
         if self.min_step >= self.max_step:
             raise ValueError(
                 f"settings: min_step = {self.min_step!r} must be smaller than max_step = {self.max_step!r}"

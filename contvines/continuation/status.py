@@ -15,6 +15,7 @@ class Status(IntEnum):
     BORDER = 4
     MAX_POINTS = 5
     CLOSED = 6
+    ESCAPED = 7
 
     def sentence(self, parameter: str = "p", value: float = float("nan")) -> str:
         """The status as a sentence about a branch at this parameter value."""
@@ -25,5 +26,6 @@ class Status(IntEnum):
             Status.NOT_EVALUABLE: f"the equations cannot be evaluated beyond {parameter} = {value:.10g}",
             Status.BORDER: f"reaches a border at {parameter} = {value:.10g}",
             Status.MAX_POINTS: f"the largest number of points is reached at {parameter} = {value:.6g}",
+            Status.ESCAPED: f"the unknowns run away near {parameter} = {value:.6g}",
             Status.CLOSED: "closed: the branch returns to its start",
         }[self]

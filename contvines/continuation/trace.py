@@ -103,8 +103,12 @@ def chunks(
         else:
             chunk, h = _march(engine, history, capacity, h, stop_at_border)
             closed = closing.cut(chunk)
+            away = np.sqrt(((chunk.points - start.u) ** 2).mean(axis=1)) > settings.escape
             if closed is not None:
                 chunk = closed
+            elif away.any():
+                chunk = chunk.cut(max(int(np.argmax(away)) + 1, 2))
+                chunk.status = Status.ESCAPED
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
             if journal is not None:

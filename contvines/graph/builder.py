@@ -173,7 +173,7 @@ class Builder(Marking, Leaving):
         self.serial += 1
         label = self.new_label("B")
         half, ended, closed = self.both_ways(engine, watch, pending, first, real, label)
-        branch = make_branch(label, engine, half, real, ended, closed, pending.point)
+        branch = make_branch(label, engine, half, real, ended, closed, pending.point, self.origin_index(half, pending))
         self.graph.branches[label] = branch
         self.register.add(branch, engine)
         self.connect(pending.point, pending.source, label, pending.note)

@@ -136,15 +136,18 @@ class Leaving:
                 )
             )
             return
+        # in the same problem: both ways from a point on the other branch, through the special point
         engine, _ = self.engine(point.problem)
         for departure in departures(
             engine, point.u, point.value, point.tangent, self.settings.amplitude, one_sided=False
         ):
+            start = departure.ahead
+            if not engine.lower <= start.p <= engine.upper and departure.back is not None:
+                start = departure.back
             self.queue.append(
                 Pending(
-                    departure.problem, departure.origin.u, departure.origin.p, kind="switch", depth=depth + 1,
-                    source=branch.label, point=point.label, origin=departure.origin, ahead=departure.ahead,
-                    back=departure.back, first_step=min(self.settings.first_step, departure.amplitude),
+                    departure.problem, start.u, start.p, start.tangent, kind="root", depth=depth + 1,
+                    source=branch.label, point=point.label,
                 )
             )
 

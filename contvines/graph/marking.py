@@ -37,7 +37,7 @@ class Marking:
                 if branch.ended[side].startswith("reaches the end of the interval"):
                     events.append((index, self._end(engine, half, index)))
         if pending.point is not None and pending.kind in ("switch", "rest") and not branch.closed:
-            origin = self._origin_index(half, pending)
+            origin = self.origin_index(half, pending)
             if origin is not None:
                 marks.append((origin, pending.point))
         events.sort(key=lambda pair: pair[0])
@@ -52,6 +52,10 @@ class Marking:
                 fresh.append(point)
             else:
                 known = self.graph.special[label]
+                if known in fresh and abs(known.index - index) <= 1:
+                    self.remark(label, "two multipliers cross at once")
+                    known.index = min(index, known.index)
+                    continue
                 if meets:
                     self.connect(label, known.branch, branch.label)
                 elif known.kind in BORDERS:
@@ -74,7 +78,8 @@ class Marking:
         branch.ended = (ends.get(0, branch.ended[0]), ends.get(1, branch.ended[1]))
         return fresh
 
-    def _origin_index(self: Builder, half: Half, pending: Pending) -> int | None:
+    def origin_index(self: Builder, half: Half, pending: Pending) -> int | None:
+        """Index of the special point from which the branch was reached, if it is one of its points."""
         if pending.origin is None:
             return None
         gap = np.abs(half.points - pending.origin.u).max(axis=1) + np.abs(half.values - pending.origin.p)
