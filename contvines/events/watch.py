@@ -112,11 +112,20 @@ class Watch:
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + e.position, bracket=bracket) for e in found]
             found.sort(key=lambda e: e.position)
+            stop = next((e for e in found if e.kind == "meets" or e.note == "border"), None)
+            if stop is not None:
+                # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
+                found = [e for e in found if e is stop or self._apart(e, stop)]
+                events = [e for e in events if self._apart(e, stop)]
             for event in found:
                 events.append(event)
                 if event.kind == "meets" or event.note == "border":
                     return events
         return events
+
+    def _apart(self, event: Located, stop: Located) -> bool:
+        engine, a, b = self.engine, event.point, stop.point
+        return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > 1e-5
 
     # ------------------------------------------------------------------ one segment
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:

@@ -44,7 +44,7 @@ class Marking:
         for index, event in events:
             meets = event.kind == "meets"
             kind = engine.problem.symmetries[event.index].kind if meets else self._kind(engine, event)
-            label = self._known(engine, event, kind, pending, meets, index in (0, last))
+            label = self._known(engine, branch, event, kind, pending, meets, index in (0, last))
             if label is None:
                 label = self.new_label(PREFIXES.get(kind, "US"))
                 point = self._special(label, kind, engine, branch, event, index)
@@ -108,13 +108,22 @@ class Marking:
         return event.kind
 
     def _known(
-        self: Builder, engine: Engine, event: Located, kind: str, pending: Pending, meets: bool, at_end: bool
+        self: Builder, engine: Engine, branch: Branch, event: Located, kind: str, pending: Pending, meets: bool, at_end: bool
     ) -> str | None:
         problem, point = engine.problem, event.point
         if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
             source = self.graph.special[pending.point]
             if abs(source.value - point.p) <= BACK_AT_BORDER * self.unit:
                 return source.label
+        if kind in BORDERS and at_end:
+            for other in self.queue:
+                if other.kind != "border" or other.point is None:
+                    continue
+                if abs(self.graph.special[other.point].value - point.p) > BACK_AT_BORDER * self.unit:
+                    continue
+                found = self.register.find(other.problem, other.u, other.p)
+                if found is not None and found.label == branch.label:
+                    return other.point
         for known in self.graph.special.values():
             if kind == "user" and known.note != event.note:
                 continue
