@@ -206,10 +206,10 @@ class Orbit:
         return sample(self, points)
 
     def replay(self) -> float:
-        """Largest deviation of the event-driven simulation from the orbit over one period (inf: other events)."""
-        from orbits.simulation.replay import replay
+        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.following`."""
+        from orbits.following import replay_error
 
-        return float(replay(self).error)
+        return replay_error(self)
 
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""

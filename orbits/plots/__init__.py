@@ -1,0 +1,1 @@
+"""Pictures of orbits; matplotlib is imported by the first of them."""

@@ -1,0 +1,100 @@
+"""Phase portrait and time history of one orbit, with the cavity's walls and the events."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from orbits.orbit import Orbit
+
+MARKS = {"L": "o", "R": "s", "t": "^", "s": "D", "u": "v"}
+WHAT = {"L": "impact left", "R": "impact right", "t": "turn", "s": "stick", "u": "slip"}
+ORBIT, CAVITY, ABSORBER, WALL = "#0b3c6f", "#6d6d6d", "#b5531c", "#d9d9d9"
+
+
+def portrait(orbit: Orbit, points: int = 1200) -> Figure:
+    """Draw the orbit: w' against w on the left, motions over forcing periods on the right.
+
+    Parameters
+    ----------
+    orbit : Orbit
+    points : int
+        Samples over the period.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    import matplotlib.pyplot as plt
+
+    with plt.style.context(str(files("orbits.plots") / "house.mplstyle")):
+        figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.0), width_ratios=(1.0, 1.5), layout="constrained")
+        motion = orbit.sample(points)
+        _phase(left, orbit, motion)
+        _history(right, orbit, motion)
+        kind = "symmetric" if orbit.symmetric else "asymmetric"
+        state = ("stable" if orbit.stable else "unstable") + ("" if orbit.real else ", virtual: no machine can follow it")
+        figure.suptitle(
+            f"{orbit.word.text}, {orbit.impacts} impacts in {orbit.periods} forcing period"
+            f"{'s' if orbit.periods > 1 else ''}, {kind}, {state}",
+            fontsize="medium",
+        )
+    return figure
+
+
+def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
+    w, rate = motion["w"], motion["w_rate"]
+    reach = 1.15 * max(1e-3, float(np.abs(rate).max()))
+    bound = 1.0 if not orbit.word.impact_free or np.abs(w).max() > 0.5 else 1.3 * float(np.abs(w).max())
+    if bound == 1.0:
+        for side in (-1.0, 1.0):
+            axes.axvspan(side, 1.16 * side, color=WALL, lw=0.0)
+    axes.axhline(0.0, color="0.75", lw=0.7, zorder=0)
+    line = "-" if orbit.real else ":"
+    for segment in range(len(orbit.word)):
+        here = motion["segment"] == segment
+        axes.plot(w[here], rate[here], line, color=ORBIT, lw=1.6, zorder=2)
+    table = orbit.events
+    for i, letter in enumerate(orbit.word.events):
+        if letter in "LR":  # the jump of the velocity
+            axes.plot([table.w[i]] * 2, [table.rate_pre[i], table.rate_post[i]], color=ORBIT, lw=0.8, ls=(0, (2, 2)))
+    _events(axes, orbit, table.w, table.rate_post)
+    axes.set(
+        xlim=(-1.16 * bound, 1.16 * bound),
+        ylim=(-reach, reach),
+        xlabel=r"relative position $w$",
+        ylabel=r"relative velocity $w'$",
+    )
+
+
+def _history(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
+    turns = motion["phase"] / (2.0 * np.pi)
+    line = "-" if orbit.real else ":"
+    cavity, absorber = motion["cavity"], motion["absorber"]
+    for side in (-1.0, 1.0):  # where the absorber touches the walls: q2 = q1 -+ 1
+        axes.plot(turns, cavity + side, color=CAVITY, lw=1.0)
+        axes.fill_between(turns, cavity + side, cavity + 1.25 * side, color=WALL, lw=0.0)
+    axes.plot(turns, cavity, color=CAVITY, lw=1.0, ls="--", label="cavity, $q_1$")
+    axes.plot(turns, absorber, line, color=ABSORBER, lw=1.6, label="absorber, $q_2$")
+    table = orbit.events
+    eps = orbit.parameters["mass_ratio"]
+    _events(axes, orbit, table.phase / (2.0 * np.pi), (table.v - table.w) / (1.0 + eps), labelled=True)
+    axes.set(xlabel=r"forcing periods $\Psi/2\pi$", ylabel=r"positions in units of $b$", xlim=(turns[0], turns[-1]))
+    axes.margins(y=0.02)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=4, frameon=False, fontsize="small")
+
+
+def _events(axes: Any, orbit: Orbit, x: np.ndarray, y: np.ndarray, labelled: bool = False) -> None:
+    shown = set()
+    for i, letter in enumerate(orbit.word.events):
+        label = WHAT[letter] if labelled and letter not in shown else None
+        shown.add(letter)
+        axes.plot(
+            x[i], y[i], MARKS[letter], color="white", mec="black", mew=1.0, ms=6, ls="none", zorder=4, label=label
+        )
