@@ -4,6 +4,7 @@ Each sub-command lives in a file of this folder and is registered below. Importi
 numpy, numba, matplotlib, rich and pydantic are imported by the commands that need them.
 """
 
+import gc
 import sys
 from typing import Annotated
 
@@ -56,6 +57,7 @@ app.command()(design.design)
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; every error ends as a sentence on stderr and a non-zero exit status."""
+    gc.set_threshold(200_000, 20, 100)  # imports and compiled code make many objects that stay
     words = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in words
     words = [w for w in words if w != "--debug"]

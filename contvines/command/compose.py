@@ -57,19 +57,12 @@ def first_orbit(study: "Study") -> Any:
         raise ValueError(f"{study.path}: [start] {error}") from error
 
 
-def run_diagram(study: "Study", seed: Any, journal: Any, depth: int) -> "Graph":
-    """The automatic diagram of a study from its first orbit."""
+def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
+    """The automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
     import contvines
 
-    return contvines.diagram(
-        seed,
-        over=study.parameter,
-        within=study.within,
-        depth=depth,
-        virtual=study.virtual,
-        journal=journal,
-        settings=study.settings,
-    )
+    asked = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
+    return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 
 def beside(path: Path, ending: str) -> Path:

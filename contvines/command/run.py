@@ -56,25 +56,24 @@ def switch(
     quiet: QuietOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
-    from contvines.command.progress import watched
-    from contvines.journal import NullJournal
-    from contvines.store import Store
+    from contvines.command.progress import shown
+    from contvines.store import Store, load
 
-    with Store.open(file, write=True) as store:
-        if not store.finished:
-            raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
-        graph = store.graph()
-        point = graph[label]
-        if not hasattr(point, "kind"):
-            specials = ", ".join(graph.special) or "none"
-            raise ValueError(f"{label} is a branch; give a special point of {file}: {specials}.")
-        from contvines.graph.diagram import extend
+    graph = load(file)
+    if not graph.finished:
+        raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
+    if label not in graph.special:
+        what = "is a branch" if label in graph.branches else "is no label of it"
+        raise ValueError(
+            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
+        )
 
-        before = set(graph.branches)
-        with _interruptible(f"{file} is as it was"), watched(NullJournal(), quiet=quiet) as journal:
-            extend(graph, label, journal=journal)
-        new = [b for name, b in graph.branches.items() if name not in before]
-        if new:
+    from contvines.graph.automatic import switch as leave
+
+    with _interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
+        new = [graph.branches[name] for name in leave(graph, label, progress=progress)]
+    if new:
+        with Store.open(file, write=True) as store:
             store.checkpoint(graph)
     if not quiet:
         if not new:
@@ -129,14 +128,14 @@ def _run(
 def _continue(
     study: Any, seed: Any, command: str, target: Path, fingerprint: str, quiet: bool, run: Any
 ) -> Any:
-    from contvines.command.progress import watched
+    from contvines.command.progress import shown
     from contvines.store import Store
 
-    depth = study.depth if command == "diagram" else 0
+    alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
     with Store.attach(target, fingerprint, study.describe()) as store:
         note = f"all finished points are kept in {target}; the same command goes on from there"
-        with _interruptible(note), watched(store, quiet=quiet) as journal:
-            graph = run(study, seed, journal, depth)
+        with _interruptible(note), shown(quiet=quiet) as progress:
+            graph = run(study, seed, journal=store, progress=progress, **alone)
         if not store.finished:
             store.checkpoint(graph)
     return graph

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .labels import place_labels
-from .style import LINES, MARKS, PLAIN, STATES, axis_label, new_axes, styled
+from .style import LINES, MARKS, PLAIN, STATES, axis_label, new_axes, settle, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -69,6 +69,8 @@ def plot_diagram(
             if branch is None:
                 continue
             px, py = _at(branch, point, x), _at(branch, point, y)
+            if not (np.isfinite(px) and np.isfinite(py)):
+                continue  # such as B of a motion without impacts
             mark = MARKS.get(point.kind, PLAIN)
             used.setdefault(mark.name, mark)
             color = tint[branch.label]
@@ -89,7 +91,7 @@ def plot_diagram(
         axes.set_ylabel(axis_label(y))
         _legend(axes, states, used)
         if labels:
-            figure.draw_without_rendering()
+            settle(figure)
             middles = _middles(graph, x, y, tint, axes) if len(graph.branches) > 1 else []
             for text, px, py, color in [*special, *middles]:
                 anchors.append((px, py))

@@ -96,6 +96,15 @@ def new_figure(**options: Any) -> "Figure":
     return made
 
 
+def settle(figure: "Figure") -> None:
+    """Give everything its final place; a figure without a window is not laid out again."""
+    import sys
+
+    figure.draw_without_rendering()
+    if "matplotlib.pyplot" not in sys.modules:
+        figure.set_layout_engine("none")
+
+
 def save_figure(figure: "Figure", path: str | Path) -> None:
     """Save a figure; the name's ending chooses the format.
 

@@ -5,7 +5,7 @@ damaged, is newer, or belongs to another study is refused with a sentence and le
 """
 
 from .database import Store
-from .files import load, save
+from .files import load, resume, save
 from .header import APPLICATION_ID, VERSION, StoreError
 
-__all__ = ["APPLICATION_ID", "VERSION", "Store", "StoreError", "load", "save"]
+__all__ = ["APPLICATION_ID", "VERSION", "Store", "StoreError", "load", "resume", "save"]

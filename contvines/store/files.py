@@ -34,6 +34,20 @@ def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
             draft.unlink()
 
 
+def resume(path: str | Path, fingerprint: str = "run from Python") -> Store:
+    """The journal kept in a file, made where there is none: `diagram(..., journal=resume("run.vines"))`.
+
+    Run the same command with the same journal again after an interruption, and it goes on where it stopped.
+    `fingerprint` names the run; a file of another one is refused.
+
+    Raises
+    ------
+    StoreError
+        If the file is not ours, is damaged, is newer or belongs to another run.
+    """
+    return Store.attach(path, fingerprint)
+
+
 def load(path: str | Path, *, problems: bool = True) -> Any:
     """The graph kept in a .vines file; `graph.finished` says whether its run had ended.
 

@@ -1,0 +1,77 @@
+"""The README's two commands, its code and its names are true."""
+
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).parents[1]
+README = (TOP / "README.md").read_text(encoding="utf-8")
+
+
+def command(name):
+    found = re.search(rf"<!-- command: {name} -->\n```sh\n(.+?)\n```", README)
+    assert found, f"README.md has no command after its marker {name!r}"
+    assert "\n" not in found[1]
+    return found[1]
+
+
+def test_main_job_runs_as_written(tmp_path):
+    words = shlex.split(command("run").rpartition(" && ")[2])
+    assert words[0] == ".venv/bin/contvines"
+    words = [str(TOP / w) if w.startswith("examples/") else w for w in words[1:]]
+    done = subprocess.run(
+        [sys.executable, "-m", "contvines.command", *words], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert "SB1" in done.stdout
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["friction.png", "friction.vines"]
+
+
+def test_both_commands_start_from_a_bare_python():
+    for name in ("run", "tests"):
+        assert command(name).startswith("python3 -m venv .venv && .venv/bin/pip install ")
+    assert command("tests").endswith("pytest")
+
+
+def test_python_block_runs(tmp_path, monkeypatch):
+    block = re.search(r"<!-- run by the tests -->\n```python\n(.+?)```", README, re.DOTALL)
+    assert block
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    exec(compile(block[1], "README.md", "exec"), names)
+    assert names["graph"].finished
+    assert (tmp_path / "absorber.vines").exists()
+
+
+def test_study_block_is_a_good_study():
+    from contvines.command.study import check_study
+
+    block = re.search(r"```toml\n(.+?)```", README, re.DOTALL)
+    assert block
+    assert check_study(tomllib.loads(block[1])).word == "LR"
+
+
+@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(((?!http)[^)#]+)\)", README))))
+def test_links_lead_somewhere(target):
+    assert (TOP / target).exists()
+
+
+def test_labels_in_the_table_are_the_ones_in_use():
+    from contvines.special import PREFIXES
+
+    named = set(re.findall(r"\| `([A-Z]{2})` ", README))
+    assert named <= set(PREFIXES.values())
+    assert len(named) == 10
+
+
+def test_commands_named_are_commands():
+    from contvines.command.cli import app
+
+    real = {c.name or c.callback.__name__ for c in app.registered_commands if c.callback}
+    named = set(re.findall(r"^contvines (\w+)", README, re.MULTILINE))
+    assert named == real
