@@ -28,11 +28,12 @@ EXCESS = (
     50.0  # also trusted: a bound that exceeds the effect of rounding the factors themselves by less than this
 )
 PASSABLE = 1e-7
+CERTAIN, UNCERTAIN, UNDEFINED = 1, 0, -1
 
 
 @kernel
 def _fast_two(A, D, twist, re, im, scratch):
-    """Multipliers of 2 x 2 factors from the scaled product; False where the error bound is too large."""
+    """Multipliers of 2 x 2 factors from the scaled product: CERTAIN; UNCERTAIN: the error bound is too large."""
     length = A.shape[0]
     p00, p01, p10, p11 = 1.0, 0.0, 0.0, 1.0
     norm = 1.0
@@ -43,6 +44,8 @@ def _fast_two(A, D, twist, re, im, scratch):
         a, b, c, d = D[i, 0, 0], D[i, 0, 1], D[i, 1, 0], D[i, 1, 1]
         e, f, g, h = A[i, 0, 0], A[i, 0, 1], A[i, 1, 0], A[i, 1, 1]
         delta = a * d - b * c
+        if not abs(delta) > 0.0:
+            return UNDEFINED
         inverse = -1.0 / delta
         m00 = (d * e - b * g) * inverse
         m01 = (d * f - b * h) * inverse
@@ -58,7 +61,7 @@ def _fast_two(A, D, twist, re, im, scratch):
         norm = abs(p00) + abs(p01) + abs(p10) + abs(p11)
         if not SMALL < norm < LARGE:
             if norm == 0.0 or not norm < math.inf:
-                return False
+                return UNCERTAIN
             shift = math.frexp(norm)[1]
             factor = math.ldexp(1.0, -shift)
             p00, p01, p10, p11 = p00 * factor, p01 * factor, p10 * factor, p11 * factor
@@ -75,7 +78,7 @@ def _fast_two(A, D, twist, re, im, scratch):
     if det == 0.0 or lift < -900:
         relative = 0.0
     elif lift > 900:
-        return False
+        return UNCERTAIN
     else:
         relative = det * math.ldexp(1.0, lift)
     disc = half * half - relative
@@ -111,7 +114,7 @@ def _fast_two(A, D, twist, re, im, scratch):
         norm = abs(s00) + abs(s01) + abs(s10) + abs(s11)
         if not SMALL < norm < LARGE:
             if not norm < math.inf:
-                return False
+                return UNCERTAIN
             if norm == 0.0:
                 break
             shift = math.frexp(norm)[1]
@@ -120,7 +123,7 @@ def _fast_two(A, D, twist, re, im, scratch):
             back += shift
     error = bound * UNIT_ROUNDOFF
     if not (error <= CERTIFIED * modulus or (bound <= EXCESS * inherent and error <= PASSABLE * modulus)):
-        return False
+        return UNCERTAIN
     if disc >= 0.0:
         first = scaled(root, power)
         second = scaled(det / root, det_power - power) if root != 0.0 else 0.0
@@ -131,7 +134,7 @@ def _fast_two(A, D, twist, re, im, scratch):
         re[0] = re[1] = scaled(half, power)
         im[0] = scaled(math.sqrt(-disc), power)
         im[1] = -im[0]
-    return True
+    return CERTAIN
 
 
 @ctypes.CFUNCTYPE(
@@ -191,8 +194,14 @@ def multipliers(A, D, twist, re, im, scratch):
     -------
     converged : bool
     """
-    if A.shape[1] == 2 and _fast_two(A, D, twist, re, im, scratch):
-        return True
+    if A.shape[1] == 2:
+        found = _fast_two(A, D, twist, re, im, scratch)
+        if found == CERTAIN:
+            return True
+        if found == UNDEFINED:
+            for j in range(2):
+                re[j] = im[j] = math.nan
+            return False
     length, n = A.shape[0], A.shape[1]
     found = _periodic(
         A.ctypes.data, D.ctypes.data, length, n, twist, re.ctypes.data, im.ctypes.data, scratch.ctypes.data
