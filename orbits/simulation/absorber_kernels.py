@@ -84,12 +84,16 @@ def _fall(lo, hi, p0, q0, C, A, k0, m0):
             hi = x
         else:
             return x
-        new = x - p / q if q < 0.0 else lo
+        new = x - p / q if q < 0.0 else hi
+        change = abs(new - x)
+        if q < 0.0 and (
+            change <= 2.3e-16 * x or (change <= 1e-8 * x and C * change * change <= -1e-16 * q * x)
+        ):
+            return min(max(new, lo), hi)  # what is left is of second order
         if not (lo < new < hi):
             new = 0.5 * (lo + hi)
-        change = abs(new - x)
-        if change <= 1e-8 * x and C * change * change <= -1e-16 * q * x or hi - lo <= 2.3e-16 * hi:
-            return new  # what is left is of second order
+            if hi - lo <= 2.3e-16 * hi:
+                return new
         x = new
     return x
 
@@ -258,7 +262,11 @@ def advance(state, params, until, codes, modes, rows):
                     y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                     step = (y - target) / rate
                     pull = q0 + C * (k0 * sine - m0 * versine)
-                    if step <= 1e-5 * x and abs(pull) * step <= 1e-5 * rate:
+                    if (
+                        step <= 1e-5 * x
+                        and abs(pull) * step <= 1e-5 * rate
+                        and C * step * step <= 1e-9 * rate
+                    ):
                         step *= 1.0 + 0.5 * step * pull / rate  # the last step from values at hand
                         x -= step
                         rate -= step * (pull - 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
@@ -285,7 +293,8 @@ def advance(state, params, until, codes, modes, rows):
                 y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                 step = (target - y) / rate
                 pull = q0 + C * (k0 * sine - m0 * versine)
-                if 0.0 < step <= 1e-5 * x and abs(pull) * step <= 1e-5 * rate and x + step < end:
+                small = abs(pull) * step <= 1e-5 * rate and C * step * step <= 1e-9 * rate
+                if small and 0.0 < step <= 1e-5 * x and x + step < end:
                     step *= 1.0 - 0.5 * step * pull / rate  # the last step from values at hand
                     x += step
                     rate += step * (pull + 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
