@@ -22,6 +22,11 @@ import math
 
 from numba import njit
 
+from orbits.simulation.absorber_motion import energies, sample, works
+from orbits.simulation.digits import remainders, shift, wrap
+
+__all__ = ["ROW", "STATE", "advance", "energies", "launch", "sample", "works"]
+
 STATE = 6
 ROW = 5
 
@@ -32,50 +37,11 @@ _TINY = 1e-30
 
 
 @njit(cache=True, error_model="numpy")
-def _remainders(x):
-    """sin x, 1 - cos x, x - sin x and x^2/2 - 1 + cos x, each to full relative accuracy for small x."""
-    z = x * x
-    if z < 0.25:
-        third = 1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z / 6227020800))
-        third = x * z * (1 / 6 - z * (1 / 120 - z * third))
-        fourth = 1 / 40320 - z * (1 / 3628800 - z * (1 / 479001600 - z / 87178291200))
-        fourth = z * z * (1 / 24 - z * (1 / 720 - z * fourth))
-        return x - third, 0.5 * z - fourth, third, fourth
-    sine = math.sin(x)
-    versine = 1.0 - math.cos(x)
-    return sine, versine, x - sine, 0.5 * z - versine
-
-
-@njit(cache=True, error_model="numpy")
-def _wrap(angle):
-    """The angle reduced to [0, 2 pi), and the number of turns taken away."""
-    turns = math.floor(angle / _TWO_PI)
-    if turns != 0.0:
-        angle -= turns * _TWO_PI
-    if angle < 0.0:
-        angle = 0.0
-    elif angle >= _TWO_PI:
-        angle = 0.0
-        turns += 1.0
-    return angle, turns
-
-
-@njit(cache=True, error_model="numpy")
-def _shift(w, low, step):
-    """w + low + step as a sum of two floats (Knuth's two-sum)."""
-    total = w + step
-    virtual = total - w
-    rest = (w - (total - virtual)) + (step - virtual) + low
-    out = total + rest
-    return out, rest - (out - total)
-
-
-@njit(cache=True, error_model="numpy")
 def _fall(lo, hi, p0, q0, C, A, k0, m0):
     """The zero of p on (lo, hi], where p falls from p(lo) >= 0 to p(hi) <= 0: Newton kept inside the bracket."""
     x = hi
     for _ in range(200):
-        sine, versine, third, _fourth = _remainders(x)
+        sine, versine, third, _fourth = remainders(x)
         p = p0 + q0 * x + C * (k0 * versine - m0 * third)
         q = q0 + C * (k0 * sine - m0 * versine)
         if p > 0.0:
@@ -101,7 +67,7 @@ def _fall(lo, hi, p0, q0, C, A, k0, m0):
 @njit(cache=True, error_model="numpy")
 def launch(state, params):
     """Reduce the phase and set the mode of a start (Psi, w, w', turns, low)."""
-    psi, turns = _wrap(state[0])
+    psi, turns = wrap(state[0])
     state[0] = psi
     state[4] += turns
     omega = params[5]
@@ -161,19 +127,19 @@ def advance(state, params, until, codes, modes, rows):
                     if alpha <= theta < math.pi - alpha - 1e-12:
                         delay = 0.0
                     else:
-                        delay, _ = _wrap(alpha - theta)
+                        delay, _ = wrap(alpha - theta)
                     if delay < wait:
                         wait = delay
                         s = way
                         at_root = delay > 0.0
             if wait >= left:
-                psi, more = _wrap(psi + left)
+                psi, more = wrap(psi + left)
                 turns += more
                 s = 0.0
                 at_root = False
                 status = _TIME_REACHED if driven else _REST
                 break
-            psi, more = _wrap(psi + wait)
+            psi, more = wrap(psi + wait)
             turns += more
             p = 0.0
             codes[count] = _U
@@ -204,7 +170,7 @@ def advance(state, params, until, codes, modes, rows):
             if (rest * rest * C < 1e-16 * (push - A) and factor < 1.0) or p < 1e-13 * C:
                 if p < 1e-13 * C:
                     rest = min(rest, 1e-13)
-                psi, more = _wrap(psi + rest)
+                psi, more = wrap(psi + rest)
                 turns += more
                 codes[count] = _HOLD
                 modes[count] = 0
@@ -227,7 +193,7 @@ def advance(state, params, until, codes, modes, rows):
             end = (p + 2.0 * C) / A if A > 0.0 else math.inf
             if A == 0.0 and C == 0.0:
                 if p == 0.0:
-                    psi, more = _wrap(psi + left)
+                    psi, more = wrap(psi + left)
                     turns += more
                     status = _REST
                     break
@@ -241,7 +207,7 @@ def advance(state, params, until, codes, modes, rows):
         rate = p
         if top > 0.0:
             x = min(top, end)
-            _sine, versine, third, fourth = _remainders(x)
+            _sine, versine, third, fourth = remainders(x)
             rate = p + q0 * x + C * (k0 * versine - m0 * third)
             y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
             if target <= 0.0:
@@ -257,7 +223,7 @@ def advance(state, params, until, codes, modes, rows):
                     if not step > 2.3e-16 * x:
                         break
                     x -= step
-                    sine, versine, third, fourth = _remainders(x)
+                    sine, versine, third, fourth = remainders(x)
                     rate = p + q0 * x + C * (k0 * versine - m0 * third)
                     y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                     step = (y - target) / rate
@@ -288,7 +254,7 @@ def advance(state, params, until, codes, modes, rows):
                 x += step
                 if x > end:
                     x = end
-                sine, versine, third, fourth = _remainders(x)
+                sine, versine, third, fourth = remainders(x)
                 rate = p + q0 * x + C * (k0 * versine - m0 * third)
                 y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                 step = (target - y) / rate
@@ -305,7 +271,7 @@ def advance(state, params, until, codes, modes, rows):
             if kind == 2:
                 if before < x:
                     x = _fall(before, x, p, q0, C, A, k0, m0)
-                    _sine, versine, third, fourth = _remainders(x)
+                    _sine, versine, third, fourth = remainders(x)
                     y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                 else:
                     y = 0.0
@@ -314,7 +280,7 @@ def advance(state, params, until, codes, modes, rows):
             at_root = driven  # theta = alpha: go on with fresh digits
             if driven:
                 x = whole
-        psi, more = _wrap(psi + x)
+        psi, more = wrap(psi + x)
         turns += more
         if kind == 1:
             if not rate > _TINY:
@@ -328,7 +294,7 @@ def advance(state, params, until, codes, modes, rows):
             modes[count] = int(s)
             rows[count, 4] = s * omega * p
         else:
-            w, low = _shift(w, low, s * y)
+            w, low = shift(w, low, s * y)
             if abs(w) > 1.0 or (abs(w) == 1.0 and w * low > 0.0):
                 w = math.copysign(1.0, w)
                 low = 0.0
@@ -364,69 +330,3 @@ def advance(state, params, until, codes, modes, rows):
     state[4] = turns
     state[5] = low
     return count, status
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def sample(states, params, ahead, out):
-    """w, w', v, v' at given phases after given states; contract, item 4."""
-    C = params[0]
-    omega = params[5]
-    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
-    for i in range(states.shape[0]):
-        psi = states[i, 0]
-        x = ahead[i]
-        s = states[i, 3]
-        if s == 0.0:
-            out[i, 0] = states[i, 1]
-            out[i, 1] = 0.0
-        else:
-            p = s * states[i, 2] / omega
-            m0 = -s * math.sin(psi)
-            k0 = -s * math.cos(psi)
-            _sine, versine, third, fourth = _remainders(x)
-            q0 = C * m0 - A
-            out[i, 0] = states[i, 1] + s * (p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth))
-            out[i, 1] = s * omega * (p + q0 * x + C * (k0 * versine - m0 * third))
-        out[i, 2] = C * math.sin(psi + x)
-        out[i, 3] = C * omega * math.cos(psi + x)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def works(states, params, ahead, out):
-    """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5.
-
-    In the frame of the cavity, per mass of the absorber: the integral of -v'' w', and a times the way slid.
-    """
-    C = params[0]
-    omega = params[5]
-    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
-    for i in range(states.shape[0]):
-        out[i, 0] = 0.0
-        out[i, 1] = 0.0
-        out[i, 2] = 0.0
-        s = states[i, 3]
-        if s == 0.0:
-            continue
-        psi = states[i, 0]
-        x = ahead[i]
-        p = s * states[i, 2] / omega
-        m0 = -s * math.sin(psi)
-        k0 = -s * math.cos(psi)
-        m1 = -s * math.sin(psi + x)
-        k1 = -s * math.cos(psi + x)
-        _sine, _versine, third, fourth = _remainders(x)
-        way = p * x + 0.5 * (C * m0 - A) * x * x + C * (k0 * third - m0 * fourth)
-        out[i, 0] = (
-            C
-            * omega
-            * omega
-            * ((p + C * k0) * (k0 - k1) - 0.5 * C * (m1 * m1 - m0 * m0) - A * (m1 - m0 - x * k1))
-        )
-        out[i, 2] = A * omega * omega * abs(way)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def energies(states, params, out):
-    """Kinetic energy of the relative motion per mass of the absorber, w'^2/2; contract, item 5."""
-    for i in range(states.shape[0]):
-        out[i] = 0.5 * states[i, 2] * states[i, 2]

@@ -42,7 +42,7 @@ def test_every_run_is_a_motion(machine, start, amplitude):
     run = simulate(machine, start, periods=25, events=12000, amplitude=amplitude)
     assert np.all(np.abs(run.rows[:, 2]) <= 1.0)
     assert np.all(run.lengths >= 0.0)
-    assert run.balance().error < 1e-9
+    assert run.balance().error < 1e-11
     frictionless = machine.friction == 0.0
     mode = int(run.start[3])
     for letter, after in zip(run.letters, run.modes):
@@ -50,6 +50,12 @@ def test_every_run_is_a_motion(machine, start, amplitude):
             assert letter in FOLLOWS[mode]
         mode = int(after)
         assert mode == {"L": -1, "R": 1, "s": 0, "H": 0}.get(letter, mode)
+    ends = np.empty((len(run), 4))  # each segment, evaluated at its end, meets the event that ended it
+    run.machine.sample(run.states[:-1], run.params, run.lengths[:-1], ends)
+    scale = 1.0 + amplitude * (1.0 + machine.frequency) ** 2
+    meets = run.codes != 5
+    assert np.abs(ends[meets, 0] - run.rows[meets, 2]).max(initial=0.0) < 1e-12 * scale
+    assert np.abs(ends[meets, 1] - run.rows[meets, 3]).max(initial=0.0) < 1e-12 * scale
     if len(run) < 12000:  # in between, evaluated in closed form: inside the walls, and never against the mode
         seen = run.sample(per_period=61)
         assert np.abs(seen.w).max() <= 1.0 + 1e-14
