@@ -14,7 +14,7 @@ from orbits.simulation.driver import simulate
 from orbits.simulation.replay import replay
 from orbits.simulation.return_map import state_of
 
-AT_BORDER = 1e-6  # margins below this may make two events one
+AT_BORDER = 1e-4  # margins below this may make two events one
 
 
 def replay_error(orbit: Orbit) -> float:

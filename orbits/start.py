@@ -12,6 +12,7 @@ from orbits.compiled import assemble
 from orbits.models.base import Model, ParameterError
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
+from orbits.stuck import StuckOrbit
 from orbits.words import Word
 
 TOLERANCE = 1e-12
@@ -71,8 +72,8 @@ def find(
     periods: int = 1,
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
     parameters: Mapping[str, float] | None = None,
-) -> Orbit:
-    """The orbit of `model` with this word.
+) -> Any:
+    """The orbit of `model` with this word: an `Orbit`, or a `StuckOrbit` for the empty word.
 
     Parameters
     ----------
@@ -100,10 +101,7 @@ def find(
         raise StartError(f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more")
     periods = int(periods)
     if len(reading) == 0:
-        raise StartError(
-            "word = '' is the stuck absorber: it has no events to solve for; it exists while the shaking stays below "
-            "friction, see orbits.closed_forms"
-        )
+        return _stuck(model, params)
     tried = []
     if guess is not None:
         nodes = check_guess(reading, model.node, guess)
@@ -132,6 +130,16 @@ def find(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
         f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."
     )
+
+
+def _stuck(model: Model, params: np.ndarray) -> StuckOrbit:
+    orbit = StuckOrbit.of(model, params)
+    if not orbit.real:
+        raise StartError(
+            f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); "
+            "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
+        )
+    return orbit
 
 
 def _proper(orbit: Orbit) -> bool:
