@@ -36,7 +36,27 @@ _HOME = {
     "trace": ".continuation.trace",
 }
 
-__all__ = sorted(_HOME)
+__all__ = [
+    "AlgebraicProblem",
+    "Branch",
+    "Embedding",
+    "Graph",
+    "Kernels",
+    "MapProblem",
+    "MemoryJournal",
+    "NullJournal",
+    "Seed",
+    "Settings",
+    "SpecialPoint",
+    "Switch",
+    "Symmetry",
+    "diagram",
+    "load",
+    "resume",
+    "save",
+    "switch",
+    "trace",
+]
 
 
 def __getattr__(name: str) -> Any:
@@ -62,4 +82,4 @@ if TYPE_CHECKING:
     from .map_problem import MapProblem
     from .problem import Embedding, Kernels, Seed, Symmetry
     from .special import SpecialPoint
-    from .store import load, save
+    from .store import load, resume, save

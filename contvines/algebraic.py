@@ -64,7 +64,9 @@ class AlgebraicProblem(ProblemDefaults):
         self.n_multipliers = self.dimension if spectrum == "flow" else 0
         value = np.asarray(F(self.u0.copy(), self.p0), dtype=float).reshape(-1)
         if len(value) != self.dimension:
-            raise ValueError(f"F returns {len(value)} numbers for {self.dimension} unknowns; as many are needed")
+            raise ValueError(
+                f"F returns {len(value)} numbers for {self.dimension} unknowns; as many are needed"
+            )
         if not np.all(np.isfinite(value)):
             raise ValueError(f"F is not finite at the start u0 = {self.u0}, {parameter} = {self.p0}")
         self.functions = Differentiated(F, jacobian, derivative, self.u0, self.p0)
@@ -107,7 +109,12 @@ class AlgebraicProblem(ProblemDefaults):
                 ("mirror", self.mirror),
             )
         }
-        given = (self.functions.f, self.functions.given_jacobian, self.functions.given_derivative, self.mirror)
+        given = (
+            self.functions.f,
+            self.functions.given_jacobian,
+            self.functions.given_derivative,
+            self.mirror,
+        )
         importable = all(f is None or address(f) is not None for f in given)
         return {
             "name": self.name,

@@ -132,4 +132,6 @@ def _bare_measure(branch: Branch, name: str) -> np.ndarray:
         return np.linalg.norm(branch.points, axis=1)
     if name.startswith("u") and name[1:].isdigit() and int(name[1:]) < branch.points.shape[1]:
         return branch.points[:, int(name[1:])]
-    raise KeyError(f"{branch.label} was loaded without its problem; only norm and u0, u1 ... can be measured, not {name!r}")
+    raise KeyError(
+        f"{branch.label} was loaded without its problem; only norm and u0, u1 ... can be measured, not {name!r}"
+    )

@@ -22,7 +22,9 @@ class DenseWork(NamedTuple):
 
 def dense_workspace(n: int) -> DenseWork:
     """Arrays for n equations."""
-    return DenseWork(np.zeros(n), np.zeros((n, n)), np.zeros(n), np.zeros((n + 1, n + 1)), np.zeros((n + 1, 2)))
+    return DenseWork(
+        np.zeros(n), np.zeros((n, n)), np.zeros(n), np.zeros((n + 1, n + 1)), np.zeros((n + 1, 2))
+    )
 
 
 def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:

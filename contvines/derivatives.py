@@ -56,7 +56,9 @@ class Differentiated:
         p: float,
     ) -> None:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
-        self.complex_step = self._complex_step_works(u, p) if jacobian is None or derivative is None else False
+        self.complex_step = (
+            self._complex_step_works(u, p) if jacobian is None or derivative is None else False
+        )
 
     def value(self, u: np.ndarray, p: float) -> np.ndarray:
         """f(u, p) as float array."""
@@ -86,7 +88,7 @@ class Differentiated:
         return along(lambda t: self.value(u, p + t), 1.0 + abs(p))
 
     def _imaginary(self, u: np.ndarray, p: complex) -> np.ndarray:
-        return np.asarray(self.f(u, p)).reshape(-1).imag / COMPLEX_STEP
+        return np.asarray(self.f(u, p), dtype=complex).reshape(-1).imag / COMPLEX_STEP
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         rng = np.random.default_rng(0)
@@ -104,7 +106,7 @@ class Differentiated:
 
 
 def address(f: Callable) -> str | None:
-    """"module:name" under which a callable can be imported again, or None."""
+    """ "module:name" under which a callable can be imported again, or None."""
     module, name = getattr(f, "__module__", None), getattr(f, "__qualname__", "")
     if not module or module == "__main__" or "<" in name or not name:
         return None

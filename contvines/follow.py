@@ -33,7 +33,8 @@ class Half:
         """The same points in opposite order, tangents turned round."""
         last = len(self) - 1
         events = [
-            (last - i, e._replace(point=e.point._replace(tangent=-e.point.tangent))) for i, e in self.events[::-1]
+            (last - i, e._replace(point=e.point._replace(tangent=-e.point.tangent)))
+            for i, e in self.events[::-1]
         ]
         return Half(
             self.points[::-1], self.values[::-1], -self.tangents[::-1], self.rows[::-1], events, self.status
@@ -123,7 +124,13 @@ def follow(
 
 
 def make_branch(
-    label: str, engine: Engine, half: Half, real: bool, ended: tuple[str, str], closed: bool, seed: str | None,
+    label: str,
+    engine: Engine,
+    half: Half,
+    real: bool,
+    ended: tuple[str, str],
+    closed: bool,
+    seed: str | None,
     origin: int | None = None,
 ) -> Branch:
     """A Branch from joined arrays; ``marks`` are left to the caller, ``origin`` is the point at which it was reached."""
@@ -165,8 +172,18 @@ def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
         "note": [e.note for e in events],
         "index": [int(e.index) for e in events],
         "numbers": np.array(
-            [[e.position, e.error, *e.bracket, e.point.p, e.point.sign, e.point.residual, e.point.correction]
-             for e in events]
+            [
+                [
+                    e.position,
+                    e.error,
+                    *e.bracket,
+                    e.point.p,
+                    e.point.sign,
+                    e.point.residual,
+                    e.point.correction,
+                ]
+                for e in events
+            ]
         ).reshape(len(events), 8),
         "u": np.array([p.u for p in points]).reshape(len(events), n),
         "tangent": np.array([p.tangent for p in points]).reshape(len(events), n + 1),
@@ -180,7 +197,12 @@ def unpack(record: dict[str, Any]) -> list[Located]:
     for i, kind in enumerate(record["kind"]):
         position, error, low, high, p, sign, residual, correction = (float(x) for x in record["numbers"][i])
         point = Solved(
-            np.array(record["u"][i]), p, np.array(record["tangent"][i]), np.array(record["row"][i]), sign, residual,
+            np.array(record["u"][i]),
+            p,
+            np.array(record["tangent"][i]),
+            np.array(record["row"][i]),
+            sign,
+            residual,
             correction,
         )
         events.append(

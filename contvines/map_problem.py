@@ -74,7 +74,9 @@ class MapProblem(ProblemDefaults):
                 nodes.append(np.asarray(f(nodes[-1], self.p0), dtype=float).reshape(-1))
             flat = np.concatenate(nodes)
         if len(flat) != d * cycle:
-            raise ValueError(f"u0 has {len(flat)} numbers; a {cycle}-cycle of points with {d} needs {d * cycle}")
+            raise ValueError(
+                f"u0 has {len(flat)} numbers; a {cycle}-cycle of points with {d} needs {d * cycle}"
+            )
         self.u0 = flat
         self.node = d
         self.dimension = d * self.cycle

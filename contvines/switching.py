@@ -131,7 +131,7 @@ def _double(
                 if point is None:
                     continue
                 gap = engine.join(point.u, point.p) - z
-                direction = sum(engine.inner(gap, vector) * vector for vector in directions)
+                direction = np.array([engine.inner(gap, v) for v in directions]) @ np.array(directions)
                 size = engine.norm(direction)
                 direction = direction / size
                 near = (1.0 - abs(engine.inner(direction, other)) for other, _ in found)
@@ -177,13 +177,19 @@ def _depart(
     best: Departure | None = None
     for _ in range(7):
         half, offset = 0.5 * amplitude, bend * amplitude**2
-        ahead, near = (_at(engine, z, direction, x, y) for x, y in ((amplitude, offset), (half, 0.25 * offset)))
+        ahead, near = (
+            _at(engine, z, direction, x, y) for x, y in ((amplitude, offset), (half, 0.25 * offset))
+        )
         back = behind = None
         if not one_sided:
             back, behind = (
                 _at(engine, z, direction, x, y) for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
             )
-        if ahead is not None and near is not None and (one_sided or (back is not None and behind is not None)):
+        if (
+            ahead is not None
+            and near is not None
+            and (one_sided or (back is not None and behind is not None))
+        ):
             if one_sided:
                 wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / (0.5 * amplitude) ** 2, 0.0
             else:

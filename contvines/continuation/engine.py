@@ -6,6 +6,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import march as source
 from .binding import bind
@@ -168,12 +169,21 @@ class Engine:
         self.work[0].reshape(-1)[:] = -side[: self.n]
         target = float(side[self.n])
         self.bound.solve(
-            self.data, self.work, self.u, 0.0, border, target, self.step, self.tangent, NO_ROW, source.ELIMINATE
+            self.data,
+            self.work,
+            self.u,
+            0.0,
+            border,
+            target,
+            self.step,
+            self.tangent,
+            NO_ROW,
+            source.ELIMINATE,
         )
         return self.step.copy()
 
     # ------------------------------------------------------------------ rows
-    def spectrum(self, rows: np.ndarray) -> np.ndarray:
+    def spectrum(self, rows: np.ndarray) -> NDArray[np.complex128]:
         """Raw multipliers of some rows, shape (..., m)."""
         m = self.m
         return rows[..., 0 : 2 * m : 2] + 1j * rows[..., 1 : 2 * m : 2]

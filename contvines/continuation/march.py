@@ -11,7 +11,19 @@ depend neither on the number of repetitions of an orbit nor on the unit of the p
 import math
 
 # entries of the control vector
-METRIC_U, METRIC_P, ANGLE, MIN_STEP, MAX_STEP, TOLERANCE, LOWER, UPPER, STOP_AT_BORDER, SWEEPS, ROW_MARGINS = range(11)
+(
+    METRIC_U,
+    METRIC_P,
+    ANGLE,
+    MIN_STEP,
+    MAX_STEP,
+    TOLERANCE,
+    LOWER,
+    UPPER,
+    STOP_AT_BORDER,
+    SWEEPS,
+    ROW_MARGINS,
+) = range(11)
 CONTROL_SIZE = 11
 
 # what `solve` does
@@ -165,7 +177,21 @@ def predict(points, values, tangents, i, h, metric_u, metric_p, u):
 
 
 def march(
-    data, work, points, values, tangents, rows, signs, corrections, first, h, control, u, border, step, tangent
+    data,
+    work,
+    points,
+    values,
+    tangents,
+    rows,
+    signs,
+    corrections,
+    first,
+    h,
+    control,
+    u,
+    border,
+    step,
+    tangent,
 ):
     """Fill rows first, first + 1, ... of the chunk arrays with points of the branch.
 

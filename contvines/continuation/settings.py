@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
@@ -63,15 +64,16 @@ class Settings:
             )
 
     @classmethod
-    def of(cls, values: Settings | dict[str, Any] | None) -> Settings:
+    def of(cls, values: Settings | Mapping[str, Any] | None) -> Settings:
         """Settings from a dict; unknown names are refused."""
-        if isinstance(values, cls):
+        if isinstance(values, Settings):
             return values
         names = [field.name for field in fields(cls)]
-        for name in values or {}:
+        given: dict[str, Any] = {} if values is None else {**values}  # type: ignore[dict-item]
+        for name in given:
             if name not in names:
                 raise ValueError(f"settings: there is no {name!r}; choose from {', '.join(names)}")
-        return cls(**(values or {}))  # type: ignore[arg-type]
+        return cls(**given)
 
     def to_dict(self) -> dict[str, Any]:
         """As a JSON-able dict."""

@@ -21,11 +21,15 @@ def check_interval(within: Any) -> tuple[float, float]:
     try:
         lower, upper = (float(value) for value in within)
     except (TypeError, ValueError):
-        raise ValueError(f"within = {within!r} must be two numbers, the ends of the parameter interval") from None
+        raise ValueError(
+            f"within = {within!r} must be two numbers, the ends of the parameter interval"
+        ) from None
     if not (math.isfinite(lower) and math.isfinite(upper)):
         raise ValueError(f"within = [{lower}, {upper}] must have finite ends")
     if not lower < upper:
-        raise ValueError(f"within = [{lower}, {upper}] is empty or reversed; the first end must be the smaller one")
+        raise ValueError(
+            f"within = [{lower}, {upper}] is empty or reversed; the first end must be the smaller one"
+        )
     return lower, upper
 
 

@@ -154,7 +154,13 @@ def _march(
     part = slice(first - 1, filled)
     return (
         Chunk(
-            points[part], values[part], tangents[part], rows[part], signs[part], corrections[part], Status(status)
+            points[part],
+            values[part],
+            tangents[part],
+            rows[part],
+            signs[part],
+            corrections[part],
+            Status(status),
         ),
         float(h),
     )
@@ -180,7 +186,9 @@ class _Closing:
         self.z = engine.join(start.u, start.p)
         self.border = engine.weights * start.tangent
         shift = engine.problem.period_shift
-        self.shift = None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
+        self.shift = (
+            None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
+        )
 
     def cut(self, chunk: Chunk) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there."""

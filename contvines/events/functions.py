@@ -10,13 +10,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 
 LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
 
 
-def counts(spectrum: np.ndarray, kind: str) -> np.ndarray:
+def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
 
     For flows: real eigenvalues > 0, nothing, complex pairs with positive real part.
@@ -36,7 +37,7 @@ def counts(spectrum: np.ndarray, kind: str) -> np.ndarray:
     return np.stack([column.sum(axis=1) for column in columns], axis=1)
 
 
-def crossing(spectrum: np.ndarray, kind: str, name: str, k: int) -> float:
+def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:
     """The test function of the k-th multiplier of a sort at one point: positive past the circle."""
     if name == "pair":
         part = spectrum[spectrum.imag > 0.0]
@@ -59,7 +60,9 @@ class SymmetryTest:
 
     def __init__(self, symmetry: Any, n: int, period_shift: np.ndarray | None) -> None:
         self.symmetry, self.kind = symmetry, symmetry.kind
-        self.shift = None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
+        self.shift = (
+            None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
+        )
         rng = np.random.default_rng(1)
         probe, check = rng.uniform(0.1, 0.9, n), rng.uniform(0.1, 0.9, n)
         self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
@@ -105,8 +108,8 @@ def user_function(engine: Engine, function: Any) -> Callable[[np.ndarray, np.nda
     if callable(function):
         return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
     try:
-        name, value = function
-        value = float(value)
+        name, given = function
+        value = float(given)
     except (TypeError, ValueError):
         raise ValueError(
             f"user function {function!r} must be a callable (u, p) -> float or a pair (measure, value)"

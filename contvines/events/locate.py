@@ -98,14 +98,15 @@ def locate_singular(
         Half of the window, relative to the segment.
     """
     best: Root | None = None
-    best_residual = np.inf
+    best_score = np.inf
     for _ in range(7):
         found = _interpolated(segment, test, rough, width)
         if found is not None:
             root, residual = found
-            if residual < best_residual:
-                best, best_residual = root, residual
-            if residual < 1e-13 * (1.0 + np.abs(root.point.u).max()) and root.error < 1e-13:
+            score = max(root.error, residual / (1.0 + float(np.abs(root.point.u).max())))
+            if score < best_score:
+                best, best_score = root, score
+            if score < 1e-14:
                 break
             rough = root.position
         width *= 0.5
@@ -155,6 +156,8 @@ def _interpolated(
     error = float(np.abs(z[-1, -1]) + np.abs(z[-2, -1]))
     if slope > 0.0:
         shift = (np.abs(series[-1]) + np.abs(series[-2])) / slope
-        error += float(shift * abs(np.polynomial.chebyshev.chebval(x, np.polynomial.chebyshev.chebder(z[:, -1]))))
+        error += float(
+            shift * abs(np.polynomial.chebyshev.chebval(x, np.polynomial.chebyshev.chebder(z[:, -1])))
+        )
     point = Solved(u, p, engine.unit(chebyshev_value(tangent, x)), row, 0.0, residual, error)
     return Root(rough + width * x, point, error), residual

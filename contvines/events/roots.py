@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,9 @@ def bracketed_root(
             break
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2) if f3 != f2 else 2.0
         if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
-            t = (f1 / (f2 - f1)) * (f3 / (f2 - f3)) + ((x3 - x1) / (x2 - x1)) * (f1 / (f3 - f1)) * (f2 / (f3 - f2))
+            t = (f1 / (f2 - f1)) * (f3 / (f2 - f3)) + ((x3 - x1) / (x2 - x1)) * (f1 / (f3 - f1)) * (
+                f2 / (f3 - f2)
+            )
         else:
             t = 0.5
         t = min(1.0 - limit, max(limit, t))
@@ -82,6 +85,6 @@ def chebyshev_fit(values: np.ndarray) -> np.ndarray:
     return coefficients.reshape(values.shape)
 
 
-def chebyshev_value(coefficients: np.ndarray, x: float) -> np.ndarray:
+def chebyshev_value(coefficients: np.ndarray, x: Any) -> Any:
     """The Chebyshev series at x."""
     return np.polynomial.chebyshev.chebval(x, coefficients)

@@ -37,9 +37,13 @@ class Segment:
     def at(self, s: float) -> Solved | None:
         """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
         if s == 0.0:
-            return self.engine.polish(self.a.u, self.a.p, self.border, float(self.border @ self.za), self.direction)
+            return self.engine.polish(
+                self.a.u, self.a.p, self.border, float(self.border @ self.za), self.direction
+            )
         if s == 1.0:
-            return self.engine.polish(self.b.u, self.b.p, self.border, float(self.border @ self.zb), self.direction)
+            return self.engine.polish(
+                self.b.u, self.b.p, self.border, float(self.border @ self.zb), self.direction
+            )
         guess = self.guess(s)
         target = float(self.border @ self.za) + s * self.length
         found = self.engine.solve(guess[:-1], guess[-1], self.border, target, self.direction)

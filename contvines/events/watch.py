@@ -87,7 +87,7 @@ class Watch:
         interesting = fold | turned | changed
         margins = engine.margins(chunk.rows)
         if margins.shape[1]:
-            negative = (margins < MARGIN).any(axis=1)
+            negative = np.asarray((margins < MARGIN).any(axis=1))
             border = (negative[1:] & ~negative[:-1]) if real else (negative[:-1] & ~negative[1:])
             if real and negative[0] and not negative[1:].all():
                 border |= negative[1:]
@@ -108,7 +108,9 @@ class Watch:
             i = int(i)
             segment = Segment(engine, chunk.solved(i), chunk.solved(i + 1))
             found = self.examine(segment, real=real)
-            found += self.examine_users(segment, {name: values[i : i + 2] for name, values in user_values.items()})
+            found += self.examine_users(
+                segment, {name: values[i : i + 2] for name, values in user_values.items()}
+            )
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + e.position, bracket=bracket) for e in found]
             found.sort(key=lambda e: e.position)
@@ -137,9 +139,7 @@ class Watch:
         singular = 0
         discarded = False
         crossings: list[Located] = []
-        before, after = (
-            counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row)
-        )
+        before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
         for column, name in enumerate(NAMES):
             low, high = sorted((int(before[column]), int(after[column])))
             for k in range(low + 1, high + 1):
@@ -157,9 +157,7 @@ class Watch:
             middle = segment.at(0.5)
             if middle is not None:
                 first, second = Segment(self.engine, a, middle), Segment(self.engine, middle, b)
-                events = [
-                    e._replace(position=0.5 * e.position) for e in self.examine(first, real, depth + 1)
-                ]
+                events = [e._replace(position=0.5 * e.position) for e in self.examine(first, real, depth + 1)]
                 return events + [
                     e._replace(position=0.5 + 0.5 * e.position) for e in self.examine(second, real, depth + 1)
                 ]

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..journal import NullJournal
-from .builder import Builder, Progress
+from .builder import adopt, begin, work
 from .graph import Graph
-from .pending import Pending
+from .leaving import leave
+from .run import Progress, Run
 
 
 def problem_and_start(seed: Any, over: str | None) -> tuple[Any, Any, float]:
@@ -21,11 +21,9 @@ def problem_and_start(seed: Any, over: str | None) -> tuple[Any, Any, float]:
             raise ValueError(f"over = {over!r}, but this problem continues in {seed.parameter!r}")
         return seed, seed.u0, float(seed.p0)
     if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
-        raise TypeError(
-            f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}"
-        )
+        raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
     if over is None:
-        raise ValueError("over = None: name the parameter to continue in, for example over=\"amplitude\"")
+        raise ValueError('over = None: name the parameter to continue in, for example over="amplitude"')
     problem = seed.problem(over)
     u, p = seed.seed(problem)
     return problem, u, float(p)
@@ -75,10 +73,12 @@ def diagram(
     """
     problem, u, p = problem_and_start(seed, over)
     if within is None:
-        raise ValueError(f"within = None: give the interval of {problem.parameter}, for example within=(0.2, 1.3)")
+        raise ValueError(
+            f"within = None: give the interval of {problem.parameter}, for example within=(0.2, 1.3)"
+        )
     if not (isinstance(depth, int) and depth >= 0):
         raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
-    settings = Settings.of(settings)  # type: ignore[arg-type]
+    settings = Settings.of(settings)
     description = problem.describe()
     model = description.get("model") or {"name": description.get("name", type(problem).__name__)}
     graph = Graph(
@@ -87,9 +87,17 @@ def diagram(
         within=check_interval(within),
         settings={**settings.to_dict(), "depth": depth, "virtual": virtual},
     )
-    builder = Builder(graph, settings, journal or NullJournal(), depth, virtual, user_functions, progress)
-    builder.begin(problem, u, p)
-    builder.run()
+    run = Run(
+        graph,
+        settings,
+        NullJournal() if journal is None else journal,
+        depth,
+        virtual,
+        user_functions,
+        progress,
+    )
+    begin(run, problem, u, p)
+    work(run)
     return graph
 
 
@@ -134,19 +142,19 @@ def switch(
         names = Settings().to_dict()
         settings = {name: value for name, value in graph.settings.items() if name in names}
     before = list(graph.branches)
-    builder = Builder(
+    run = Run(
         graph,
-        Settings.of(settings),  # type: ignore[arg-type]
-        journal or NullJournal(),
+        Settings.of(settings),
+        NullJournal() if journal is None else journal,
         depth + 1,
         bool(graph.settings.get("virtual", False)),
         user_functions,
         progress,
     )
-    builder.adopt()
-    builder.leave(replace(point), graph.branches[point.branch], depth=0)
-    builder.run()
+    adopt(run)
+    leave(run, point, graph.branches[point.branch], depth=0)
+    work(run)
     return [name for name in graph.branches if name not in before]
 
 
-__all__ = ["Pending", "Progress", "diagram", "problem_and_start", "switch"]
+__all__ = ["Progress", "diagram", "problem_and_start", "switch"]

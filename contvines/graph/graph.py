@@ -36,7 +36,13 @@ class Switch:
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this switch in the JSON of a graph."""
-        return {"point": self.point, "from": self.source, "to": self.target, "kind": self.kind, "note": self.note}
+        return {
+            "point": self.point,
+            "from": self.source,
+            "to": self.target,
+            "kind": self.kind,
+            "note": self.note,
+        }
 
 
 @dataclass(eq=False)

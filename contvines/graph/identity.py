@@ -16,7 +16,9 @@ SAME = 1e-6
 
 def same_vector(a: np.ndarray, b: np.ndarray, tolerance: float = SAME) -> bool:
     """Equal up to the tolerance, relative to 1 + largest entry."""
-    return a.shape == b.shape and bool(np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0)))
+    return a.shape == b.shape and bool(
+        np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0))
+    )
 
 
 class Register:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,225 +14,254 @@ from ..problem import rebuild
 from ..special import BORDERS, SpecialPoint
 from ..switching import departures
 from .pending import Pending
-
-if TYPE_CHECKING:
-    from .builder import Builder
+from .run import Run
 
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
 
 
-class Leaving:
-    """The part of :class:`contvines.graph.builder.Builder` that queues new branches."""
+def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """Queue the branches that leave a special point, as far as the depth allows."""
+    if point.kind in BORDERS:
+        _cross(run, point, branch, depth)
+    elif point.note.startswith("met from") and point.branch == branch.label and _from_side(run, point):
+        _root(run, point, branch, depth)
+    elif point.kind in NAMES:
+        _switch(run, point, branch, depth)
 
-    def leave(self: Builder, point: SpecialPoint, branch: Branch, depth: int) -> None:
-        """Queue the branches that leave a special point, as far as the depth allows."""
-        if point.kind in BORDERS:
-            self._cross(point, branch, depth)
-        elif point.note.startswith("met from") and point.branch == branch.label and self._from_side(point):
-            self._root(point, branch, depth)
-        elif point.kind in NAMES:
-            self._switch(point, branch, depth)
 
-    def _from_side(self: Builder, point: SpecialPoint) -> bool:
-        event = self._tests.get(point.label)
-        return event is None or event.kind == "meets"
+def _from_side(run: Run, point: SpecialPoint) -> bool:
+    event = run.events.get(point.label)
+    return event is None or event.kind == "meets"
 
-    def _solved(self: Builder, engine: Engine, point: SpecialPoint) -> Solved:
-        row = np.zeros(engine.row_size)
-        return Solved(point.u, point.value, point.tangent, row, 0.0, point.residual, point.location_error)
 
-    # ------------------------------------------------------------------ bifurcations
-    def _switch(self: Builder, point: SpecialPoint, branch: Branch, depth: int) -> None:
-        problem = point.problem
-        engine, watch = self.engine(problem)
-        here = self._solved(engine, point)
-        spectrum = engine.spectrum(self._row(engine, point))
-        generic = point.kind == "branch-point"
-        inside = any(
+def _solved(run: Run, engine: Engine, point: SpecialPoint) -> Solved:
+    row = np.zeros(engine.row_size)
+    return Solved(point.u, point.value, point.tangent, row, 0.0, point.residual, point.location_error)
+
+
+# ------------------------------------------------------------------ bifurcations
+
+
+def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    problem = point.problem
+    engine, watch = run.engine(problem)
+    here = _solved(run, engine, point)
+    spectrum = engine.spectrum(_row(run, engine, point))
+    generic = point.kind == "branch-point"
+    inside = (
+        any(
             test.kind == point.kind and np.abs(test.part(point.u[None, :])).max() <= 1e-6
             for test in watch.symmetries
-        ) and problem.flip_kind != point.kind
-        if generic or inside:
-            name, critical = "plus", 1.0 + 0.0j
-            children: list[Any] = [_Same(problem, point.u, point.tangent, point.kind)]
-        else:
-            name, critical = NAMES[point.kind], -1.0 + 0.0j
-            children = list(problem.offspring(point.kind, point.u, point.value, point.tangent, critical))
-        if not children:
-            self.remark(point.label, "the problem offers no branch to switch to")
-            return
-        k = self._which(engine, point, name, spectrum)
-        speed = crossing_speed(engine, here, name, k) if engine.m else None
-        point.mirror = point.kind == "symmetry-breaking"
-        for child in children:
-            target, _ = self.engine(child.problem)
-            found = departures(
-                target,
-                np.asarray(child.u, dtype=float),
-                point.value,
-                target.unit(np.asarray(child.tangent, dtype=float)),
-                self.settings.amplitude,
-                one_sided=not generic,
-            )
-            if not found:
-                self.remark(point.label, "no branch that leaves here was found")
-            for departure in found:
-                transcritical = abs(departure.slope) > 0.1 * self.unit * departure.amplitude
-                if point.criticality is None and not transcritical:
-                    point.criticality, point.coefficient = criticality(
-                        departure.curvature, speed, flip=name == "minus"
-                    )
-                elif transcritical:
-                    self.remark(point.label, "transcritical")
-                if depth + 1 > self.depth:
-                    continue
-                self.queue.append(
-                    Pending(
-                        departure.problem,
-                        departure.origin.u,
-                        departure.origin.p,
-                        kind="switch",
-                        depth=depth + 1,
-                        source=branch.label,
-                        point=point.label,
-                        note="mirror image not traced" if point.mirror else "",
-                        origin=departure.origin,
-                        ahead=departure.ahead,
-                        back=departure.back,
-                        first_step=min(self.settings.first_step, departure.amplitude),
-                    )
-                )
-
-    def _row(self: Builder, engine: Engine, point: SpecialPoint) -> np.ndarray:
-        border = engine.weights * point.tangent
-        solved = engine.polish(
-            point.u, point.value, border, float(border @ engine.join(point.u, point.value)), point.tangent
         )
-        return np.zeros(engine.row_size) if solved is None else solved.row
-
-    def _which(self: Builder, engine: Engine, point: SpecialPoint, name: str, spectrum: np.ndarray) -> int:
-        """Rank of the critical multiplier among those of its sort."""
-        event = self._tests.get(point.label)
-        if event is not None and event.index > 0:
-            return event.index
-        real = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
-        aim = 0.0 if engine.problem.spectrum == "flow" else 1.0
-        return int(np.argmin(np.abs(real - aim))) + 1 if len(real) else 1
-
-    def _root(self: Builder, point: SpecialPoint, branch: Branch, depth: int) -> None:
-        """A side branch has come back to the more symmetric solutions before they were known."""
-        if depth + 1 > self.depth:
-            return
-        _, watch = self.engine(point.problem)
-        event = self._tests[point.label]
-        symmetry = watch.symmetries[event.index].symmetry
-        root = getattr(symmetry, "root", None)
-        if root is not None:
-            problem, u = root(point.u)
-            self.queue.append(
+        and problem.flip_kind != point.kind
+    )
+    if generic or inside:
+        name, critical = "plus", 1.0 + 0.0j
+        children: list[Any] = [_Same(problem, point.u, point.tangent, point.kind)]
+    else:
+        name, critical = NAMES[point.kind], -1.0 + 0.0j
+        children = list(problem.offspring(point.kind, point.u, point.value, point.tangent, critical))
+    if not children:
+        run.remark(point.label, "the problem offers no branch to switch to")
+        return
+    k = _which(run, engine, point, name, spectrum)
+    speed = crossing_speed(engine, here, name, k) if engine.m else None
+    point.mirror = point.kind == "symmetry-breaking"
+    for child in children:
+        target, _ = run.engine(child.problem)
+        found = departures(
+            target,
+            np.asarray(child.u, dtype=float),
+            point.value,
+            target.unit(np.asarray(child.tangent, dtype=float)),
+            run.settings.amplitude,
+            one_sided=not generic,
+        )
+        if not found:
+            run.remark(point.label, "no branch that leaves here was found")
+        for departure in found:
+            transcritical = abs(departure.slope) > 0.1 * run.unit * departure.amplitude
+            if point.criticality is None and not transcritical:
+                point.criticality, point.coefficient = criticality(
+                    departure.curvature, speed, flip=name == "minus"
+                )
+            elif transcritical:
+                run.remark(point.label, "transcritical")
+            if depth + 1 > run.depth:
+                continue
+            run.queue.append(
                 Pending(
-                    problem, np.asarray(u, dtype=float), point.value, kind="root", depth=depth + 1,
-                    source=branch.label, point=point.label,
+                    departure.problem,
+                    departure.origin.u,
+                    departure.origin.p,
+                    kind="switch",
+                    depth=depth + 1,
+                    source=branch.label,
+                    point=point.label,
+                    note="mirror image not traced" if point.mirror else "",
+                    origin=departure.origin,
+                    ahead=departure.ahead,
+                    back=departure.back,
+                    first_step=min(run.settings.first_step, departure.amplitude),
                 )
             )
-            return
-        # in the same problem: both ways from a point on the other branch, through the special point
-        engine, _ = self.engine(point.problem)
-        for departure in departures(
-            engine, point.u, point.value, point.tangent, self.settings.amplitude, one_sided=False
-        ):
-            start = departure.ahead
-            if not engine.lower <= start.p <= engine.upper and departure.back is not None:
-                start = departure.back
-            self.queue.append(
+
+
+def _row(run: Run, engine: Engine, point: SpecialPoint) -> np.ndarray:
+    border = engine.weights * point.tangent
+    solved = engine.polish(
+        point.u, point.value, border, float(border @ engine.join(point.u, point.value)), point.tangent
+    )
+    return np.zeros(engine.row_size) if solved is None else solved.row
+
+
+def _which(run: Run, engine: Engine, point: SpecialPoint, name: str, spectrum: Any) -> int:
+    """Rank of the critical multiplier among those of its sort."""
+    event = run.events.get(point.label)
+    if event is not None and event.index > 0:
+        return event.index
+    real = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
+    aim = 0.0 if engine.problem.spectrum == "flow" else 1.0
+    return int(np.argmin(np.abs(real - aim))) + 1 if len(real) else 1
+
+
+def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """A side branch has come back to the more symmetric solutions before they were known."""
+    if depth + 1 > run.depth:
+        return
+    _, watch = run.engine(point.problem)
+    event = run.events[point.label]
+    symmetry = watch.symmetries[event.index].symmetry
+    root = getattr(symmetry, "root", None)
+    if root is not None:
+        problem, u = root(point.u)
+        run.queue.append(
+            Pending(
+                problem,
+                np.asarray(u, dtype=float),
+                point.value,
+                kind="root",
+                depth=depth + 1,
+                source=branch.label,
+                point=point.label,
+            )
+        )
+        return
+    # in the same problem: both ways from a point on the other branch, through the special point
+    engine, _ = run.engine(point.problem)
+    for departure in departures(
+        engine, point.u, point.value, point.tangent, run.settings.amplitude, one_sided=False
+    ):
+        start = departure.ahead
+        if not engine.lower <= start.p <= engine.upper and departure.back is not None:
+            start = departure.back
+        run.queue.append(
+            Pending(
+                departure.problem,
+                start.u,
+                start.p,
+                start.tangent,
+                kind="root",
+                depth=depth + 1,
+                source=branch.label,
+                point=point.label,
+            )
+        )
+
+
+# ------------------------------------------------------------------ borders
+
+
+def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itrun."""
+    at_start = point.index == 0
+    outward = -point.tangent if at_start else point.tangent
+    leaving = replace(point, tangent=outward)
+    if branch.real:
+        for seed in _seeds(run, leaving):
+            persistence = bool(seed["persistence"])
+            note = seed["note"] or ("persistence" if persistence else "nonsmooth fold")
+            cost = 0 if persistence else 1
+            if depth + cost > run.depth:
+                continue
+            run.queue.append(
                 Pending(
-                    departure.problem, start.u, start.p, start.tangent, kind="root", depth=depth + 1,
-                    source=branch.label, point=point.label,
+                    seed["problem"],
+                    np.asarray(seed["u"], dtype=float),
+                    float(seed["p"]),
+                    None if seed["tangent"] is None else np.asarray(seed["tangent"], dtype=float),
+                    kind="border",
+                    depth=depth + cost,
+                    source=branch.label,
+                    point=point.label,
+                    note=note,
                 )
             )
-
-    # ------------------------------------------------------------------ borders
-    def _cross(self: Builder, point: SpecialPoint, branch: Branch, depth: int) -> None:
-        """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itself."""
-        at_start = point.index == 0
-        outward = -point.tangent if at_start else point.tangent
-        leaving = replace(point, tangent=outward)
-        if branch.real:
-            for seed in self._seeds(leaving):
-                persistence = bool(seed["persistence"])
-                note = seed["note"] or ("persistence" if persistence else "nonsmooth fold")
-                cost = 0 if persistence else 1
-                if depth + cost > self.depth:
-                    continue
-                self.queue.append(
-                    Pending(
-                        seed["problem"],
-                        np.asarray(seed["u"], dtype=float),
-                        float(seed["p"]),
-                        None if seed["tangent"] is None else np.asarray(seed["tangent"], dtype=float),
-                        kind="border",
-                        depth=depth + cost,
-                        source=branch.label,
-                        point=point.label,
-                        note=note,
-                    )
-                )
-        if self.virtual:
-            engine, _ = self.engine(point.problem)
-            origin = engine.polish(
+    if run.virtual:
+        engine, _ = run.engine(point.problem)
+        origin = engine.polish(
+            point.u,
+            point.value,
+            engine.weights * outward,
+            float(engine.weights * outward @ engine.join(point.u, point.value)),
+            outward,
+        )
+        run.queue.append(
+            Pending(
+                point.problem,
                 point.u,
                 point.value,
-                engine.weights * outward,
-                float(engine.weights * outward @ engine.join(point.u, point.value)),
                 outward,
+                kind="rest",
+                depth=depth,
+                source=branch.label,
+                point=point.label,
+                note="virtual" if branch.real else "real again",
+                real=not branch.real,
+                origin=origin,
             )
-            self.queue.append(
-                Pending(
-                    point.problem, point.u, point.value, outward, kind="rest", depth=depth, source=branch.label,
-                    point=point.label, note="virtual" if branch.real else "real again", real=not branch.real,
-                    origin=origin,
-                )
-            )
+        )
 
-    def _seeds(self: Builder, point: SpecialPoint) -> list[dict[str, Any]]:
-        key = f"{self.serial}/beyond/{point.label}"
-        known = self.journal.recall(key)
-        if known is not None and all(entry.get("factory") for entry in known["problems"]):
-            return [
-                {
-                    "problem": rebuild(entry),
-                    "u": known[f"u{i}"],
-                    "p": known["p"][i],
-                    "tangent": known.get(f"tangent{i}"),
-                    "note": known["note"][i],
-                    "persistence": known["persistence"][i],
-                }
-                for i, entry in enumerate(known["problems"])
-            ]
-        seeds = list(point.problem.beyond(point))
-        record: dict[str, Any] = {
-            "problems": [dict(seed.problem.describe()) for seed in seeds],
-            "p": [float(seed.p) for seed in seeds],
-            "note": [str(getattr(seed, "note", "")) for seed in seeds],
-            "persistence": [bool(getattr(seed, "persistence", True)) for seed in seeds],
-        }
-        for i, seed in enumerate(seeds):
-            record[f"u{i}"] = np.asarray(seed.u, dtype=float)
-            if getattr(seed, "tangent", None) is not None:
-                record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
-        if known is None:
-            self.journal.record(key, record)
+
+def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
+    key = f"{run.serial}/beyond/{point.label}"
+    known = run.journal.recall(key)
+    if known is not None and all(entry.get("factory") for entry in known["problems"]):
         return [
             {
-                "problem": seed.problem,
-                "u": seed.u,
-                "p": seed.p,
-                "tangent": getattr(seed, "tangent", None),
-                "note": str(getattr(seed, "note", "")),
-                "persistence": bool(getattr(seed, "persistence", True)),
+                "problem": rebuild(entry),
+                "u": known[f"u{i}"],
+                "p": known["p"][i],
+                "tangent": known.get(f"tangent{i}"),
+                "note": known["note"][i],
+                "persistence": known["persistence"][i],
             }
-            for seed in seeds
+            for i, entry in enumerate(known["problems"])
         ]
+    seeds = list(point.problem.beyond(point))
+    record: dict[str, Any] = {
+        "problems": [dict(seed.problem.describe()) for seed in seeds],
+        "p": [float(seed.p) for seed in seeds],
+        "note": [str(getattr(seed, "note", "")) for seed in seeds],
+        "persistence": [bool(getattr(seed, "persistence", True)) for seed in seeds],
+    }
+    for i, seed in enumerate(seeds):
+        record[f"u{i}"] = np.asarray(seed.u, dtype=float)
+        if getattr(seed, "tangent", None) is not None:
+            record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
+    if known is None:
+        run.journal.record(key, record)
+    return [
+        {
+            "problem": seed.problem,
+            "u": seed.u,
+            "p": seed.p,
+            "tangent": getattr(seed, "tangent", None),
+            "note": str(getattr(seed, "note", "")),
+            "persistence": bool(getattr(seed, "persistence", True)),
+        }
+        for seed in seeds
+    ]
 
 
 class _Same:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
 
 from ..branch import Branch
@@ -15,189 +13,187 @@ from ..special import BORDERS, PREFIXES, SpecialPoint
 from ..switching import null_vectors
 from .identity import same_special
 from .pending import Pending
-
-if TYPE_CHECKING:
-    from .builder import Builder
+from .run import Run
 
 BACK_AT_BORDER = 1e-6  # a branch seeded beyond a border comes back to it within this part of the interval
 
 
-class Marking:
-    """The part of :class:`contvines.graph.builder.Builder` that labels special points."""
-
-    def mark(self: Builder, engine: Engine, branch: Branch, half: Half, pending: Pending) -> list[SpecialPoint]:
-        """Label the events and interval ends of a branch in order along it; returns what is new on it."""
-        marks: list[tuple[int, str]] = []
-        fresh: list[SpecialPoint] = []
-        ends: dict[int, str] = {}
-        last = len(branch) - 1
-        events = list(half.events)
-        if not branch.closed:
-            for index, side in ((0, 0), (last, 1)):
-                if branch.ended[side].startswith("reaches the end of the interval"):
-                    events.append((index, self._end(engine, half, index)))
-        if pending.point is not None and pending.kind in ("switch", "rest") and not branch.closed:
-            origin = self.origin_index(half, pending)
-            if origin is not None:
-                marks.append((origin, pending.point))
-        events.sort(key=lambda pair: pair[0])
-        for index, event in events:
-            meets = event.kind == "meets"
-            kind = engine.problem.symmetries[event.index].kind if meets else self._kind(engine, event)
-            label = self._known(engine, branch, event, kind, pending, meets, index in (0, last))
-            if label is None:
-                label = self.new_label(PREFIXES.get(kind, "US"))
-                point = self._special(label, kind, engine, branch, event, index)
-                self.graph.special[label] = point
+def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending) -> list[SpecialPoint]:
+    """Label the events and interval ends of a branch in order along it; returns what is new on it."""
+    marks: list[tuple[int, str]] = []
+    fresh: list[SpecialPoint] = []
+    ends: dict[int, str] = {}
+    last = len(branch) - 1
+    events = list(half.events)
+    if not branch.closed:
+        for index, side in ((0, 0), (last, 1)):
+            if branch.ended[side].startswith("reaches the end of the interval"):
+                events.append((index, _end(run, engine, half, index)))
+    if pending.point is not None and pending.kind in ("switch", "rest") and not branch.closed:
+        origin = origin_index(half, pending)
+        if origin is not None:
+            marks.append((origin, pending.point))
+    events.sort(key=lambda pair: pair[0])
+    for index, event in events:
+        meets = event.kind == "meets"
+        kind = engine.problem.symmetries[event.index].kind if meets else _kind(run, engine, event)
+        label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
+        if label is None:
+            label = run.new_label(PREFIXES.get(kind, "US"))
+            point = _special(run, label, kind, engine, branch, event, index)
+            run.graph.special[label] = point
+            fresh.append(point)
+        else:
+            known = run.graph.special[label]
+            if known in fresh and abs(known.index - index) <= 1:
+                run.remark(label, "two multipliers cross at once")
+                known.index = min(index, known.index)
+                continue
+            if meets:
+                run.connect(label, known.branch, branch.label)
+            elif known.kind in BORDERS:
+                if known.multipliers_beyond is None and label == pending.point:
+                    known.multipliers_beyond = engine.multipliers(event.point.row)
+                if known.branch != branch.label:
+                    run.connect(label, known.branch, branch.label)
+            elif known.note.startswith("met from"):
+                # now seen on the branch of the more symmetric solutions: that one owns it
+                point = _special(run, label, kind, engine, branch, event, index)
+                point.note = known.note
+                run.graph.special[label] = point
                 fresh.append(point)
-            else:
-                known = self.graph.special[label]
-                if known in fresh and abs(known.index - index) <= 1:
-                    self.remark(label, "two multipliers cross at once")
-                    known.index = min(index, known.index)
-                    continue
-                if meets:
-                    self.connect(label, known.branch, branch.label)
-                elif known.kind in BORDERS:
-                    if known.multipliers_beyond is None and label == pending.point:
-                        known.multipliers_beyond = engine.multipliers(event.point.row)
-                    if known.branch != branch.label:
-                        self.connect(label, known.branch, branch.label)
-                elif known.note.startswith("met from"):
-                    # now seen on the branch of the more symmetric solutions: that one owns it
-                    point = self._special(label, kind, engine, branch, event, index)
-                    point.note = known.note
-                    self.graph.special[label] = point
-                    fresh.append(point)
-                elif known.branch != branch.label:
-                    self.connect(label, known.branch, branch.label)
-            marks.append((index, label))
-            if index in (0, last) and (meets or event.note == "border"):
-                ends[0 if index == 0 else 1] = self._sentence(label, kind, branch, meets)
-        branch.marks = tuple(sorted(marks))
-        branch.ended = (ends.get(0, branch.ended[0]), ends.get(1, branch.ended[1]))
-        return fresh
+            elif known.branch != branch.label:
+                run.connect(label, known.branch, branch.label)
+        marks.append((index, label))
+        if index in (0, last) and (meets or event.note == "border"):
+            ends[0 if index == 0 else 1] = _sentence(run, label, kind, branch, meets)
+    branch.marks = tuple(sorted(marks))
+    branch.ended = (ends.get(0, branch.ended[0]), ends.get(1, branch.ended[1]))
+    return fresh
 
-    def origin_index(self: Builder, half: Half, pending: Pending) -> int | None:
-        """Index of the special point from which the branch was reached, if it is one of its points."""
-        if pending.origin is None:
-            return None
-        gap = np.abs(half.points - pending.origin.u).max(axis=1) + np.abs(half.values - pending.origin.p)
-        i = int(np.argmin(gap))
-        return i if gap[i] == 0.0 else None
 
-    def _end(self: Builder, engine: Engine, half: Half, index: int) -> Located:
-        p = float(half.values[index])
-        bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
-        point = engine.polish(half.points[index], p, engine.at_parameter, p, half.tangents[index])
-        assert point is not None
-        return Located(float(index), "end", 0, point, (bound, bound), 0.0)
-
-    def _kind(self: Builder, engine: Engine, event: Located) -> str:
-        """The kind of an event; a branch point is classed by the symmetry of its null vector."""
-        if event.kind != "branch-point":
-            return event.kind
-        for test in self.engine(engine.problem)[1].symmetries:
-            if np.abs(test.part(event.point.u[None, :])).max() > 1e-6:
-                continue
-            for vector in null_vectors(engine, event.point.u, event.point.p, event.point.tangent):
-                u = vector[:-1]
-                image = test.image_direction(event.point.u, u)
-                if np.abs(image + u).max() < 1e-3 * np.abs(u).max():
-                    return test.kind
-        return event.kind
-
-    def _known(
-        self: Builder, engine: Engine, branch: Branch, event: Located, kind: str, pending: Pending, meets: bool, at_end: bool
-    ) -> str | None:
-        problem, point = engine.problem, event.point
-        if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
-            source = self.graph.special[pending.point]
-            if abs(source.value - point.p) <= BACK_AT_BORDER * self.unit:
-                return source.label
-        if kind in BORDERS and at_end:
-            for other in self.queue:
-                if other.kind != "border" or other.point is None:
-                    continue
-                if abs(self.graph.special[other.point].value - point.p) > BACK_AT_BORDER * self.unit:
-                    continue
-                found = self.register.find(other.problem, other.u, other.p)
-                if found is not None and found.label == branch.label:
-                    return other.point
-        for known in self.graph.special.values():
-            if kind == "user" and known.note != event.note:
-                continue
-            if known.problem is not None and same_special(
-                known, kind, problem, point.u, point.p, self.unit, loose=meets
-            ):
-                return known.label
+def origin_index(half: Half, pending: Pending) -> int | None:
+    """Index of the special point from which the branch was reached, if it is one of its points."""
+    if pending.origin is None:
         return None
+    gap = np.abs(half.points - pending.origin.u).max(axis=1) + np.abs(half.values - pending.origin.p)
+    i = int(np.argmin(gap))
+    return i if gap[i] == 0.0 else None
 
-    def _special(
-        self: Builder, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
-    ) -> SpecialPoint:
-        point = event.point
-        residual = engine.residual(point.u, point.p)
-        margin = float(engine.smallest_margin(point.row))
-        if kind in BORDERS:
-            margins = engine.margins(point.row)
-            margin = float(np.min(margins)) if len(margins) else float("inf")
-        special = SpecialPoint(
-            label=label,
-            kind=kind,
-            branch=branch.label,
-            value=float(point.p),
-            parameter=branch.parameter,
-            u=np.array(point.u),
-            tangent=np.array(point.tangent),
-            multipliers=engine.multipliers(point.row),
-            margins=margin,
-            bracket=event.bracket,
-            residual=float(residual),
-            location_error=float(event.error),
-            real=branch.real,
-            note=event.note if kind == "user" else "",
-            margin_index=int(event.index) if kind in BORDERS else None,
-            index=index,
-            problem=engine.problem,
-        )
-        special.replay = self._replay(special)
-        if event.kind == "meets":
-            special.note = f"met from {branch.label}"
-        if kind == "fold":
-            special.coefficient = fold_coefficient(engine, point)
-        self._tests[label] = event
-        return special
 
-    @property
-    def _tests(self: Any) -> dict[str, Located]:
-        """Events by label, for what is computed from them later."""
-        return self.__dict__.setdefault("events_by_label", {})
+def _end(run: Run, engine: Engine, half: Half, index: int) -> Located:
+    p = float(half.values[index])
+    bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
+    point = engine.polish(half.points[index], p, engine.at_parameter, p, half.tangents[index])
+    assert point is not None
+    return Located(float(index), "end", 0, point, (bound, bound), 0.0)
 
-    def _replay(self: Builder, special: SpecialPoint) -> float | None:
-        if not special.real:
-            return None
-        key = f"{self.serial}/replay/{special.label}"
-        known = self.journal.recall(key)
-        if known is None:
-            error = special.problem.replay(special.u, special.value)
-            known = {"error": None if error is None else float(error)}
-            self.journal.record(key, known)
-        return known["error"]
 
-    def _sentence(self: Builder, label: str, kind: str, branch: Branch, meets: bool) -> str:
-        known = self.graph.special[label]
-        value = f"{branch.parameter} = {known.value:.10g}"
-        if meets:
-            if known.branch == branch.label:
-                return f"comes back to more symmetric solutions at {label}, {value}"
-            return f"meets {known.branch} at {label}, {value}"
-        if known.branch != branch.label:
-            return f"meets {known.branch} at {label} ({kind}), {value}"
-        return f"reaches {label} ({kind}) at {value}"
+def _kind(run: Run, engine: Engine, event: Located) -> str:
+    """The kind of an event; a branch point is classed by the symmetry of its null vector."""
+    if event.kind != "branch-point":
+        return event.kind
+    for test in run.engine(engine.problem)[1].symmetries:
+        if np.abs(test.part(event.point.u[None, :])).max() > 1e-6:
+            continue
+        for vector in null_vectors(engine, event.point.u, event.point.p, event.point.tangent):
+            u = vector[:-1]
+            image = test.image_direction(event.point.u, u)
+            if np.abs(image + u).max() < 1e-3 * np.abs(u).max():
+                return test.kind
+    return event.kind
 
-    def remark(self: Builder, label: str, sentence: str) -> None:
-        """Add a sentence to the note of a special point."""
-        special = self.graph.special[label]
-        if sentence not in special.note:
-            special.note = f"{special.note}; {sentence}" if special.note else sentence
+
+def _known(
+    run: Run,
+    engine: Engine,
+    branch: Branch,
+    event: Located,
+    kind: str,
+    pending: Pending,
+    meets: bool,
+    at_end: bool,
+) -> str | None:
+    problem, point = engine.problem, event.point
+    if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
+        source = run.graph.special[pending.point]
+        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit:
+            return source.label
+    if kind in BORDERS and at_end:
+        for other in run.queue:
+            if other.kind != "border" or other.point is None:
+                continue
+            if abs(run.graph.special[other.point].value - point.p) > BACK_AT_BORDER * run.unit:
+                continue
+            found = run.register.find(other.problem, other.u, other.p)
+            if found is not None and found.label == branch.label:
+                return other.point
+    for known in run.graph.special.values():
+        if kind == "user" and known.note != event.note:
+            continue
+        if known.problem is not None and same_special(
+            known, kind, problem, point.u, point.p, run.unit, loose=meets
+        ):
+            return known.label
+    return None
+
+
+def _special(
+    run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
+) -> SpecialPoint:
+    point = event.point
+    residual = engine.residual(point.u, point.p)
+    margin = float(engine.smallest_margin(point.row))
+    if kind in BORDERS:
+        margins = engine.margins(point.row)
+        margin = float(np.min(margins)) if len(margins) else float("inf")
+    special = SpecialPoint(
+        label=label,
+        kind=kind,
+        branch=branch.label,
+        value=float(point.p),
+        parameter=branch.parameter,
+        u=np.array(point.u),
+        tangent=np.array(point.tangent),
+        multipliers=engine.multipliers(point.row),
+        margins=margin,
+        bracket=event.bracket,
+        residual=float(residual),
+        location_error=float(event.error),
+        real=branch.real,
+        note=event.note if kind == "user" else "",
+        margin_index=int(event.index) if kind in BORDERS else None,
+        index=index,
+        problem=engine.problem,
+    )
+    special.replay = _replay(run, special)
+    if event.kind == "meets":
+        special.note = f"met from {branch.label}"
+    if kind == "fold":
+        special.coefficient = fold_coefficient(engine, point)
+    run.events[label] = event
+    return special
+
+
+def _replay(run: Run, special: SpecialPoint) -> float | None:
+    if not special.real:
+        return None
+    key = f"{run.serial}/replay/{special.label}"
+    known = run.journal.recall(key)
+    if known is None:
+        error = special.problem.replay(special.u, special.value)
+        known = {"error": None if error is None else float(error)}
+        run.journal.record(key, known)
+    return known["error"]
+
+
+def _sentence(run: Run, label: str, kind: str, branch: Branch, meets: bool) -> str:
+    known = run.graph.special[label]
+    value = f"{branch.parameter} = {known.value:.10g}"
+    if meets:
+        if known.branch == branch.label:
+            return f"comes back to more symmetric solutions at {label}, {value}"
+        return f"meets {known.branch} at {label}, {value}"
+    if known.branch != branch.label:
+        return f"meets {known.branch} at {label} ({kind}), {value}"
+    return f"reaches {label} ({kind}) at {value}"

@@ -11,7 +11,9 @@ if TYPE_CHECKING:
 def table(graph: Graph) -> str:
     """Branches, special points and switches, one line each."""
     name = graph.parameter
-    lines = [f"{len(graph.branches)} branches in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"]
+    lines = [
+        f"{len(graph.branches)} branches in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"
+    ]
     if not graph.finished:
         lines[0] += " (unfinished)"
     rows = [("branch", "what", name, "stable", "points", "ended")]
@@ -44,8 +46,14 @@ def table(graph: Graph) -> str:
                     arrow = f"{switch.source} -> {switch.target}"
                     targets.append(f"{arrow} ({switch.note})" if switch.note else arrow)
             rows.append(
-                (point.label, point.kind, point.branch, f"{point.value:.12g}", " ".join(filter(None, remarks)),
-                 "; ".join(targets))
+                (
+                    point.label,
+                    point.kind,
+                    point.branch,
+                    f"{point.value:.12g}",
+                    " ".join(filter(None, remarks)),
+                    "; ".join(targets),
+                )
             )
         lines += ["", *_columns(rows)]
     return "\n".join(lines)
@@ -53,4 +61,6 @@ def table(graph: Graph) -> str:
 
 def _columns(rows: list[tuple[str, ...]]) -> list[str]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]

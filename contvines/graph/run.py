@@ -1,0 +1,102 @@
+"""Run: the state of an automatic diagram while it is built."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from ..events.watch import Located, Watch
+from .graph import Graph, Switch
+from .identity import Register
+from .pending import Pending
+
+
+class Progress(NamedTuple):
+    """Where a run is: a sentence, and how much there is so far."""
+
+    message: str
+    branches: int
+    special: int
+    points: int
+    value: float
+    waiting: int
+
+
+class Run:
+    """Graph, queue, register of known branches, labels.
+
+    Parameters
+    ----------
+    graph : Graph
+        Filled in place.
+    settings : Settings
+    journal : Journal
+    depth : int
+    virtual : bool
+    user_functions : mapping or None
+    progress : callable or None
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        settings: Settings,
+        journal: Any,
+        depth: int,
+        virtual: bool,
+        user_functions: Mapping[str, Any] | None,
+        progress: Callable[[Progress], None] | None,
+    ) -> None:
+        self.graph, self.settings, self.journal = graph, settings, journal
+        self.depth, self.virtual = depth, virtual
+        self.user_functions = dict(user_functions or {})
+        self.progress = progress
+        self.queue: deque[Pending] = deque()
+        self.register = Register()
+        self.numbers: dict[str, int] = {}
+        self.events: dict[str, Located] = {}
+        self.engines: dict[int, tuple[Any, Engine, Watch]] = {}
+        self.serial = 0
+        self.points = 0
+        self.unit = graph.within[1] - graph.within[0]
+
+    def tell(self, message: str, value: float) -> None:
+        """Report progress."""
+        if self.progress is not None:
+            graph = self.graph
+            self.progress(
+                Progress(
+                    message, len(graph.branches), len(graph.special), self.points, value, len(self.queue)
+                )
+            )
+
+    def engine(self, problem: Any) -> tuple[Engine, Watch]:
+        """Engine and watch of a problem, made once."""
+        if id(problem) not in self.engines:
+            engine = Engine(problem, self.graph.within, self.settings)
+            self.engines[id(problem)] = (problem, engine, Watch(engine, self.user_functions))
+        _, engine, watch = self.engines[id(problem)]
+        return engine, watch
+
+    def new_label(self, prefix: str) -> str:
+        """The next label with this prefix."""
+        self.numbers[prefix] = self.numbers.get(prefix, 0) + 1
+        return f"{prefix}{self.numbers[prefix]}"
+
+    def connect(self, point: str | None, source: str | None, target: str, note: str = "") -> None:
+        """Add a switch unless these two branches are already tied at this point."""
+        if point is None or source is None:
+            return
+        for known in self.graph.switches:
+            if known.point == point and {known.source, known.target} == {source, target}:
+                return
+        self.graph.switches.append(Switch(point, source, target, self.graph.special[point].kind, note))
+
+    def remark(self, label: str, sentence: str) -> None:
+        """Add a sentence to the note of a special point."""
+        special = self.graph.special[label]
+        if sentence not in special.note:
+            special.note = f"{special.note}; {sentence}" if special.note else sentence
