@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from orbits.simulation.attractor import Attractor, centred, cyclic_distance
+from orbits.simulation.attractor import Attractor, cyclic_distance
 from orbits.simulation.contract import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine
 from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
-from orbits.simulation.return_map import go_round, monodromy, nodes_of
+from orbits.simulation.polish import first_event, is_symmetric, polish, root_length, rotate
+from orbits.simulation.return_map import nodes_of
 from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
 UNSTABLE = 1e-5
-ALIKE = 1e-7
-_MIRROR = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
 
 
 def find_attractor(
@@ -140,7 +139,7 @@ def _recognise(
             if slack <= tolerance:
                 return length, periods
             codes, modes = window.codes[-length:], window.modes[-length:]
-            nodes, residual, multipliers = _polish(
+            nodes, residual, multipliers = polish(
                 engine, params, codes, modes, window.nodes[-length:], periods
             )
             gap = cyclic_distance(nodes, window.nodes[-length:])
@@ -175,43 +174,6 @@ def _returns(window: _Window, max_period: int, slack: float) -> list[tuple[int, 
     return found
 
 
-def _polish(
-    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int
-) -> tuple[np.ndarray, float, np.ndarray]:
-    """Newton's method on the simulated return map; returns nodes, residual and multipliers."""
-    node = nodes[0].copy()
-    best, error, matrix = nodes, np.inf, None
-    for _ in range(40):  # a handful as a rule; near a pitchfork or fold each one gains only a factor
-        there = go_round(engine, params, codes, modes, node)
-        if there.message:
-            break
-        gap = there.nodes[-1] - node
-        gap[0] -= TWO_PI * periods
-        size = float(np.abs(gap).max())
-        if size < error:
-            error = size
-            best = np.concatenate([node[None, :], there.nodes[:-1]])
-        else:
-            break
-        if size < 3e-15:
-            break
-        if matrix is None or size > 1e-11:
-            matrix = monodromy(engine, params, codes, modes, node)
-        if matrix is None:
-            break
-        left = np.eye(len(node)) - matrix
-        step = np.linalg.lstsq(left, gap, rcond=1e-7)[0]
-        if not np.all(np.isfinite(step)) or np.abs(step).max() > 0.1:
-            break
-        node = node + step
-    if matrix is None:
-        matrix = monodromy(engine, params, codes, modes, best[0])
-    multipliers = (
-        np.full(len(node), np.nan + 0j) if matrix is None else np.linalg.eigvals(matrix).astype(complex)
-    )
-    return best, error, multipliers
-
-
 def _cycle(
     model: Any,
     engine: Machine,
@@ -230,69 +192,18 @@ def _cycle(
         if len(places):
             break
     speeds = np.abs(window.rows[-length:][places, 4])
-    codes, modes, nodes = _rotate(codes, modes, nodes, int(places[np.argmax(speeds)]), periods)
-    nodes, residual, multipliers = _polish(engine, params, codes, modes, nodes, periods)
-    root = _root(codes, modes, nodes, periods)
+    codes, modes, nodes = rotate(codes, modes, nodes, int(places[np.argmax(speeds)]), periods)
+    nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
+    root = root_length(codes, modes, nodes, periods)
     if root < length:  # a slow approach that alternates looks like a longer recurrence
         codes, modes, nodes, periods = codes[:root], modes[:root], nodes[:root], periods * root // length
-        nodes, residual, multipliers = _polish(engine, params, codes, modes, nodes, periods)
-    codes, modes, nodes = _rotate(codes, modes, nodes, _first(codes, modes, nodes), periods)
+        nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
+    codes, modes, nodes = rotate(codes, modes, nodes, first_event(codes, modes, nodes), periods)
     impacts = int(np.count_nonzero(codes < 2))
     kind = "chatter" if np.any(codes == HOLD) else "periodic" if impacts else "sliding"
     return _attractor(
         model, engine, params, kind, periods, window, state, codes, modes, nodes, residual, multipliers
     )
-
-
-def _root(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int) -> int:
-    """Events of the shortest cycle of which this one is a repetition."""
-    n = len(codes)
-    for times in range(periods, 1, -1):
-        if n % times or periods % times:
-            continue
-        part = n // times
-        same = np.array_equal(codes, np.roll(codes, part)) and np.array_equal(modes, np.roll(modes, part))
-        if same and cyclic_distance(nodes, np.roll(nodes, part, axis=0)) < ALIKE:
-            return part
-    return n
-
-
-def _rotate(
-    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, first: int, periods: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    nodes = np.roll(nodes, -first, axis=0)
-    if first:
-        nodes[-first:, 0] += TWO_PI * periods
-    nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
-    return np.roll(codes, -first), np.roll(modes, -first), nodes
-
-
-def _first(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray) -> int:
-    """Where the cycle starts: smallest rotation of the word that starts with no slip, then smallest phase."""
-    n = len(codes)
-
-    def rank(k: int) -> tuple:
-        return (tuple(np.roll(codes, -k)), tuple(np.roll(modes, -k)), nodes[k, 0] % TWO_PI)
-
-    starts = [k for k in range(n) if codes[k] != 4] or list(range(n))
-    return min(starts, key=rank)
-
-
-def _symmetric(
-    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, eps: float, tolerance: float = 1e-7
-) -> bool:
-    n = len(codes)
-    if n == 0 or n % 2:
-        return False
-    half = n // 2
-    if not (
-        np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))
-    ):
-        return False
-    nodes = centred(codes, nodes, eps)
-    image = -nodes
-    image[:, 0] = nodes[:, 0] + np.pi
-    return cyclic_distance(image, np.roll(nodes, half, axis=0)) < tolerance
 
 
 def _attractor(
@@ -333,7 +244,7 @@ def _attractor(
         nodes=nodes,
         residual=residual,
         multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
-        symmetric=kind == "stuck" or _symmetric(codes, modes, nodes, eps),
+        symmetric=kind == "stuck" or is_symmetric(codes, modes, nodes, eps),
         state=state.copy(),
         impacts_per_period=0.0 if kind == "stuck" else float(rate),
         impact_speed=float(hits.mean()) if hits.size and kind != "stuck" else 0.0,
