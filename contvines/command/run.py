@@ -113,7 +113,7 @@ def _run(
                 graph = store.graph(problems=plot is not None)
                 say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
             else:
-                say(f"{target} is unfinished: going on after {len(store)} finished pieces of work.", quiet)
+                say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
     if graph is None:
         seed = first_orbit(study)
         graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)

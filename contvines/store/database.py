@@ -149,7 +149,8 @@ class Store:
         """Whether the run that fills the file has ended by itself."""
         return self._meta("finished") == "true"
 
-    def __len__(self) -> int:
+    @property
+    def records(self) -> int:
         """Number of journal records."""
         with self._guard():
             return self._db.execute("SELECT count(*) FROM entry WHERE kind = 'journal'").fetchone()[0]

@@ -1,6 +1,7 @@
 """`contvines ...` in a process that kills itself, by SIGKILL, at a chosen write to its file.
 
-Usage: python killer.py WRITES WHERE ARGUMENTS...   WHERE: "before" the write, "inside" its transaction, "after" it.
+Usage: python killer.py WRITES WHERE LOG ARGUMENTS...   WHERE: "before" the write, "inside" its transaction, "after" it.
+The key of every journal record is appended to LOG as soon as the record is said to be kept.
 """
 
 import os
@@ -10,7 +11,7 @@ import sys
 from contvines.command.cli import main
 from contvines.store import Store
 
-writes, where = int(sys.argv[1]), sys.argv[2]
+writes, where, log = int(sys.argv[1]), sys.argv[2], sys.argv[3]
 put, record, checkpoint = Store.put, Store.record, Store.checkpoint
 count = 0
 
@@ -32,6 +33,9 @@ def counted(method):
         if where == "before" and count >= writes:
             die()
         method(self, *arguments)
+        if len(arguments) == 2:
+            with open(log, "a") as file:
+                file.write(f"{arguments[0]}\n")
         if where == "after" and count >= writes:
             die()
 
@@ -39,4 +43,4 @@ def counted(method):
 
 
 Store.put, Store.record, Store.checkpoint = counted_put, counted(record), counted(checkpoint)
-main(sys.argv[3:])
+main(sys.argv[4:])

@@ -66,7 +66,7 @@ def test_journal_returns_what_was_recorded(tmp_path):
         assert store.recall("B1/0") is None
         store.record("B1/0", content)
         store.record("B1/0", content)  # the same again is no error
-        assert len(store) == 1
+        assert store.records == 1
     with Store.open(tmp_path / "j.vines", write=True) as store:
         again = store.recall("B1/0")
         assert again is not None
@@ -86,7 +86,7 @@ def test_a_failed_transaction_leaves_nothing(tmp_path):
         with pytest.raises(TypeError):
             store.record("bad", {"array": np.zeros(3), "thing": object()})
         assert store.recall("bad") is None
-        assert len(store) == 0
+        assert store.records == 0
 
 
 def test_checkpoint_keeps_the_journal_until_the_graph_is_finished(tmp_path):
