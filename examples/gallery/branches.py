@@ -1,12 +1,14 @@
 """Symmetric and asymmetric orbits with two impacts per period in the (B, C^2) plane; a free motion on top.
 
-Paper: two figures for r = 0.76, mu = 0.1, g = 0.422: branches for the speeds after, before and between impacts, and the
-projection of a free motion on the symmetric ones. Damping of the free motion (not printed): lambda = 0.9.
+Paper: two figures for r = 0.76, mu = 0.1, g = 0.422: branches for the speeds after, before and between
+impacts, and the projection of a free motion on the symmetric ones. Damping of the free motion (not
+printed): lambda = 0.9.
 
-Confirms: the three parabolas have their minima at the same C^2_min = 0.0233851, and B_min +- h~; the asymmetric branches leave
-all three at C^2_max = 0.4961028; a free motion follows all three. Contradicts a sign: with B- = v' - w'- as the paper
-defines it, B- and B+ of an impact have opposite signs, so the mean is (B+ - B-)/2; what it calls B- is the magnitude.
-Refines: the asymmetric branch is drawn further than it exists, see stability_region.py.
+Confirms: the three parabolas have their minima at the same C^2_min = 0.0233851, and B_min +- h~; the
+asymmetric branches leave all three at C^2_max = 0.4961028; a free motion follows all three. Contradicts a
+sign: with B- = v' - w'- as the paper defines it, B- and B+ of an impact have opposite signs, so the mean
+is (B+ - B-)/2; what it calls B- is the magnitude. Refines: the asymmetric branch is drawn further than it
+exists, see stability_region.py.
 """
 
 import numpy as np

@@ -1,10 +1,12 @@
 """Steady states as intersections of two curves, for four detunings.
 
-Paper: figure with G = 1.65, r = 0.76, mu = 0.5, g = 0.105 and sigma = 5.1, 1.25, 3.65, -4.4. Damping (not printed): 0.9.
+Paper: figure with G = 1.65, r = 0.76, mu = 0.5, g = 0.105 and sigma = 5.1, 1.25, 3.65, -4.4. Damping (not
+printed): 0.9.
 
-Confirms: only common points of the purple curve and the manifold are steady states; their number goes 0, 2, 1, 1 or so with
-the detuning (the printed numbers tell). Contradicts: sigma = 5.1 is Omega = 1.0306 for eps = 0.006, not 1.039 as printed
-above the first panel; the other three labels are right. Every root is found: the quartic in B has no others.
+Confirms: only common points of the purple curve and the manifold are steady states; their number goes 0,
+2, 1, 1 or so with the detuning (the printed numbers tell). Contradicts: sigma = 5.1 is Omega = 1.0306 for
+eps = 0.006, not 1.039 as printed above the first panel; the other three labels are right. Every root is
+found: the quartic in B has no others.
 """
 
 import numpy as np

@@ -1,11 +1,12 @@
 """Multipliers along the stable branches against C^2.
 
-Paper: figure for r = 0.76, mu = 0.5, g = 0.211, with printed entries a, b, c, d of the linearised maps, det A = r^4.
+Paper: figure for r = 0.76, mu = 0.5, g = 0.211, with printed entries a, b, c, d of the linearised maps,
+det A = r^4.
 
-Confirms: the printed entries give the multipliers of the maps to rounding (B read as the mean speed); det A = r^4; complex pairs
-have modulus r^2 = 0.5776, so no pair can leave the circle; both speeds, after and before, give the same multipliers.
-Refines: the multiplier of the period touches +1 at C_max, but the half map (half a period, then the mirror) has -1 there: that is
-what tells symmetry breaking from a fold.
+Confirms: the printed entries give the multipliers of the maps to rounding (B read as the mean speed); det
+A = r^4; complex pairs have modulus r^2 = 0.5776, so no pair can leave the circle; both speeds, after and
+before, give the same multipliers. Refines: the multiplier of the period touches +1 at C_max, but the half
+map (half a period, then the mirror) has -1 there: that is what tells symmetry breaking from a fold.
 """
 
 import numpy as np

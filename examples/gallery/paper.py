@@ -1,11 +1,12 @@
 """What the scripts of this folder share: the paper's machines, its scales, and one way to draw and to report.
 
-Source of all figures: B. Youssef, A. Y. Karoui, R. I. Leine, "The effect of friction on the dynamics of targeted energy
-transfer by symmetric vibro-impact dampers". The oscillator's damping is not printed there. The scripts take
-``lambda = c/(m omega_0) = 0.9`` (damping ratio 0.27 %): with it the simulated claims of the paper come true at its own
-parameters (G = 3.3: symmetric impacts at Omega = 0.977, asymmetric at 0.983; G = 2.47, sigma = -2.58: sliding from rest,
-impacting from q1 = q2 = b; sigma = -9.04: stick-slip). Its half-width b = 0.02 m is printed, the natural frequency
-f_0 = 7.666 Hz follows from "sigma = -9.04 (f = 7.25 Hz)".
+Source of all figures: B. Youssef, A. Y. Karoui, R. I. Leine, "The effect of friction on the dynamics of
+targeted energy transfer by symmetric vibro-impact dampers". The oscillator's damping is not printed
+there. The scripts take ``lambda = c/(m omega_0) = 0.9`` (damping ratio 0.27 %): with it the simulated
+claims of the paper come true at its own parameters (G = 3.3: symmetric impacts at Omega = 0.977,
+asymmetric at 0.983; G = 2.47, sigma = -2.58: sliding from rest, impacting from q1 = q2 = b; sigma =
+-9.04: stick-slip). Its half-width b = 0.02 m is printed, the natural frequency f_0 = 7.666 Hz follows
+from "sigma = -9.04 (f = 7.25 Hz)".
 """
 
 from __future__ import annotations
@@ -63,11 +64,22 @@ def on_manifold(machine: Any, amplitude: float) -> dict[str, float]:
     return {"w": 1.0, "w_rate": cosine - (b + float(level)), "v": sine, "v_rate": cosine}
 
 
+def at_equilibrium(machine: Any, state: Any) -> dict[str, float]:
+    """A start at an impacting steady state of the slow flow, at an impact on the left wall."""
+    from orbits import multiple_scales as ms
+
+    start = on_manifold(machine, state.amplitude)
+    b, level = state.velocity, float(ms.friction_level(machine.friction, machine.gravity))
+    sine, cosine = 1.0 - 0.5 * np.pi * b, float(ms.impact_loss(machine.restitution) * b + level)
+    start |= {"w_rate": cosine - (b + level), "v": sine, "v_rate": cosine * machine.frequency}
+    return start | {"phase": float((np.arctan2(sine, cosine) - state.phase) % (2 * np.pi))}
+
+
 def slow_variables(run: Any) -> dict[str, np.ndarray]:
     """Slow variables at the impacts of a simulated motion, each shape (impacts,).
 
-    ``time`` eps tau, ``before`` and ``after`` the absorber's absolute speed (times 1 + eps), ``B`` their mean, ``C2`` from v and v',
-    ``gamma`` the phase of v relative to the forcing.
+    ``time`` eps tau, ``before`` and ``after`` the absorber's absolute speed (times 1 + eps), ``B`` their
+    mean, ``C2`` from v and v', ``gamma`` the phase of v relative to the forcing.
     """
     omega, eps = run.model.frequency, run.model.mass_ratio
     rows = run.rows[run.codes < 2]

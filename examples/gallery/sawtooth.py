@@ -1,10 +1,11 @@
 """The pieces of the absorber's motion: triangle wave, square wave, and the ripple that friction adds.
 
-Paper: figure with Pi(z), M(z) and (Pi^2 - pi^2/4) M; its slow flow takes the ripple's first harmonic as (pi^4 - 16)/pi^4 h.
+Paper: figure with Pi(z), M(z) and (Pi^2 - pi^2/4) M; its slow flow takes the ripple's first harmonic as
+(pi^4 - 16)/pi^4 h.
 
-Refines: by quadrature the first cosine harmonic of the ripple (h/pi)(pi^2/4 - Pi^2) M is 8/pi^2 = 0.810569 of h; the paper's
-0.835744 is what comes out when Pi and M are each replaced by their own first harmonic before they are multiplied, and is
-3.1 % too large.
+Refines: by quadrature the first cosine harmonic of the ripple (h/pi)(pi^2/4 - Pi^2) M is 8/pi^2 =
+0.810569 of h; the paper's 0.835744 is what comes out when Pi and M are each replaced by their own first
+harmonic before they are multiplied, and is 3.1 % too large.
 """
 
 import numpy as np

@@ -1,12 +1,13 @@
 """Stable parts of the orbits with two impacts per period, and how far the maps can be trusted.
 
-Paper: figure for r = 0.76, mu = 0.5, g = 0.211: stable branches between a fold, a symmetry breaking at C_max and a period
-doubling at C_PD.
+Paper: figure for r = 0.76, mu = 0.5, g = 0.211: stable branches between a fold, a symmetry breaking at
+C_max and a period doubling at C_PD.
 
-Confirms: fold at C^2 = 0.0637942 and symmetry breaking at 0.5282903, in closed form and by multipliers of the maps.
-Contradicts: the period doubling. The bare maps have a multiplier -1 at C^2 = 0.8679, but there the relative velocity has already
-changed sign in the longer flight (least s w' = -0.110), and the friction with it, which the maps ignore. The real branch ends
-at a border near C^2 = 0.732, where the flight's velocity touches zero.
+Confirms: fold at C^2 = 0.0637942 and symmetry breaking at 0.5282903, in closed form and by multipliers of
+the maps. Contradicts: the period doubling. The bare maps have a multiplier -1 at C^2 = 0.8679, but there
+the relative velocity has already changed sign in the longer flight (least s w' = -0.110), and the
+friction with it, which the maps ignore. The real branch ends at a border near C^2 = 0.732, where the
+flight's velocity touches zero.
 """
 
 import numpy as np

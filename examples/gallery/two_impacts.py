@@ -1,4 +1,5 @@
-"""Orbits of the reduced machine with two impacts per period: symmetric in closed form, asymmetric by Newton's method."""
+"""Orbits of the reduced machine with two impacts per period: symmetric in closed form, asymmetric by
+Newton's method."""
 
 from __future__ import annotations
 
@@ -44,10 +45,10 @@ def asymmetric(machine: Absorber, top: float, step: float = 0.004) -> list[Orbit
         last = branch[-1]
         params = last.params.copy()
         params[0] = np.sqrt(square)
-        guess = last.nodes if len(branch) == 1 else 2 * last.nodes - branch[-2].nodes
+        guess = last.nodes.copy() if len(branch) == 1 else 2 * last.nodes - branch[-2].nodes
         orbit = polish(Orbit(machine, last.word, 1, guess, params))
         if orbit is None:
-            orbit = polish(Orbit(machine, last.word, 1, last.nodes, params))
+            orbit = polish(Orbit(machine, last.word, 1, last.nodes.copy(), params))
         if orbit is None or orbit.symmetric:
             break
         branch.append(orbit)
@@ -71,7 +72,8 @@ def at(branch: list[Orbit], function, level: float = 0.0) -> Orbit:
 
 
 def speeds(branch: list[Orbit]) -> dict[str, np.ndarray]:
-    """C^2 (n,), absolute speeds after and before each impact and their mean (n, 2), stability and reality (n,)."""
+    """C^2 (n,), absolute speeds after and before each impact and their mean (n, 2), stability and reality
+    (n,)."""
     tables = [orbit.events for orbit in branch]
     side = np.array(
         [1.0, -1.0]
