@@ -40,11 +40,12 @@ def plot_multipliers(branch: "Branch") -> "Figure":
             )
         limit = 0.0 if flow else 1.0
         left.axhline(limit, color="black", linewidth=0.9)
-        wide = np.nanmax(ranked) > 20 and not flow
-        if wide:
+        if not flow and np.nanmax(ranked) > 20:
             left.set_yscale("log")
-            floor = ranked[ranked > 0].min(initial=1.0)
-            left.set_ylim(bottom=max(floor, 1e-6) / 1.5)
+            low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
+            left.set_ylim(
+                max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5
+            )  # a graze sends a multiplier to infinity
         left.set_xlabel(axis_label(branch.parameter))
         left.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
         left.set_title(f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size")

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from .style import new_axes, styled
+from .style import new_axes, settle, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,47 +47,69 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
                 fontsize=8,
                 bbox={"boxstyle": "round,pad=0.45", **style},
             )
-        pairs: dict[tuple[str, str], list[Any]] = {}
-        for switch in graph.switches:
-            if switch.source in place and switch.target in place:
-                pairs.setdefault((switch.source, switch.target), []).append(switch)
+        if graph.branches:
+            axes.set_title(
+                "grey: partly stable; dotted: virtual; arrows: switches at special points", fontsize=8.5
+            )
         axes.set_xlim(-0.5, wide - 0.5)
         axes.set_ylim(-(high - 1) / 2 - 0.6, (high - 1) / 2 + 0.6)
-        figure.draw_without_rendering()
-        for (source, target), switches in pairs.items():
-            same = place[source][0] == place[target][0]
-            (ax, ay), (bx, by) = place[source], place[target]
-            axes.add_patch(
-                FancyArrowPatch(
-                    (ax, ay),
-                    (bx, by),
-                    patchA=boxes[source].get_bbox_patch(),
-                    patchB=boxes[target].get_bbox_patch(),
-                    connectionstyle="arc3,rad=0.25" if same or (target, source) in pairs else "arc3,rad=0",
-                    arrowstyle="-|>",
-                    mutation_scale=10,
-                    color="0.35",
-                    linewidth=0.9,
-                    zorder=1,
-                )
+        settle(figure)
+        for pair, switches in _pairs(graph).items():
+            source, target = pair
+            both = len({(s.source, s.target) for s in switches}) > 1
+            bend = _bend(place, source, target)
+            arrow = FancyArrowPatch(
+                place[source],
+                place[target],
+                patchA=boxes[source].get_bbox_patch(),
+                patchB=boxes[target].get_bbox_patch(),
+                connectionstyle=f"arc3,rad={bend}",
+                arrowstyle="<|-|>" if both else "-|>",
+                mutation_scale=10,
+                color="0.35",
+                linewidth=0.9,
+                zorder=1,
             )
-            text = ", ".join(dict.fromkeys(s.point for s in switches))
-            shift = 0.14 * (bx - ax) if (target, source) in pairs else 0.0
+            axes.add_patch(arrow)
+            (ax, ay), (bx, by) = axes.transData.transform([place[source], place[target]])
+            middle = ((ax + bx + bend * (by - ay)) / 2, (ay + by - bend * (bx - ax)) / 2)
             axes.text(
-                (ax + bx) / 2 + (0.13 if same else 0),
-                (ay + by) / 2 + shift,
-                text,
+                *axes.transData.inverted().transform(middle),
+                ", ".join(dict.fromkeys(s.point for s in switches)),
                 ha="center",
                 va="center",
                 fontsize=8,
                 bbox={"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"},
                 zorder=4,
             )
-        if graph.branches:
-            axes.set_title(
-                "grey: partly stable; dotted: virtual; arrows: switches at special points", fontsize=8.5
-            )
     return figure
+
+
+def _pairs(graph: "Graph") -> dict[tuple[str, str], list[Any]]:
+    """Switches by the two branches that they tie, whichever way they were found."""
+    pairs: dict[tuple[str, str], list[Any]] = {}
+    for switch in graph.switches:
+        source, target = switch.source, switch.target
+        if source in graph.branches and target in graph.branches and source != target:
+            key = (target, source) if (target, source) in pairs else (source, target)
+            pairs.setdefault(key, []).append(switch)
+    return pairs
+
+
+def _bend(place: dict[str, tuple[float, float]], source: str, target: str) -> float:
+    """Curvature of an arrow: straight, unless it would run behind a box between its ends."""
+    (ax, ay), (bx, by) = place[source], place[target]
+    for label, (px, py) in place.items():
+        if label in (source, target):
+            continue
+        share = (py - ay) / (by - ay) if ax == bx else (px - ax) / (bx - ax)
+        if (
+            0 < share < 1
+            and abs(ax + share * (bx - ax) - px) < 0.3
+            and abs(ay + share * (by - ay) - py) < 0.3
+        ):
+            return 0.9 if ax == bx else 0.3
+    return 0.0
 
 
 def _layers(graph: "Graph") -> list[list[str]]:

@@ -50,6 +50,8 @@ SYMBOLS = {
     "B_post": "velocity after impact $B^+$",
     "B_pre": "velocity before impact $B^-$",
     "B_mean": "mean velocity at impacts $B$",
+    "max_abs_w": r"largest $|w|$",
+    "impact_speed": "fastest impact $|w'_-|$",
     "frequency": r"frequency $\Omega$",
     "restitution": "restitution $r$",
     "friction": r"friction $\mu$",
