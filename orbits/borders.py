@@ -217,7 +217,7 @@ def _beside(other: OrbitProblem, guess: np.ndarray, p: float) -> tuple[OrbitProb
     residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10:
         return None
-    for distance in (1e-7, 1e-5, 1e-3):
+    for distance in (1e-8, 1e-7, 1e-6):
         sides = []
         for side in (1.0, -1.0):
             q = p + side * distance * max(1.0, abs(p))
