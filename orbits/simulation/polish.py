@@ -51,8 +51,7 @@ def polish(
         if not np.all(np.isfinite(step)) or np.abs(step).max() > 0.1:
             break
         node = node + step
-    if matrix is None:
-        matrix = monodromy(engine, params, codes, modes, best[0])
+    matrix = monodromy(engine, params, codes, modes, best[0])
     multipliers = (
         np.full(len(node), np.nan + 0j) if matrix is None else np.linalg.eigvals(matrix).astype(complex)
     )
