@@ -21,6 +21,7 @@ from orbits.orbit import Orbit
 from orbits.sampling import flight, lengths, slowest
 from orbits.words import Word
 
+SHORT = 1e-4  # phase between a turn and the stick after it that is about to vanish
 FIRST = 2e-3  # size of what grows from nothing: radians of phase, or speed
 
 
@@ -108,6 +109,8 @@ def _stick(orbit: Orbit, place: int) -> list[Edit]:
     turned = Edit(
         place, place + 1, ("t", "s"), (-before, 0), np.array([node, late]), "gap", "a turn appears before a stick"
     )  # fmt: skip
+    if place > 0 and word.events[place - 1] == "t" and node[0] - orbit.nodes[place - 1, 0] < SHORT:
+        return [Edit(place - 1, place + 1, ("s",), (0,), node[None], "margin", "a turn before a stick disappears")]
     if out == before:
         return [Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight"), turned]
     middle = node.copy()
