@@ -1,0 +1,164 @@
+"""Each slip listed in examples/ERRATA.md, shown by a number that does not come from the code under test."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import sympy
+
+from orbits import Absorber, Coupled, Orbit, Word
+from orbits import multiple_scales as ms
+from orbits.design import Design
+from orbits.start import polish
+
+STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211}
+R, H = 0.24 / 1.76, 0.5 * np.pi * 0.5 * 0.211
+
+
+def exact_orbit(eps, guess, forcing=2.47, sigma=-2.58, friction=0.5):
+    """(B, C^2, gamma) of the symmetric orbit of the exact coupled machine near a guess of the same."""
+    machine = Coupled(
+        **{**STRONG, "friction": friction},
+        mass_ratio=eps,
+        damping=0.9,
+        forcing=forcing,
+        frequency=1 + eps * sigma,
+    )
+    b, _, gamma = guess
+    h = 0.5 * np.pi * friction * 0.211
+    sine, cosine = 1 - 0.5 * np.pi * b, R * b + h
+    phase = np.arctan2(sine, cosine) - gamma
+    nodes = np.array([[phase, b + h, sine, cosine], [phase + np.pi, -b - h, -sine, -cosine]])
+    orbit = polish(Orbit(machine, Word.parse("LR", frictionless=friction == 0), 1, nodes, machine.vector({})))
+    assert orbit is not None and orbit.residual < 1e-11
+    t, omega = orbit.events, machine.frequency
+    v, rate = t.v[0], t.v_rate[0] / omega
+    mean = 0.5 * (t.B_post[0] - t.B_pre[0])
+    return np.array([mean, v**2 + rate**2, np.angle(np.exp(1j * (np.arctan2(v, rate) - t.phase[0])))])
+
+
+def limit(guess, **settings):
+    """The exact orbit extrapolated to eps -> 0 (twice Richardson)."""
+    rows = [exact_orbit(eps, guess, **settings) for eps in (8e-4, 4e-4, 2e-4)]
+    first = [2 * b - a for a, b in pairwise(rows)]
+    return (4 * first[1] - first[0]) / 3
+
+
+@pytest.fixture(scope="module")
+def settled():
+    state = next(s for s in ms.equilibria(ms.SlowFlow(), -2.58) if s.seen and s.manifold == "impacting")
+    return state, limit((state.velocity, state.amplitude**2, state.phase))
+
+
+def test_first_slow_equation_has_four_over_pi(settled):
+    _, (b, squared, gamma) = settled
+
+    def remainder(factor):
+        ripple = 8 / np.pi**2 * H * (1 - 0.5 * np.pi * b)
+        return -0.9 * squared - factor * b * (R * b + H) - ripple - 2.47 * np.sqrt(squared) * np.sin(gamma)
+
+    assert abs(remainder(4 / np.pi)) < 1e-8
+    assert abs(remainder(np.pi / 4)) == pytest.approx(0.150, abs=1e-3)
+
+
+def test_kappa_is_eight_over_pi_squared():
+    z = sympy.symbols("z", real=True)
+    mean = sympy.integrate((sympy.pi**2 / 4 - z**2) * sympy.cos(z), (z, -sympy.pi / 2, sympy.pi / 2))
+    assert mean == 4
+    assert sympy.simplify(2 / sympy.pi / sympy.pi * mean - 8 / sympy.pi**2) == 0
+    assert ms.CLOSURES["exact"] == pytest.approx(float(8 / sympy.pi**2), rel=1e-15)
+
+
+def test_exact_closure_is_met_by_coupled_orbits_to_first_order(settled):
+    state, found = settled
+    assert found == pytest.approx([state.velocity, state.amplitude**2, state.phase], abs=1e-7)
+    gaps = np.array(
+        [np.abs(exact_orbit(e, (state.velocity, 0, state.phase))[:2] - [state.velocity, state.amplitude**2]) for e in
+         (0.012, 0.006, 0.003, 0.0015)]
+    )  # fmt: skip
+    orders = np.log2(gaps[:-1] / gaps[1:])
+    assert np.all(np.abs(orders - 1) < 0.02)
+    rough = next(
+        s for s in ms.equilibria(ms.SlowFlow(closure="paper"), -2.58) if s.seen and s.manifold == "impacting"
+    )
+    assert abs(found[0] - rough.velocity) == pytest.approx(5.77e-4, rel=0.01)
+    assert abs(found[1] - rough.amplitude**2) == pytest.approx(1.125e-3, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_drawn_machines_converge_to_the_exact_closure(seed):
+    """Detuning, forcing and friction drawn; every steady state that is seen is the limit of a coupled
+    orbit."""
+    rng = np.random.default_rng(seed)
+    mu, forcing = rng.uniform(0.1, 0.7), rng.uniform(1.8, 3.2)
+    flow = ms.SlowFlow(forcing=forcing, friction=mu)
+    states: list[ms.Equilibrium] = []
+    while not states:
+        sigma = rng.uniform(-4.5, 3.5)
+        states = [s for s in ms.equilibria(flow, sigma) if s.seen and s.manifold == "impacting" and
+                  s.velocity > flow.activation.velocity + 0.1]  # fmt: skip
+    s = states[0]
+    found = limit((s.velocity, s.amplitude**2, s.phase), forcing=forcing, sigma=sigma, friction=mu)
+    assert found == pytest.approx([s.velocity, s.amplitude**2, s.phase], abs=1e-6)
+
+
+def test_sliding_states_too_are_limits_of_coupled_orbits():
+    """tt in the coupled machine at sigma = -2.58: amplitude to first order in eps."""
+    state = next(s for s in ms.equilibria(ms.SlowFlow(), -2.58) if s.manifold == "sliding")
+    gaps = []
+    for eps in (0.006, 0.003, 0.0015):
+        machine = Coupled(**STRONG, mass_ratio=eps, damping=0.9, forcing=2.47, frequency=1 - 2.58 * eps)
+        delta, c = state.turning_point, state.amplitude
+        assert delta is not None
+        phase = np.arctan2(delta, H) - state.phase + np.pi  # the word starts at the turn on the right, mode +
+        nodes = np.array([[phase, -delta, -delta, -H], [phase + np.pi, delta, delta, H]])
+        orbit = polish(Orbit(machine, Word.parse("tt"), 1, nodes, machine.vector({})))
+        assert orbit is not None
+        gaps.append(float(np.hypot(orbit.events.v[0], orbit.events.v_rate[0] / machine.frequency)) - c)
+    orders = np.log2(np.array(gaps[:-1]) / np.array(gaps[1:]))
+    assert np.all(np.abs(orders - 1) < 0.03)
+
+
+def test_printed_resonance_frequency_has_no_dimension():
+    """The corrected one gives the same hertz in metres and millimetres; the printed one does not."""
+    c, low = ms.coefficients(ms.SlowFlow()), ms.SlowFlow().activation.amplitude
+
+    def printed(q, b):
+        return 0.5 / (b * q) * (c.offset_gamma - c.beta_gamma * np.sqrt(q - b * low))
+
+    assert printed(0.015, 0.02) / printed(15.0, 20.0) != pytest.approx(1.0, rel=0.5)
+    metres = ms.resonance_frequency(0.015, cavity=0.02, natural_frequency=7.666, flow=ms.SlowFlow())
+    assert metres == pytest.approx(
+        ms.resonance_frequency(15.0, cavity=20.0, natural_frequency=7.666, flow=ms.SlowFlow())
+    )
+
+
+def test_speed_before_an_impact_has_the_other_sign():
+    orbit = Absorber(**STRONG, mass_ratio=0.006).symmetric_orbit(float(np.sqrt(0.53)))
+    after, before = orbit.events.B_post[0], orbit.events.B_pre[0]
+    assert (after, before) == (pytest.approx(1.2225, abs=1e-4), pytest.approx(-0.8891, abs=1e-4))
+    mean = 0.5 * (after - before)
+    h = 1.006 * H
+    assert (1 - 0.5 * np.pi * mean) ** 2 + (R * mean + h) ** 2 == pytest.approx(0.53, abs=1e-12)
+    # printed map G-_LR: r B-_n + B-_(n+1) - (1 + r) C cos Psi_n + a pi = 0 with the signed speeds
+    cosine = np.sqrt(0.53) * np.cos(orbit.events.phase[0])
+    assert 0.76 * before + orbit.events.B_pre[1] - 1.76 * cosine + 2 * h == pytest.approx(0.0, abs=1e-12)
+
+
+def test_detuning_of_the_first_panel():
+    assert ms.SlowFlow().frequency(5.1) == pytest.approx(1.0306, abs=1e-12)
+    for sigma, label in ((1.25, 1.007), (3.65, 1.022), (-4.4, 0.973)):
+        assert abs(ms.SlowFlow().frequency(sigma) - label) < 1e-3
+
+
+def test_upper_bound_falls_with_the_cavity_only_for_bouncy_walls():
+    """The dimensionless C_max rises with h (falls with b) while 4 R^2 < pi^2 - 8; in metres q1_max rises
+    with b."""
+    for r, rises in ((0.5, True), (0.2, True), (0.17, False)):
+        b = np.array([10.0, 11.0])  # very wide: small h
+        wide = Design(cavity=b, restitution=r, mass_ratio=0.0)
+        scaled = np.asarray(wide.upper_bound) / b
+        assert (scaled[0] > scaled[1]) == rises
+        assert wide.upper_bound[0] < wide.upper_bound[1]

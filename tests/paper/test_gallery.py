@@ -1,0 +1,139 @@
+"""Every gallery script runs without a window, and prints the numbers that its docstring claims."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+
+import pytest
+
+GALLERY = Path(__file__).parents[2] / "examples" / "gallery"
+HELPERS = {"paper", "two_impacts"}
+SCRIPTS = sorted(p.stem for p in GALLERY.glob("*.py") if p.stem not in HELPERS)
+
+
+@pytest.fixture(scope="module")
+def gallery():
+    sys.path.insert(0, str(GALLERY))
+    yield importlib.import_module("paper")
+    sys.path.remove(str(GALLERY))
+    for name in (*SCRIPTS, *HELPERS):
+        sys.modules.pop(name, None)
+
+
+def check_sawtooth(n):
+    assert n["kappa by quadrature"] == pytest.approx(0.81056947, abs=1e-7)
+    assert n["excess of the paper"] == pytest.approx(0.0311, abs=1e-4)
+
+
+def check_free_motion(n):
+    assert n["largest distance of the impacts from the manifold, in C^2, above 1.1 C^2_min"] < 0.03
+    low, let_go = n["C^2_min of the manifold"], n["C^2 where the simulated absorber lets go"]
+    assert let_go == pytest.approx(low, rel=0.2)
+    assert n["slow time to release, simulated"] == pytest.approx(
+        n["slow time to release, exact closure"], rel=0.06
+    )
+    assert n["least margin of that machine's symmetric orbits between them"] > 0
+
+
+def check_equilibria(n):
+    counts = [n[f"sigma = {s}: steady states with impacts"] for s in (5.1, 1.25, 3.65, -4.4)]
+    assert counts == [0, 2, 2, 2]
+    assert n["sigma = 5.1: Omega (printed 1.039)"] == pytest.approx(1.0306)
+
+
+def check_branches(n):
+    assert n["C^2_min"] == pytest.approx(0.0233851, abs=1e-7)
+    assert n["C^2_max"] == pytest.approx(0.4961028, abs=1e-7)
+    assert n["free motion: largest distance from the mean curve in C^2"] < 0.03
+
+
+def check_stability_region(n):
+    assert n["fold, C^2"] == pytest.approx(0.0637942, abs=1e-7)
+    assert n["symmetry breaking, C^2"] == pytest.approx(0.5282903, abs=1e-7)
+    assert 0.72 < n["border of the real branch, C^2"] < 0.74
+    assert n["multiplier -1 of the bare maps, C^2"] == pytest.approx(0.8679, abs=1e-4)
+    assert n["least s w' of that orbit (negative: not a motion)"] == pytest.approx(-0.110, abs=1e-3)
+
+
+def check_multipliers(n):
+    assert n["largest difference between printed and computed multipliers"] < 1e-11
+    assert n["det A / r^4, least and largest"] == pytest.approx((1.0, 1.0), abs=1e-9)
+
+
+def check_verification(n):
+    assert n["Omega = 0.977: word, periods, impacts"] == ("LR", 1, 2) and n["Omega = 0.977: symmetric"]
+    assert n["Omega = 0.983: word, periods, impacts"] == ("LR", 1, 2) and not n["Omega = 0.983: symmetric"]
+    assert n["Omega = 0.986: word, periods, impacts"][1:] == (1, 2)
+    assert n["Omega = 0.986, friction's sign frozen: periods until it repeats (0: not found)"] == 2
+
+
+def check_sticking_limit(n):
+    assert n["simulated, 0.2 % inside"][0] == "stuck"
+    assert n["simulated, 0.2 % outside"][0] == "sliding"
+
+
+def check_sliding_response(n):
+    low = 0.19645
+    assert n["largest C Omega^2/(1 + eps) of a simulated stick-slip motion"] < low
+    assert n["smallest C Omega^2/(1 + eps) of a simulated sliding motion"] > low
+    assert n["largest difference in C between averaged and simulated sliding"] < 0.01
+
+
+def check_stick_slip(n):
+    assert n["word"].replace("u", "").startswith("s")
+    assert n["stuck for good below"] < n["amplitude C"] < n["no sticking above"]
+    assert n["frequency in Hz"] == pytest.approx(7.25, abs=1e-3)
+
+
+def check_impacting_response(n):
+    assert n["largest relative difference in C, averaged to simulated"] < 0.03
+    assert "hopf on the repelling part (sigma, B, C^2)" in n
+    assert n["backbone at B = 1: C, sigma_R"][1] != pytest.approx(n["sigma_R there as printed"], rel=0.1)
+
+
+def check_friction_or_none(n):
+    below, above = n["C at sigma = -3.0 with, without friction"], n["C at sigma = 3.0 with, without friction"]
+    assert below[0] < below[1] and above[0] > above[1]
+    assert n["mu = 0.5: alpha_c, beta_c, offset"][0] == n["mu = 0: alpha_c, beta_c, offset"][0]
+    assert n["mu = 0.5: simulated C after 125 periods"] > n["mu = 0.0: simulated C after 125 periods"]
+
+
+def check_coexisting_equilibria(n):
+    assert n["steady states"] == 3
+
+
+def check_coexistence_runs(n):
+    assert (n["sliding: word"], n["impacting: word"]) == ("tt", "LR")
+    for kind in ("sliding", "impacting"):
+        simulated, slow = n[f"{kind}: C^2 simulated, slow flow"]
+        assert simulated == pytest.approx(slow, rel=0.02)
+    assert n["G = 1.65, sigma = 5, mu = 0.0, from q1 = q2 = b"][0] == "chaotic"
+    assert n["G = 1.65, sigma = 5, mu = 0.5, from q1 = q2 = b"][0] == "sliding"
+
+
+def check_combined_response(n):
+    assert n["q1_min, q1_max in mm"] == pytest.approx((5.058, 14.539), abs=1e-3)
+
+
+def check_sweeps(n):
+    assert n["down: motions met"]["LR symmetric"] > 10
+    assert n["up: motions met"]["tt"] > 20
+
+
+def check_closure(n):
+    assert n["closure exact: order in B between the two smallest mass ratios"] == pytest.approx(1.0, abs=5e-3)
+    assert n["closure exact: order in C^2 between the two smallest mass ratios"] == pytest.approx(
+        1.0, abs=5e-3
+    )
+    assert abs(n["closure paper: distance in B, C^2 at eps -> 0"][1]) > 1e-3
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_script(name, gallery, tmp_path):
+    script = importlib.import_module(name)
+    numbers = gallery.run(name, script.main, tmp_path)
+    assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    assert script.__doc__ and any(word in script.__doc__ for word in ("Confirms", "Refines", "Contradicts"))
+    globals()[f"check_{name}"](numbers)
