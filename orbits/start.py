@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -16,6 +17,7 @@ from orbits.stuck import StuckOrbit
 from orbits.words import Word
 
 TOLERANCE = 1e-12
+LONG = 12  # words with more events are not looked for from random nodes
 
 
 class StartError(ValueError):
@@ -124,12 +126,28 @@ def find(
         if orbit is not None:
             return orbit
         tried.append("Newton's method from random nodes")
+    orbit = _repeated(model, reading, periods, parameters)
+    if orbit is not None:
+        return orbit
     found = f"the nearest motion that the simulator finds is {nearest}" if nearest else "the simulator finds no periodic motion"
     given = ", ".join(f"{name} = {value:g}" for name, value in (parameters or {}).items())
     raise StartError(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
         f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."
     )
+
+
+def _repeated(
+    model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None
+) -> Orbit | None:
+    """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
+    times = math.gcd(word.repetitions, periods)
+    if times == 1:
+        return None
+    try:
+        return find(model, word.head(len(word) // times), periods // times, None, parameters).repeat(times)
+    except StartError:
+        return None
 
 
 def _stuck(model: Model, params: np.ndarray) -> StuckOrbit:
@@ -220,7 +238,7 @@ def _aligned(orbit: Orbit, word: Word) -> Orbit:
 
 def _random(model: Model, word: Word, periods: int, params: np.ndarray) -> Orbit | None:
     """Newton's method from random nodes (reduced machine): the first real orbit found, else the first proper one."""
-    if model.node != 2:
+    if model.node != 2 or len(word) > LONG:
         return None
     generator = np.random.default_rng(7)
     amplitude, omega = float(params[0]), float(params[-1])
