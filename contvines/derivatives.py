@@ -88,7 +88,7 @@ class Differentiated:
         return along(lambda t: self.value(u, p + t), 1.0 + abs(p))
 
     def _imaginary(self, u: np.ndarray, p: complex) -> np.ndarray:
-        return np.asarray(self.f(u, p), dtype=complex).reshape(-1).imag / COMPLEX_STEP
+        return np.imag(np.asarray(self.f(u, p)).reshape(-1)) / COMPLEX_STEP
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         rng = np.random.default_rng(0)

@@ -101,7 +101,8 @@ def chunks(
             chunk = Chunk(*(np.asarray(known[part]) for part in ARRAYS), status=Status(int(known["status"])))
             h = float(known["h"])
         else:
-            chunk, h = _march(engine, history, capacity, h, stop_at_border)
+            room = min(capacity, max(settings.max_points - total, 1))
+            chunk, h = _march(engine, history, room, h, stop_at_border)
             closed = closing.cut(chunk)
             away = np.sqrt(((chunk.points - start.u) ** 2).mean(axis=1)) > settings.escape
             if closed is not None:

@@ -108,7 +108,7 @@ def user_function(engine: Engine, function: Any) -> Callable[[np.ndarray, np.nda
     if callable(function):
         return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
     try:
-        name, given = function
+        name, given = tuple(function)
         value = float(given)
     except (TypeError, ValueError):
         raise ValueError(

@@ -1,0 +1,212 @@
+"""AlgebraicProblem on textbook cases."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import contvines as cv
+
+
+def of_kind(graph, kind):
+    return sorted(point.value for point in graph.special.values() if point.kind == kind)
+
+
+def module_level(u, p):
+    """u = p^2, importable."""
+    return u - p**2
+
+
+def test_pitchfork():
+    """x' = p x - x^3 (Strogatz, Nonlinear Dynamics and Chaos, section 3.4): supercritical at p = 0, x = +-sqrt(p)."""
+    problem = cv.AlgebraicProblem(lambda x, p: p * x - x**3, [0.0], -0.5, spectrum="flow", mirror=lambda x: -x)
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert list(graph.branches) == ["B1", "B2"]
+    point = graph["SB1"]
+    assert abs(point.value) < 1e-14 and point.kind == "symmetry-breaking" and point.mirror
+    assert point.criticality == "supercritical"
+    assert point.coefficient == pytest.approx(-1.0, abs=1e-8)  # the normal form is x' = p x - 1 x^3
+    side = graph["B2"]
+    np.testing.assert_allclose(side.points[:, 0] ** 2, side.values, atol=1e-12)
+    assert side.stable[1:].all() and side.values[0] == point.value
+    np.testing.assert_allclose(graph["B1"].stable_intervals(), [(-1.0, 0.0)], atol=1e-14)
+    assert [(s.point, s.source, s.target) for s in graph.switches] == [("SB1", "B1", "B2")]
+
+
+def test_subcritical_pitchfork():
+    """x' = p x + x^3: subcritical (Strogatz, section 3.4)."""
+    graph = cv.diagram(
+        cv.AlgebraicProblem(lambda x, p: p * x + x**3, [0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0)
+    )
+    assert graph["BP1"].criticality == "subcritical"
+    assert graph["BP1"].coefficient == pytest.approx(1.0, abs=1e-8)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(1e-4, 0.05), st.sampled_from([-1.0, 1.0]))
+def test_perturbed_twin_of_the_pitchfork(size, sign):
+    """x' = h + p x - x^3 has one fold, at p = 3 (h/2)^(2/3) (Strogatz, section 3.6), and no branch point."""
+    h = sign * size
+    problem = cv.AlgebraicProblem(lambda x, p: h + p * x - x**3, [-sign * 0.9], 0.8, spectrum="flow")
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert of_kind(graph, "fold") == pytest.approx([3.0 * (size / 2.0) ** (2.0 / 3.0)], abs=1e-12)
+    assert not of_kind(graph, "branch-point") and len(graph) == 1
+    smooth = cv.diagram(
+        cv.AlgebraicProblem(lambda x, p: h + p * x - x**3, [sign * 0.9], 0.8, spectrum="flow"), within=(-1.0, 1.0)
+    )
+    assert not of_kind(smooth, "fold") and smooth["B1"].stable.all()
+
+
+def test_pitchfork_met_along_the_side_branch():
+    """The branch x = sqrt(p) ends at the pitchfork; the trivial branch is found from there and owns the point."""
+    for spectrum in ("flow", "none"):
+        problem = cv.AlgebraicProblem(
+            lambda x, p: p * x - x**3, [0.8], 0.64, spectrum=spectrum, mirror=lambda x: -x
+        )
+        graph = cv.diagram(problem, within=(-1.0, 1.0))
+        assert len(graph) == 2 and list(graph.special).count("SB1") == 1
+        assert abs(graph["SB1"].value) < 1e-14
+        assert np.abs(graph["B2"].points).max() < 1e-12
+        assert "SB1" in graph["B1"].ended[0] and graph["SB1"].branch == "B2"
+
+
+def test_cusp():
+    """p + x - x^3 = 0 folds at p = +-2/(3 sqrt 3)."""
+    problem = cv.AlgebraicProblem(lambda x, p: p + x - x**3, [-1.5], -1.0, spectrum="flow")
+    graph = cv.diagram(problem, within=(-1.5, 1.5))
+    exact = 2.0 / (3.0 * np.sqrt(3.0))
+    assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=1e-14)
+    assert graph["B1"].stable_intervals() == [
+        (-1.5, pytest.approx(exact)),
+        (pytest.approx(-exact), 1.5),
+    ]
+
+
+def test_transcritical():
+    """x' = p x - x^2: x = 0 and x = p exchange stability at p = 0 (Strogatz, section 3.2)."""
+    for spectrum in ("flow", "none"):
+        problem = cv.AlgebraicProblem(lambda x, p: p * x - x**2, [0.0], -0.5, spectrum=spectrum)
+        graph = cv.diagram(problem, within=(-1.0, 1.0))
+        assert len(graph) == 2 and of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-14)
+        np.testing.assert_allclose(graph["B2"].points[:, 0], graph["B2"].values, atol=1e-13)
+        assert graph["B2"].range == (-1.0, 1.0)
+        if spectrum == "flow":
+            np.testing.assert_allclose(graph["B2"].stable_intervals(), [(0.0, 1.0)], atol=1e-14)
+            np.testing.assert_allclose(graph["B1"].stable_intervals(), [(-1.0, 0.0)], atol=1e-14)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(0.1, 0.9), st.floats(-0.5, 0.5), st.floats(0.2, 5.0))
+def test_isola(radius, centre, stretch):
+    """A closed branch (p - c)^2 + (x/s)^2 = r^2 is closed exactly, with folds at c +- r."""
+    problem = cv.AlgebraicProblem(
+        lambda x, p: (p - centre) ** 2 + (x / stretch) ** 2 - radius**2, [stretch * radius], centre
+    )
+    graph = cv.diagram(problem, within=(-2.0, 2.0))
+    branch = graph["B1"]
+    assert branch.closed and len(graph) == 1 and "closed" in branch.ended[0]
+    assert branch.values[0] == branch.values[-1]
+    assert of_kind(graph, "fold") == pytest.approx([centre - radius, centre + radius], abs=1e-12)
+    assert not of_kind(graph, "end")
+
+
+@pytest.mark.parametrize("a", [0.7, 1.0, 1.6])
+def test_brusselator(a):
+    """Hopf at B = 1 + A^2 with frequency A (Strogatz, exercise 8.3.1; Kuznetsov, example 3.1)."""
+
+    def brusselator(u, b):
+        x, y = u
+        return np.array([a - (b + 1) * x + x * x * y, b * x - x * x * y])
+
+    graph = cv.diagram(
+        cv.AlgebraicProblem(brusselator, [a, 1.0 / a], 1.0, parameter="B", spectrum="flow"), within=(0.5, 5.0)
+    )
+    assert of_kind(graph, "hopf") == pytest.approx([1.0 + a * a], abs=1e-12)
+    assert np.abs(graph["HB1"].multipliers.imag) == pytest.approx([a, a], abs=1e-10)
+
+
+def test_two_eigenvalues_cross_at_once():
+    """Two uncoupled pitchforks at one parameter value: both are seen, and all four branches through the point."""
+
+    def two(u, p):
+        return np.array([p * u[0] - u[0] ** 3, p * u[1] - 2.0 * u[1] ** 3])
+
+    graph = cv.diagram(cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=1)
+    assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-13)
+    assert "two multipliers" in graph["BP1"].note
+    ends = sorted(tuple(np.round(np.abs(b.points[-1]), 9)) for b in list(graph)[1:])
+    half = round(np.sqrt(0.5), 9)
+    assert ends == [(0.0, half), (1.0, 0.0), (1.0, half), (1.0, half)]
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-7])
+def test_two_eigenvalues_cross_close_together(gap):
+    """Between two points of the branch, at 0 and at ``gap``: a product of tests would not change sign."""
+
+    def two(u, p):
+        return np.array([p * u[0] - u[0] ** 3, (p - gap) * u[1] - 2.0 * u[1] ** 3])
+
+    graph = cv.diagram(cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=0)
+    found = of_kind(graph, "branch-point")
+    assert len(found) == 2 and found == pytest.approx([0.0, gap], abs=1e-13)
+
+
+def test_user_functions_are_events():
+    problem = cv.AlgebraicProblem(lambda x, p: x - p**2, [0.0], 0.0)
+    graph = cv.diagram(
+        problem, within=(-1.0, 2.0), user_functions={"half": ("u0", 0.5), "sum": lambda u, p: u[0] + p - 1.0}
+    )
+    assert of_kind(graph, "user") == pytest.approx(
+        sorted([-np.sqrt(0.5), np.sqrt(0.5), 0.5 * (np.sqrt(5.0) - 1.0)]), abs=1e-13
+    )
+    assert {p.note for p in graph.of_kind("user")} == {"half", "sum"}
+
+
+def test_derivatives_given_or_not():
+    """Exact, complex-step and difference derivatives give the same fold."""
+    exact = 2.0 / (3.0 * np.sqrt(3.0))
+    for options in (
+        {"jacobian": lambda x, p: 1.0 - 3.0 * x**2, "derivative": lambda x, p: [1.0]},
+        {},
+    ):
+        graph = cv.diagram(cv.AlgebraicProblem(lambda x, p: p + x - x**3, [-1.5], -1.0, **options), within=(-1.5, 1.5))
+        assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=1e-13)
+
+    def real_only(x, p):
+        return np.array([float(p) + float(x[0]) - abs(float(x[0])) ** 3 * np.sign(float(x[0]))])
+
+    problem = cv.AlgebraicProblem(real_only, [-1.5], -1.0)
+    assert not problem.functions.complex_step
+    graph = cv.diagram(problem, within=(-1.5, 1.5))
+    assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=1e-12)
+
+
+def test_callable_without_complex_derivative_is_noticed():
+    problem = cv.AlgebraicProblem(lambda x, p: np.abs(x) * x - p, [1.0], 1.0)
+    assert not problem.functions.complex_step
+    assert problem.functions.jacobian(np.array([0.7]), 0.3)[0, 0] == pytest.approx(1.4, rel=1e-10)
+
+
+def test_importable_problems_can_be_rebuilt():
+    from contvines.problem import rebuild
+
+    problem = cv.AlgebraicProblem(lambda x, p: x - p, [0.0])
+    assert problem.describe()["factory"] is None and rebuild(problem.describe()) is None
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(ValueError, match="as many are needed"):
+        cv.AlgebraicProblem(lambda x, p: [1.0, 2.0], [0.0])
+    with pytest.raises(ValueError, match="not finite"):
+        cv.AlgebraicProblem(lambda x, p: x + np.nan, [0.0])
+    with pytest.raises(ValueError, match="spectrum"):
+        cv.AlgebraicProblem(lambda x, p: x, [0.0], spectrum="map")
+    problem = cv.AlgebraicProblem(lambda x, p: x - p, [0.0])
+    with pytest.raises(ValueError, match="within"):
+        cv.diagram(problem)
+    with pytest.raises(ValueError, match="depth"):
+        cv.diagram(problem, within=(-1, 1), depth=-1)
+    with pytest.raises(ValueError, match="over"):
+        cv.diagram(problem, over="q", within=(-1, 1))
+    with pytest.raises(TypeError, match="seed"):
+        cv.diagram(3.0, over="q", within=(-1, 1))  # type: ignore[arg-type]

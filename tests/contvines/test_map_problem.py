@@ -1,0 +1,156 @@
+"""MapProblem: logistic and Henon maps against the literature."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def logistic(x, r):
+    return r * x * (1 - x)
+
+
+def henon(x, a):
+    return np.array([1 - a * x[0] ** 2 + x[1], 0.3 * x[0]])
+
+
+def values(graph, kind):
+    return [point.value for point in graph.special.values() if point.kind == kind]
+
+
+@pytest.fixture(scope="module")
+def cascade():
+    return cv.diagram(cv.MapProblem(logistic, [0.5], 2.5, parameter="r"), within=(2.0, 3.6), depth=4)
+
+
+def test_logistic_cascade(cascade):
+    """3, 1 + sqrt 6 exactly (Strogatz, section 10.3); the others OEIS A086180 and A091517, 3.56875941954382..."""
+    literature = [3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228, 3.5644072660954325, 3.5687594195438250]
+    assert values(cascade, "period-doubling") == pytest.approx(literature, abs=1e-12)
+    assert [branch.description["cycle"] for branch in cascade] == [1, 2, 4, 8, 16]
+    assert all(point.criticality == "supercritical" for point in cascade.of_kind("period-doubling"))
+    for branch, (low, high) in zip(cascade, zip([2.0, *literature], literature)):
+        np.testing.assert_allclose(branch.stable_intervals(), [(low, high)], atol=1e-12)
+
+
+def test_logistic_two_cycle_is_the_closed_form(cascade):
+    """x = (r + 1 +- sqrt((r - 3)(r + 1)))/(2 r)."""
+    branch = cascade["B2"]
+    r = branch.values
+    root = np.sqrt(np.maximum((r - 3.0) * (r + 1.0), 0.0))
+    exact = np.stack([(r + 1.0 - root) / (2.0 * r), (r + 1.0 + root) / (2.0 * r)], axis=1)
+    np.testing.assert_allclose(np.sort(branch.points, axis=1), exact, atol=1e-7)  # a square root at r = 3
+    np.testing.assert_allclose(np.sort(branch.points, axis=1)[2:], exact[2:], atol=1e-12)
+
+
+def test_flip_coefficient_of_the_logistic_map(cascade):
+    """c = f_xx^2/4 + f_xxx/6 = 36/4 at r = 3 (Kuznetsov, Elements of Applied Bifurcation Theory, theorem 4.3)."""
+    assert cascade["PD1"].coefficient == pytest.approx(9.0, rel=1e-6)
+
+
+def test_evidence(cascade):
+    for point in cascade.of_kind("period-doubling"):
+        assert np.abs(point.multipliers + 1.0).min() < 1e-9
+        assert point.residual < 1e-14 and point.replay < 1e-14 and point.location_error < 1e-12
+        low, high = sorted(point.bracket)
+        assert low <= point.value <= high
+
+
+def test_henon_cascade():
+    """b = 0.3: fold -(1-b)^2/4, doublings 3(1-b)^2/4 and (1-b)^2 + (1+b)^2/4 exactly; then 1.02585541, 1.05112566
+    (Derrida, Gervois, Pomeau, J. Phys. A 12 (1979) 269)."""
+    graph = cv.diagram(
+        cv.MapProblem(henon, [0.7, 0.2], 0.2, parameter="a"), within=(-0.2, 1.1), depth=3
+    )
+    assert values(graph, "fold") == pytest.approx([-0.1225], abs=1e-13)
+    found = values(graph, "period-doubling")
+    assert found[:2] == pytest.approx([0.3675, 0.9125], abs=1e-12)
+    assert found[2:] == pytest.approx([1.02585541, 1.05112566], abs=6e-9)
+    for branch in graph:  # the map contracts areas by b per iteration
+        n = branch.description["cycle"]
+        np.testing.assert_allclose(np.prod(branch.multipliers, axis=1).real, (-0.3) ** n, rtol=1e-8)
+    # Kuznetsov, (5.59): c = <p, C(q,q,q)>/6 - <p, B(q, (A - 1)^-1 B(q, q))>/2 with A q = -q, A^T p = -p, <p, q> = 1
+    a, b = 0.3675, 0.3
+    x = (-(1 - b) + np.sqrt((1 - b) ** 2 + 4 * a)) / (2 * a)
+    A = np.array([[-2 * a * x, 1.0], [b, 0.0]])
+    q = np.array([1.0, -b])
+    q /= np.linalg.norm(q)
+    p = np.array([1.0, -1.0])
+    assert np.allclose(A @ q, -q) and np.allclose(A.T @ p, -p)
+    p /= p @ q
+    B = lambda v, w: np.array([-2 * a * v[0] * w[0], 0.0])  # noqa: E731
+    c = -0.5 * p @ B(q, np.linalg.solve(A - np.eye(2), B(q, q)))
+    # here the critical vector has unit rms over its two coordinates, so its length is sqrt 2
+    assert graph["PD1"].coefficient == pytest.approx(2.0 * c, rel=1e-5)
+
+
+def test_period_three_window():
+    """Born at 1 + sqrt 8 (Strogatz, section 10.2), doubling at 3.8414990075..."""
+    start = [0.149888, 0.489172, 0.959299]
+    graph = cv.diagram(cv.MapProblem(logistic, start, 3.84, cycle=3, parameter="r"), within=(3.7, 3.87), depth=1)
+    assert values(graph, "fold") == pytest.approx([1.0 + np.sqrt(8.0)], abs=1e-12)
+    assert values(graph, "period-doubling")[0] == pytest.approx(3.8414990075, abs=1e-10)
+    assert graph["LP1"].multipliers == pytest.approx([1.0], abs=1e-7)
+
+
+def test_neimark_sacker_of_the_delayed_logistic_map():
+    """x -> r x (1 - y), y -> x loses stability at r = 2 with multipliers exp(+-i pi/3) (Kuznetsov, example 4.2)."""
+    problem = cv.MapProblem(lambda x, r: np.array([r * x[0] * (1 - x[1]), x[0]]), [1 / 3, 1 / 3], 1.5, parameter="r")
+    graph = cv.diagram(problem, within=(1.2, 2.4))
+    assert values(graph, "neimark-sacker") == pytest.approx([2.0], abs=1e-12)
+    assert np.sort(np.angle(graph["NS1"].multipliers)) == pytest.approx([-np.pi / 3, np.pi / 3], abs=1e-9)
+
+
+def test_two_doublings_at_once():
+    """Two uncoupled logistic maps double at the same r: three ways to double (one, the other, both: in and out of phase)."""
+    problem = cv.MapProblem(lambda x, r: r * x * (1 - x), [0.6, 0.6], 2.5, parameter="r")
+    graph = cv.diagram(problem, within=(2.0, 3.3), depth=1)
+    assert values(graph, "period-doubling")[0] == pytest.approx(3.0, abs=1e-12)
+    assert "two multipliers" in graph["PD1"].note
+    assert len(graph) >= 4
+
+
+def test_doubled_cycle_that_falls_back_is_recognised():
+    """Followed from a 2-cycle the branch ends at its birth, and the fixed points are found there."""
+    start = [0.5130445, 0.7994555]
+    graph = cv.diagram(cv.MapProblem(logistic, start, 3.2, cycle=2, parameter="r"), within=(2.5, 3.4), depth=2)
+    assert len(graph) == 2 and values(graph, "period-doubling") == pytest.approx([3.0], abs=1e-12)
+    assert graph["B2"].description["cycle"] == 1 and "PD1" in graph["B1"].ended[0]
+    assert graph["PD1"].branch == "B2" and graph["PD1"].criticality == "supercritical"
+    assert len(graph.switches) == 1
+
+
+@pytest.mark.parametrize("repeat", [2, 8, 32])
+def test_repeated_fixed_point_keeps_its_doubling(repeat):
+    """x* = 1 - 1/r written many times: the multiplier passes +1 there, a branch point of the repeated problem."""
+    problem = cv.MapProblem(logistic, [0.6] * repeat, 2.5, cycle=repeat, parameter="r")
+    graph = cv.diagram(problem, within=(2.2, 3.2), depth=0)
+    found = [p for p in graph.special.values() if p.kind in ("period-doubling", "branch-point")]
+    assert [p.value for p in found] == pytest.approx([3.0], abs=1e-12)
+    assert found[0].kind == ("period-doubling" if repeat == 2 else "branch-point")
+
+
+def test_canonical_form():
+    problem = cv.MapProblem(logistic, [0.5130445, 0.7994555, 0.5130445, 0.7994555], 3.2, cycle=4)
+    key, vector = problem.canonical(np.array([0.8, 0.5, 0.8, 0.5]), 3.2)
+    assert key[1] == 2 and vector.tolist() == [0.5, 0.8]
+
+
+def test_rebuild_from_description():
+    from contvines.problem import rebuild
+
+    problem = cv.MapProblem(np.multiply, [1.0], 1.0)
+    description = problem.describe()
+    assert description["cycle"] == 1
+    if description["factory"]:
+        again = rebuild(description)
+        assert again.cycle == 1 and again.u0 == problem.u0
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(ValueError, match="cycle"):
+        cv.MapProblem(logistic, [0.5], 3.0, cycle=0)
+    with pytest.raises(ValueError, match="finite numbers"):
+        cv.MapProblem(lambda x, r: [1.0, 2.0], [0.5], 3.0)
+    with pytest.raises(ValueError, match="needs"):
+        cv.MapProblem(logistic, [0.5, 0.6], 3.0, cycle=3, dimension=1)

@@ -1,0 +1,144 @@
+"""The loop itself: compiled and interpreted, accuracy of the points, ends of a branch."""
+
+import numpy as np
+import pytest
+from numba import njit
+
+import contvines as cv
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+from contvines.continuation.starts import solve_start
+from contvines.continuation.status import Status
+from contvines.continuation.trace import chunks
+from contvines.problem import Kernels, ProblemDefaults
+
+
+def linearise(data, u, p, work):
+    F, J, Q = work[0], work[1], work[2]
+    F[0] = u[0] * u[0] + data[1] * p * p - 1.0
+    J[0] = 2.0 * u[0]
+    Q[0] = 2.0 * data[1] * p
+    return abs(F[0])
+
+
+def bordered(data, work, border, n, step, tangent):
+    F, J, Q = work[0], work[1], work[2]
+    det = J[0] * border[1] - Q[0] * border[0]
+    step[0] = (-F[0] * border[1] - Q[0] * n) / det
+    step[1] = (J[0] * n + F[0] * border[0]) / det
+    tangent[0] = -Q[0] / det
+    tangent[1] = J[0] / det
+    return 1.0 if det > 0.0 else -1.0
+
+
+def inspect(data, u, p, work, row):
+    row[0] = 1.0 + u[0]
+    row[1] = 0.0
+
+
+class Ellipse(ProblemDefaults):
+    """u^2 + c p^2 = 1, with a multiplier 1 + u that passes 1 at the folds."""
+
+    dimension, n_multipliers, spectrum, parameter = 1, 1, "map", "p"
+    u0, p0 = np.array([1.0]), 0.0
+
+    def __init__(self, kernels, c=1.0):
+        self.kernels, self.data = kernels, (np.zeros(2, np.int8), c)
+
+    def workspace(self):
+        return np.zeros(1), np.zeros(1), np.zeros(1), 3
+
+
+INTERPRETED = Kernels(linearise, bordered, inspect, compiled=False)
+COMPILED = Kernels(njit(linearise), njit(bordered), njit(inspect), compiled=True)
+
+
+def run(kernels, within=(-2.0, 2.0), **settings):
+    engine = Engine(Ellipse(kernels), within, Settings(**settings))
+    return list(chunks(engine, solve_start(engine, [1.0], 0.0)))
+
+
+def test_compiled_and_interpreted_are_one_algorithm():
+    compiled, interpreted = run(COMPILED), run(INTERPRETED)
+    assert [len(c) for c in compiled] == [len(c) for c in interpreted]
+    for a, b in zip(compiled, interpreted):
+        np.testing.assert_allclose(a.points, b.points, atol=1e-12)
+        np.testing.assert_allclose(a.tangents, b.tangents, atol=1e-11)
+        np.testing.assert_array_equal(a.signs, b.signs)
+        assert a.status == b.status
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("angle", [0.03, 0.1, 0.3])
+def test_points_are_exact_at_every_tolerance_and_the_circle_closes(tolerance, angle):
+    parts = run(COMPILED, tolerance=tolerance, angle=angle, max_step=0.2)
+    residual = [np.abs(c.points[:, 0] ** 2 + c.values**2 - 1.0).max() for c in parts]
+    assert max(residual) < 1e-12
+    assert parts[-1].status == Status.CLOSED
+    assert parts[-1].points[-1, 0] == 1.0 and parts[-1].values[-1] == 0.0
+
+
+def test_neighbouring_tangents_stay_within_twice_the_angle():
+    engine = Engine(Ellipse(COMPILED), (-2.0, 2.0), Settings(angle=0.05, max_step=0.5))
+    part = next(chunks(engine, solve_start(engine, [1.0], 0.0)))
+    cosines = ((part.tangents[1:] * part.tangents[:-1]) @ engine.weights).clip(-1.0, 1.0)
+    assert np.arccos(cosines).max() <= 0.1 + 1e-9
+
+
+def test_a_branch_ends_on_the_interval_exactly():
+    points = list(cv.trace(Ellipse(COMPILED), within=(-0.25, 0.3)))
+    assert points[-1].value == 0.3
+    assert abs(points[-1].u[0] - np.sqrt(1 - 0.3**2)) < 1e-15
+    assert "end of the interval" in points[-1].status
+    assert all(not point.status for point in points[:-1])
+
+
+def test_what_cannot_be_evaluated_ends_a_branch_with_a_sentence():
+    def root(u, p):
+        return np.array([u[0] - np.sqrt(p - 0.5)]) if np.real(p) >= 0.5 else np.array([np.nan])
+
+    points = list(cv.trace(cv.AlgebraicProblem(root, [1.0], 1.5), within=(0.0, 2.0), direction=-1.0))
+    assert "beyond" in points[-1].status or "smallest step" in points[-1].status
+    assert abs(points[-1].value - 0.5) < 1e-2
+
+
+def test_run_away_branch_ends():
+    problem = cv.AlgebraicProblem(lambda u, p: u * p - 1.0, [1.0], 1.0)
+    points = list(cv.trace(problem, within=(-1.0, 2.0), direction=-1.0))
+    assert "run away" in points[-1].status
+
+
+def test_largest_number_of_points():
+    points = list(cv.trace(Ellipse(INTERPRETED), (-2.0, 2.0), settings={"max_points": 30, "first_chunk": 10}))
+    assert "largest number of points" in points[-1].status
+
+
+@pytest.mark.parametrize(
+    "within, sentence",
+    [
+        ((1.0, 0.0), "empty or reversed"),
+        ((0.0, 0.0), "empty or reversed"),
+        ((0.0, np.inf), "finite"),
+        ((0.0, np.nan), "finite"),
+        ("ab", "two numbers"),
+        ((0.5, 1.0), "outside"),
+    ],
+)
+def test_bad_intervals_are_refused(within, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        list(cv.trace(Ellipse(INTERPRETED), within))
+
+
+def test_bad_settings_are_refused():
+    with pytest.raises(ValueError, match="there is no 'tolerence'"):
+        Settings.of({"tolerence": 1e-6})
+    with pytest.raises(ValueError, match="tolerance"):
+        Settings(tolerance=-1.0)
+    with pytest.raises(ValueError, match="min_step"):
+        Settings(min_step=0.5, max_step=0.1)
+
+
+def test_start_that_does_not_converge_says_so():
+    problem = cv.AlgebraicProblem(lambda u, p: u**2 + 1.0 + 0.0 * p, [0.3], 0.0)
+    with pytest.raises(ValueError, match="does not converge"):
+        list(cv.trace(problem, (-1.0, 1.0)))
