@@ -78,7 +78,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any
     model = machine(study)
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
-    others = {k: v for k, v in loose(study).items() if k != study.parameter}
+    others: dict[str, Any] = {k: v for k, v in loose(study).items() if k != study.parameter}
     names = [n for n in measure_names(model) if n not in COLUMNS]
     rows: list[Any] = []
     with target.open("w", newline="", encoding="utf-8") as file, _counter(len(values), quiet) as count:

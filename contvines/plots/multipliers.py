@@ -26,7 +26,7 @@ def plot_multipliers(branch: "Branch") -> "Figure":
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
     flow = getattr(branch.problem, "spectrum", "map") == "flow"
-    size = spectrum.real if flow else np.abs(spectrum)
+    size = np.real(spectrum) if flow else np.abs(spectrum)
     with styled():
         figure = new_figure(figsize=(8.6, 4.0))
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
@@ -59,7 +59,7 @@ def plot_multipliers(branch: "Branch") -> "Figure":
         reach = 1.15 if flow else min(max(1.6, np.nanpercentile(np.abs(flat), 75) * 1.2), 4.0)
         shown = np.isfinite(flat) if flow else np.abs(flat) <= reach * 1.05
         dots = right.scatter(
-            flat.real[shown], flat.imag[shown], c=where[shown], s=9, cmap="viridis_r", zorder=3
+            np.real(flat)[shown], np.imag(flat)[shown], c=where[shown], s=9, cmap="viridis_r", zorder=3
         )
         if not flow:
             right.set_xlim(-reach, reach)

@@ -73,8 +73,10 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
             axes.add_patch(arrow)
             (ax, ay), (bx, by) = axes.transData.transform([place[source], place[target]])
             middle = ((ax + bx + bend * (by - ay)) / 2, (ay + by - bend * (bx - ax)) / 2)
+            tx, ty = axes.transData.inverted().transform(middle)
             axes.text(
-                *axes.transData.inverted().transform(middle),
+                tx,
+                ty,
                 ", ".join(dict.fromkeys(s.point for s in switches)),
                 ha="center",
                 va="center",
