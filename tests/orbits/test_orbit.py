@@ -61,8 +61,9 @@ def test_half_multiplier_is_one_at_the_fold_and_minus_one_at_the_breaking(machin
     for beta, wanted in ((fold_beta(R, H), 1.0), (symmetry_breaking_beta(R, H), -1.0)):
         square = float(symmetric_square(beta, R, H))
         orbit = machine.symmetric_orbit(np.sqrt(square) * (1 + 1e-15), stable=True)
-        # at the fold a multiplier is 1 + O(sqrt(rounding))
-        assert np.abs(orbit.half_multipliers - wanted).min() < (2e-6 if wanted > 0 else 1e-9)
+        # rounding shows as its square root in a double multiplier: at the fold, and at any r near 1
+        double = wanted > 0 or machine.restitution > 0.99
+        assert np.abs(orbit.half_multipliers - wanted).min() < (2e-6 if double else 1e-9)
 
 
 @settings(max_examples=40, deadline=None)
