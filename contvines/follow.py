@@ -42,15 +42,24 @@ class Half:
 
     def extended(self, other: Half, skip: int = 0) -> Half:
         """This half, then the other one without its first ``skip`` points."""
-        shift = len(self) - skip
-        return Half(
-            np.vstack([self.points, other.points[skip:]]),
-            np.concatenate([self.values, other.values[skip:]]),
-            np.vstack([self.tangents, other.tangents[skip:]]),
-            np.vstack([self.rows, other.rows[skip:]]),
-            self.events + [(i + shift, e) for i, e in other.events],
-            other.status,
-        )
+        return join([self, other], skip)
+
+
+def join(parts: list[Half], skip: int = 1) -> Half:
+    """Parts one after the other, each but the first without its first ``skip`` points."""
+    events, total = list(parts[0].events), len(parts[0])
+    for part in parts[1:]:
+        events += [(i + total - skip, e) for i, e in part.events]
+        total += len(part) - skip
+    first, rest = parts[0], parts[1:]
+    return Half(
+        np.concatenate([first.points, *(part.points[skip:] for part in rest)]),
+        np.concatenate([first.values, *(part.values[skip:] for part in rest)]),
+        np.concatenate([first.tangents, *(part.tangents[skip:] for part in rest)]),
+        np.concatenate([first.rows, *(part.rows[skip:] for part in rest)]),
+        events,
+        parts[-1].status,
+    )
 
 
 def single(point: Solved) -> Half:
@@ -87,7 +96,7 @@ def follow(
     notice : callable, optional
         Called after each chunk with the number of points so far and the parameter value.
     """
-    half = single(start)
+    parts, total = [single(start)], 1
     stop = real and engine.problem.n_margins > 0
     for number, chunk in enumerate(chunks(engine, start, journal, key, stop, first_step)):
         name = f"{key}/{number}/events"
@@ -115,12 +124,13 @@ def follow(
                 [(int(w) + i, e) for i, (w, e) in enumerate(zip(where, events))],
                 status,
             )
-        half = half.extended(part, skip=1)
+        parts.append(part)
+        total += len(part) - 1
         if notice is not None:
-            notice(len(half), float(half.values[-1]))
+            notice(total, float(part.values[-1]))
         if status != Status.RUNNING:
             break
-    return half
+    return join(parts)
 
 
 def make_branch(

@@ -195,8 +195,10 @@ class Engine:
 
     def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
         """Smallest margin of each row, +inf where there are none."""
-        margins = self.margins(rows)
-        return margins.min(axis=-1) if margins.shape[-1] else np.full(margins.shape[:-1], np.inf)
+        if rows.shape[-1] == 2 * self.m:
+            return np.full(rows.shape[:-1], np.inf)
+        smallest = np.fmin.reduce(rows[..., 2 * self.m :], axis=-1)  # fmin passes over NaN
+        return np.where(np.isnan(smallest), np.inf, smallest)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:
         """Multipliers of the full period, shape (..., m)."""

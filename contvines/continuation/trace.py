@@ -54,6 +54,7 @@ class Chunk:
         )
 
 
+LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 ARRAYS = ("points", "values", "tangents", "rows", "signs", "corrections")
 
 
@@ -94,6 +95,7 @@ def chunks(
     h = settings.first_step if first_step is None else first_step
     closing = _Closing(engine, start)
     total, number = 1, 0
+    most = min(8 * settings.chunk, LARGEST // (2 * n + engine.row_size))
     while True:
         name = f"{key}/{number}"
         known = journal.recall(name) if journal is not None else None
@@ -121,7 +123,7 @@ def chunks(
         total += len(chunk) - 1
         number += 1
         history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
-        capacity = settings.chunk
+        capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
 
 
 def _march(
@@ -194,20 +196,23 @@ class _Closing:
     def cut(self, chunk: Chunk) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there."""
         engine = self.engine
-        gaps = np.column_stack([chunk.points, chunk.values]) - self.z
+        along = chunk.points @ self.border[:-1] + chunk.values * self.border[-1] - self.border @ self.z
         turns = np.zeros(len(chunk))
         if self.shift is not None:
-            turns = np.round(gaps @ self.shift / (self.shift @ self.shift))
-            gaps = gaps - turns[:, None] * self.shift
-        along = gaps @ self.border
-        distance = np.sqrt((gaps**2) @ engine.weights)
-        steps = np.sqrt((np.diff(gaps, axis=0) ** 2) @ engine.weights)
-        near = (along[:-1] < 0.0) & (along[1:] >= 0.0)
-        near &= np.minimum(distance[:-1], distance[1:]) <= 1.5 * steps
-        same = np.array(chunk.tangents[1:] @ self.border) > 0.0
-        for i in np.flatnonzero(near & same):
+            shift = self.shift[:-1]
+            turns = np.round((chunk.points @ shift - self.z[:-1] @ shift) / (shift @ shift))
+            along -= turns * (shift @ self.border[:-1])
+        along[np.abs(along) <= 1e-13 * (1.0 + abs(self.border) @ abs(self.z))] = 0.0  # the start itself
+        passed = np.flatnonzero((along[:-1] < 0.0) & (along[1:] >= 0.0))
+        for i in passed[np.array(chunk.tangents[passed + 1] @ self.border) > 0.0]:
+            pair = slice(i, i + 2)
+            gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - self.z
+            if self.shift is not None:
+                gaps = gaps - turns[pair, None] * self.shift
+            if np.sqrt((gaps**2) @ engine.weights).min() > 1.5 * engine.norm(gaps[1] - gaps[0]):
+                continue
             share = along[i] / (along[i] - along[i + 1])
-            guess = self.z + gaps[i] + share * (gaps[i + 1] - gaps[i])
+            guess = self.z + gaps[0] + share * (gaps[1] - gaps[0])
             found = engine.solve(guess[:-1], guess[-1], self.border, float(np.dot(self.border, self.z)))
             if found is None:
                 continue

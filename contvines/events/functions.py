@@ -22,6 +22,7 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
 
     For flows: real eigenvalues > 0, nothing, complex pairs with positive real part.
     """
+    result = np.zeros((len(spectrum), 3), dtype=np.int64)
     real = spectrum.imag == 0.0
     upper = spectrum.imag > 0.0
     if kind == "map":
@@ -33,8 +34,11 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     elif kind == "flow":
         columns = (real & (spectrum.real > 0.0), np.zeros_like(real), upper & (spectrum.real > 0.0))
     else:
-        return np.zeros((len(spectrum), 3), dtype=int)
-    return np.stack([column.sum(axis=1) for column in columns], axis=1)
+        return result
+    for place, past in enumerate(columns):
+        for j in range(past.shape[1]):  # few columns, many rows
+            result[:, place] += past[:, j]
+    return result
 
 
 def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:

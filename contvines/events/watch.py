@@ -85,9 +85,8 @@ class Watch:
         numbers = counts(engine.spectrum(chunk.rows), self.kind)
         changed = np.any(numbers[:-1] != numbers[1:], axis=1)
         interesting = fold | turned | changed
-        margins = engine.margins(chunk.rows)
-        if margins.shape[1]:
-            negative = np.asarray((margins < MARGIN).any(axis=1))
+        if engine.problem.n_margins:
+            negative = engine.smallest_margin(chunk.rows) < MARGIN
             border = (negative[1:] & ~negative[:-1]) if real else (negative[:-1] & ~negative[1:])
             if real and negative[0] and not negative[1:].all():
                 border |= negative[1:]
