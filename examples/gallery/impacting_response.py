@@ -6,8 +6,10 @@ formulas of the backbone. Damping (not printed): lambda = 0.9.
 Confirms: the stable part (between C_min and C_max, eigenvalues in the left half plane) is what the
 machine does, to O(eps). Contradicts: the printed resonance frequency (eps/(2 b q)(... sqrt(q - q_min)
 ...)) has the wrong dimension; with eps b^2/(2 q^2) and sqrt(C^2 - C_min^2) it passes through the
-phase-resonant states. Refines: the slow flow has two folds and a Hopf point on this response; the Hopf
-point and one fold lie on the repelling part of the manifold and are never seen.
+phase-resonant states. Refines: the slow flow has two folds and a
+Hopf point on this response; one fold and the Hopf point lie on the repelling part and are never seen.
+That is no accident: the trace of the slow flow is -lambda - (8/pi) R B/(d(C^2)/dB), free of phase and
+forcing and negative wherever the manifold attracts.
 """
 
 import numpy as np

@@ -28,7 +28,7 @@ from .manifolds import (
     turning_point,
     velocity_at,
 )
-from .response import ResponseCurve, ResponsePoint, frequency_response, special_points
+from .response import ResponseCurve, ResponsePoint, frequency_response, hopf_velocity, special_points
 from .trajectory import SlowTrajectory, integrate
 
 __all__ = [
@@ -54,6 +54,7 @@ __all__ = [
     "equilibrium_at",
     "frequency_response",
     "friction_level",
+    "hopf_velocity",
     "impact_loss",
     "impacting_polynomial",
     "impacting_velocities",

@@ -10,9 +10,10 @@ Hopf points are found by whoever watches them. With contvines:
     spectrum="flow")
 
 At the lowest point of the impacting manifold ``C^2`` does not determine ``B`` and the vector field is
-singular (the slow flow jumps off the manifold there). ``regular=True`` multiplies the first equation by
-``d(C^2)/dB``: the same steady states, smooth across that point, for curves alone; their eigenvalues then
-mean nothing.
+singular: the slow flow jumps off the manifold there, one eigenvalue passes through infinity, and a
+continuation reports it as a branch point. ``regular=True`` multiplies the first equation by
+``d(C^2)/dB``: the same steady states and folds, smooth across that point, for curves alone; its
+eigenvalues mean nothing.
 """
 
 from __future__ import annotations

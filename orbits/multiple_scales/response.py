@@ -224,3 +224,19 @@ def special_points(curve: ResponseCurve) -> list[ResponsePoint]:
                     continue
             found.append((t, ResponsePoint(kind, point)))
     return [point for _, point in sorted(found, key=lambda pair: pair[0])]
+
+
+def hopf_velocity(flow: SlowFlow) -> NDArray | float:
+    """``B`` at which the slow flow's eigenvalues may cross the imaginary axis, whatever the forcing and
+    the detuning.
+
+    The trace of the slow flow in ``(C^2, gamma)`` contains neither phase nor forcing:
+    ``-lambda + (dk1/dB)/(d(C^2)/dB)``, with the exact closure ``-lambda - (8/pi) R B/(d(C^2)/dB)``. It
+    vanishes at ``B = lambda (pi - 2 R h)/(lambda (pi^2/2 + 2 R^2) + 8 R/pi)``, below ``B_min``: on the
+    attracting part it is negative, so steady states there lose stability at folds alone. (Own derivation.
+    With the paper's closure a term in ``h`` remains.)
+    """
+    R, h = flow.loss, flow.level
+    tilt = h * (0.5 * np.pi * flow.kappa - 4.0 / np.pi)
+    top = flow.damping * (np.pi - 2.0 * R * h) + tilt
+    return top / (flow.damping * (0.5 * np.pi**2 + 2.0 * R**2) + 8.0 * R / np.pi)

@@ -386,3 +386,20 @@ def test_response_curves_hold_every_equilibrium_and_their_own_folds():
     assert sorted(s.detuning for s in folds) == pytest.approx(sorted(curve.detuning[turns + 1]), abs=1e-4)
     hopf = [p.state for p in ms.special_points(curve) if p.kind == "hopf"]
     assert all(abs(v.real) < 1e-8 and abs(v.imag) > 0 for s in hopf for v in s.eigenvalues)
+
+
+@settings(max_examples=20, deadline=None)
+@given(G=st.floats(0.8, 4), mu=st.floats(0, 1), r=st.floats(0.3, 0.97), lam=st.floats(0.1, 3))
+def test_eigenvalues_cross_the_axis_at_one_velocity_on_the_repelling_part(G, mu, r, lam):
+    """Numerical eigenvalues along the response: real parts of a pair change sign at the closed-form B and
+    nowhere else."""
+    flow = ms.SlowFlow(forcing=G, friction=mu, restitution=r, damping=lam)
+    b_hopf = ms.hopf_velocity(flow)
+    assert b_hopf <= flow.activation.velocity + 1e-12
+    for curve in ms.frequency_response(flow, points=1500):
+        total = np.sum(curve.eigenvalues.real, axis=1)
+        usual = np.abs(curve.position - flow.activation.velocity) > 1e-3
+        attracting = usual & (curve.position > flow.activation.velocity)
+        assert np.all(total[attracting] < 0)
+        repelling = usual & (curve.position < flow.activation.velocity)
+        assert np.array_equal(total[repelling] > 0, curve.position[repelling] > b_hopf)

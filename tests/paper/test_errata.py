@@ -87,6 +87,25 @@ def test_exact_closure_is_met_by_coupled_orbits_to_first_order(settled):
     assert abs(found[1] - rough.amplitude**2) == pytest.approx(1.125e-3, rel=0.01)
 
 
+def test_slow_eigenvalues_are_the_limit_of_coupled_multipliers(settled):
+    """log(multiplier)/(eps T) of the two slow multipliers -> eigenvalues of the slow flow, to first order."""
+    state, _ = settled
+    gaps = []
+    for eps in (0.003, 0.0015, 0.00075):
+        machine = Coupled(**STRONG, mass_ratio=eps, damping=0.9, forcing=2.47, frequency=1 - 2.58 * eps)
+        b = state.velocity
+        sine, cosine = 1 - 0.5 * np.pi * b, R * b + H
+        phase = np.arctan2(sine, cosine) - state.phase
+        nodes = np.array([[phase, b + H, sine, cosine], [phase + np.pi, -b - H, -sine, -cosine]])
+        orbit = polish(Orbit(machine, Word.parse("LR"), 1, nodes, machine.vector({})))
+        assert orbit is not None
+        slow = orbit.multipliers[np.argsort(np.abs(orbit.multipliers - 1))[:2]]
+        rates = np.log(slow) * machine.frequency / (2 * np.pi * eps)
+        gaps.append(np.max(np.abs(np.sort_complex(rates) - np.sort_complex(np.array(state.eigenvalues)))))
+    orders = np.log2(np.array(gaps[:-1]) / np.array(gaps[1:]))
+    assert gaps[-1] < 1e-3 and np.all(np.abs(orders - 1) < 0.05)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_drawn_machines_converge_to_the_exact_closure(seed):
     """Detuning, forcing and friction drawn; every steady state that is seen is the limit of a coupled
