@@ -19,7 +19,9 @@ def module_level(u, p):
 
 def test_pitchfork():
     """x' = p x - x^3 (Strogatz, Nonlinear Dynamics and Chaos, section 3.4): supercritical at p = 0, x = +-sqrt(p)."""
-    problem = cv.AlgebraicProblem(lambda x, p: p * x - x**3, [0.0], -0.5, spectrum="flow", mirror=lambda x: -x)
+    problem = cv.AlgebraicProblem(
+        lambda x, p: p * x - x**3, [0.0], -0.5, spectrum="flow", mirror=lambda x: -x
+    )
     graph = cv.diagram(problem, within=(-1.0, 1.0))
     assert list(graph.branches) == ["B1", "B2"]
     point = graph["SB1"]
@@ -52,7 +54,8 @@ def test_perturbed_twin_of_the_pitchfork(size, sign):
     assert of_kind(graph, "fold") == pytest.approx([3.0 * (size / 2.0) ** (2.0 / 3.0)], abs=1e-12)
     assert not of_kind(graph, "branch-point") and len(graph) == 1
     smooth = cv.diagram(
-        cv.AlgebraicProblem(lambda x, p: h + p * x - x**3, [sign * 0.9], 0.8, spectrum="flow"), within=(-1.0, 1.0)
+        cv.AlgebraicProblem(lambda x, p: h + p * x - x**3, [sign * 0.9], 0.8, spectrum="flow"),
+        within=(-1.0, 1.0),
     )
     assert not of_kind(smooth, "fold") and smooth["B1"].stable.all()
 
@@ -131,7 +134,9 @@ def test_two_eigenvalues_cross_at_once():
     def two(u, p):
         return np.array([p * u[0] - u[0] ** 3, p * u[1] - 2.0 * u[1] ** 3])
 
-    graph = cv.diagram(cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=1)
+    graph = cv.diagram(
+        cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=1
+    )
     assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-13)
     assert "two multipliers" in graph["BP1"].note
     ends = sorted(tuple(np.round(np.abs(b.points[-1]), 9)) for b in list(graph)[1:])
@@ -146,7 +151,9 @@ def test_two_eigenvalues_cross_close_together(gap):
     def two(u, p):
         return np.array([p * u[0] - u[0] ** 3, (p - gap) * u[1] - 2.0 * u[1] ** 3])
 
-    graph = cv.diagram(cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=0)
+    graph = cv.diagram(
+        cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=0
+    )
     found = of_kind(graph, "branch-point")
     assert len(found) == 2 and found == pytest.approx([0.0, gap], abs=1e-13)
 
@@ -169,7 +176,9 @@ def test_derivatives_given_or_not():
         {"jacobian": lambda x, p: 1.0 - 3.0 * x**2, "derivative": lambda x, p: [1.0]},
         {},
     ):
-        graph = cv.diagram(cv.AlgebraicProblem(lambda x, p: p + x - x**3, [-1.5], -1.0, **options), within=(-1.5, 1.5))
+        graph = cv.diagram(
+            cv.AlgebraicProblem(lambda x, p: p + x - x**3, [-1.5], -1.0, **options), within=(-1.5, 1.5)
+        )
         assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=1e-13)
 
     def real_only(x, p):

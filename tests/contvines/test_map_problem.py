@@ -59,9 +59,7 @@ def test_evidence(cascade):
 def test_henon_cascade():
     """b = 0.3: fold -(1-b)^2/4, doublings 3(1-b)^2/4 and (1-b)^2 + (1+b)^2/4 exactly; then 1.02585541, 1.05112566
     (Derrida, Gervois, Pomeau, J. Phys. A 12 (1979) 269)."""
-    graph = cv.diagram(
-        cv.MapProblem(henon, [0.7, 0.2], 0.2, parameter="a"), within=(-0.2, 1.1), depth=3
-    )
+    graph = cv.diagram(cv.MapProblem(henon, [0.7, 0.2], 0.2, parameter="a"), within=(-0.2, 1.1), depth=3)
     assert values(graph, "fold") == pytest.approx([-0.1225], abs=1e-13)
     found = values(graph, "period-doubling")
     assert found[:2] == pytest.approx([0.3675, 0.9125], abs=1e-12)
@@ -87,7 +85,9 @@ def test_henon_cascade():
 def test_period_three_window():
     """Born at 1 + sqrt 8 (Strogatz, section 10.2), doubling at 3.8414990075..."""
     start = [0.149888, 0.489172, 0.959299]
-    graph = cv.diagram(cv.MapProblem(logistic, start, 3.84, cycle=3, parameter="r"), within=(3.7, 3.87), depth=1)
+    graph = cv.diagram(
+        cv.MapProblem(logistic, start, 3.84, cycle=3, parameter="r"), within=(3.7, 3.87), depth=1
+    )
     assert values(graph, "fold") == pytest.approx([1.0 + np.sqrt(8.0)], abs=1e-12)
     assert values(graph, "period-doubling")[0] == pytest.approx(3.8414990075, abs=1e-10)
     assert graph["LP1"].multipliers == pytest.approx([1.0], abs=1e-7)
@@ -95,7 +95,9 @@ def test_period_three_window():
 
 def test_neimark_sacker_of_the_delayed_logistic_map():
     """x -> r x (1 - y), y -> x loses stability at r = 2 with multipliers exp(+-i pi/3) (Kuznetsov, example 4.2)."""
-    problem = cv.MapProblem(lambda x, r: np.array([r * x[0] * (1 - x[1]), x[0]]), [1 / 3, 1 / 3], 1.5, parameter="r")
+    problem = cv.MapProblem(
+        lambda x, r: np.array([r * x[0] * (1 - x[1]), x[0]]), [1 / 3, 1 / 3], 1.5, parameter="r"
+    )
     graph = cv.diagram(problem, within=(1.2, 2.4))
     assert values(graph, "neimark-sacker") == pytest.approx([2.0], abs=1e-12)
     assert np.sort(np.angle(graph["NS1"].multipliers)) == pytest.approx([-np.pi / 3, np.pi / 3], abs=1e-9)
@@ -113,7 +115,9 @@ def test_two_doublings_at_once():
 def test_doubled_cycle_that_falls_back_is_recognised():
     """Followed from a 2-cycle the branch ends at its birth, and the fixed points are found there."""
     start = [0.5130445, 0.7994555]
-    graph = cv.diagram(cv.MapProblem(logistic, start, 3.2, cycle=2, parameter="r"), within=(2.5, 3.4), depth=2)
+    graph = cv.diagram(
+        cv.MapProblem(logistic, start, 3.2, cycle=2, parameter="r"), within=(2.5, 3.4), depth=2
+    )
     assert len(graph) == 2 and values(graph, "period-doubling") == pytest.approx([3.0], abs=1e-12)
     assert graph["B2"].description["cycle"] == 1 and "PD1" in graph["B1"].ended[0]
     assert graph["PD1"].branch == "B2" and graph["PD1"].criticality == "supercritical"

@@ -50,4 +50,6 @@ def test_chebyshev_series_reproduces_polynomials():
     coefficients = np.array([0.3, -1.0, 0.5, 2.0, 0.0, 0.1, -0.2, 0.7])
     series = chebyshev_fit(np.stack([np.polyval(coefficients, x), x**2], axis=1))
     for t in np.linspace(-1, 1, 7):
-        np.testing.assert_allclose(chebyshev_value(series, t), [np.polyval(coefficients, t), t * t], atol=1e-14)
+        np.testing.assert_allclose(
+            chebyshev_value(series, t), [np.polyval(coefficients, t), t * t], atol=1e-14
+        )
