@@ -22,9 +22,12 @@ def checked_study(path: Path) -> "Study":
 
     study = read_study(path)
     try:
-        vector = machine(study).vector(loose(study))
-        frictionless = machine(study).friction_acceleration(vector) == 0.0
-        Word.parse(study.word, frictionless=frictionless)
+        model = machine(study)
+        vector = model.vector(loose(study))
+    except ValueError as error:
+        raise ValueError(f"{path}: [model] {error}") from error
+    try:
+        Word.parse(study.word, frictionless=model.friction_acceleration(vector) == 0.0)
     except ValueError as error:
         raise ValueError(f"{path}: [start] {error}") from error
     return study

@@ -2,11 +2,19 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 Restitution = Annotated[float, Field(gt=0, le=1)]
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
+
+
+def _excitation(value: Any) -> Any:
+    """The words of the coupled machine for the two ends of the scale."""
+    return {"exact": 1.0, "truncated": 0.0}.get(value, value) if isinstance(value, str) else value
+
+
+Excitation = Annotated[float, BeforeValidator(_excitation), Field(ge=0, le=1)]
 
 
 class Section(BaseModel):
@@ -35,7 +43,7 @@ class CoupledSection(Section):
     damping: NonNegative = 0.9
     frequency: Positive = 1.0
     forcing: NonNegative | None = None
-    excitation: Annotated[float, Field(ge=0, le=1)] = 1.0
+    excitation: Excitation = 1.0
 
 
 class StartSection(Section):
@@ -95,7 +103,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
         "restitution": Restitution,
         "friction": NonNegative,
         "gravity": NonNegative,
-        "excitation": Annotated[float, Field(ge=0, le=1)],
+        "excitation": Excitation,
     },
 }
 EXCITATION = {"absorber": "amplitude", "coupled": "forcing"}

@@ -26,7 +26,7 @@ WOULD_DO = {
     "amplitude": "a number >= 0, for example 0.55",
     "forcing": "a number >= 0, for example 3.3",
     "damping": "a number >= 0, for example 0.9",
-    "excitation": "a number from 0 to 1: 1.0 keeps the damper's share of the base excitation, 0.0 drops it",
+    "excitation": "'exact', 'truncated' (without the damper's share of the base's motion), or a number from 0 to 1",
     "word": "a word of events such as 'LR', 'LtL' or 'tt', or of maps such as 'LR RL'",
     "periods": "a whole number >= 1",
     "guess": "a list with one [phase, B or w] per event of the word",

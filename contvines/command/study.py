@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, SweepSection
 from contvines.command.sentences import (
@@ -140,7 +140,7 @@ def _resolve(file: StudyFile, path: Path) -> Study:
         if refusal:
             wrong.append(refusal)
         else:
-            parameters[key] = float(value)
+            parameters[key] = TypeAdapter(known[key]).validate_python(value)
     go = file.continue_
     low, high = go.within
     if go.parameter not in known:

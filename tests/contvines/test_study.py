@@ -74,6 +74,18 @@ def test_coupled_studies_have_their_own_parameters():
     read = study(model=model, start=start, continue__parameter="frequency", continue__within=[0.95, 1.05])
     assert read.parameters["damping"] == 0.9
     assert read.parameters["frequency"] == 0.98
+    assert read.parameters["excitation"] == 1.0
+    truncated = study(
+        model={**model, "excitation": "truncated"},
+        start=start,
+        continue__parameter="frequency",
+        continue__within=[0.95, 1.05],
+    )
+    assert truncated.parameters["excitation"] == 0.0
+    with pytest.raises(
+        StudyError, match=r"\[model\] excitation = 'half' is not a number; 'exact', 'truncated'"
+    ):
+        study(model={**model, "excitation": "half"}, start=start)
     with pytest.raises(StudyError, match=r"\[start\] amplitude = 0.55: there is no such field"):
         study(model=model, continue__parameter="forcing")
 
