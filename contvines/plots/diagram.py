@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .labels import place_labels
+from .labels import merge_labels, place_labels
 from .style import LINES, MARKS, PLAIN, STATES, axis_label, new_axes, settle, styled
 
 if TYPE_CHECKING:
@@ -40,9 +40,10 @@ def plot_diagram(
     """
     x = x or graph.parameter
     y = y or default_measure(graph)
+    own = axes is None
     with styled():
         figure, axes = new_axes(axes)
-        anchors, texts, colors, obstacles, used, states = [], [], [], [], {}, {}
+        obstacles, used, states = [], {}, {}
         cycle = [c["color"] for c in _cycle()]
         tint: dict[str, str] = {}
         for i, branch in enumerate(graph.branches.values()):
@@ -61,7 +62,7 @@ def plot_diagram(
                 )
             if len(branch):
                 obstacles.append(_dense(axes, xs, ys))
-        special: list[tuple[str, float, float, str]] = []
+        special: list[tuple[str, float, float]] = []
         for point in graph.special.values():
             if point.kind == "end" and not ends:
                 continue
@@ -85,21 +86,21 @@ def plot_diagram(
                 markeredgewidth=0.5 if mark.filled else 1.3,
                 zorder=6,
             )
-            special.append((point.label, px, py, "black"))
+            special.append((point.label, px, py))
         axes.margins(0.04)
         axes.set_xlabel(axis_label(x))
         axes.set_ylabel(axis_label(y))
         _legend(axes, states, used)
         if labels:
-            settle(figure)
+            settle(figure, freeze=own)
+            spots, names = merge_labels(axes, [(px, py) for _, px, py in special], [t for t, _, _ in special])
             middles = _middles(graph, x, y, tint, axes) if len(graph.branches) > 1 else []
-            for text, px, py, color in [*special, *middles]:
-                anchors.append((px, py))
-                texts.append(text)
-                colors.append(color)
-            clutter = np.vstack([*obstacles, *_boxes(axes)]) if obstacles else np.empty((0, 2))
+            anchors = [*spots, *((px, py) for _, px, py, _ in middles)]
+            colors = ["black"] * len(spots) + [color for *_, color in middles]
             if anchors:
-                place_labels(axes, anchors, texts, clutter, colors=colors)
+                clutter = np.vstack([*obstacles, *_boxes(axes)])
+                texts = [*names, *(text for text, *_ in middles)]
+                place_labels(axes, anchors, texts, clutter, colors=colors, optional=len(middles))
         if not graph.finished:
             axes.set_title("unfinished", color="0.4")
     return figure

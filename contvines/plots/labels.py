@@ -18,6 +18,7 @@ def place_labels(
     *,
     size: float = 8.5,
     colors: list[str] | None = None,
+    optional: int = 0,
 ) -> None:
     """Write each text near its anchor where it covers least.
 
@@ -28,6 +29,7 @@ def place_labels(
     obstacles : data coordinates to keep clear of, shape (n, 2).
     size : font size in points.
     colors : one per text.
+    optional : how many of the last texts are left out rather than put far from their anchors.
     """
     transform = axes.transData.transform
     figure = axes.get_figure(root=True)
@@ -64,10 +66,12 @@ def place_labels(
                 if best is None or cost < best[0]:
                     best = (cost, cx, cy, box, radius)
         assert best is not None
-        _, cx, cy, box, radius = best
+        cost, cx, cy, box, radius = best
+        far = radius > 15
+        if i >= len(texts) - optional and (far or cost > 30):
+            continue
         boxes.append(box)
         color = colors[i] if colors else "black"
-        far = radius > 15
         axes.annotate(
             text,
             xy=tuple(axes.transData.inverted().transform(anchor)),
@@ -83,6 +87,24 @@ def place_labels(
             bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.75},
             zorder=8,
         )
+
+
+def merge_labels(
+    axes: "Axes", anchors: list[tuple[float, float]], texts: list[str], near: float = 9.0
+) -> tuple[list[tuple[float, float]], list[str]]:
+    """One label for marks that lie within `near` points of one another on the page."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    screen = axes.transData.transform(np.asarray(anchors, float).reshape(-1, 2)) * 72.0 / figure.dpi
+    merged: list[list[int]] = []
+    for i, point in enumerate(screen):
+        for group in merged:
+            if np.hypot(*(screen[group[0]] - point)) < near:
+                group.append(i)
+                break
+        else:
+            merged.append([i])
+    return [anchors[g[0]] for g in merged], [", ".join(dict.fromkeys(texts[i] for i in g)) for g in merged]
 
 
 def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:

@@ -98,12 +98,12 @@ def new_figure(**options: Any) -> "Figure":
     return made
 
 
-def settle(figure: "Figure") -> None:
-    """Give everything its final place; a figure without a window is not laid out again."""
+def settle(figure: "Figure", freeze: bool = True) -> None:
+    """Give everything its final place; a figure without a window is then not laid out again."""
     import sys
 
     figure.draw_without_rendering()
-    if "matplotlib.pyplot" not in sys.modules:
+    if freeze and "matplotlib.pyplot" not in sys.modules:
         figure.set_layout_engine("none")
 
 

@@ -25,8 +25,6 @@ def plot_sweep(points: list[tuple[float, float]], parameter: str, graph: "Graph 
     values = np.array(points, float).reshape(-1, 2)
     with styled():
         figure, axes = new_axes(None)
-        if graph is not None:
-            plot_diagram(graph, x=parameter, y="B", axes=axes)
         dots: Any = axes.plot(
             values[:, 0],
             values[:, 1],
@@ -37,6 +35,8 @@ def plot_sweep(points: list[tuple[float, float]], parameter: str, graph: "Graph 
             label="simulated: B at every impact",
             zorder=2,
         )[0]
+        if graph is not None:
+            plot_diagram(graph, x=parameter, y="B", axes=axes)
         legend = axes.get_legend()
         handles = [*(legend.legend_handles if legend else []), dots]
         axes.legend(
