@@ -116,6 +116,15 @@ def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau):
 
 
 @njit(error_model="numpy")
+def certain(y, y_rate, bound):
+    """Time for which y > 0 stays positive when abs(y'') <= bound: the zero of y + y' h - bound h^2/2."""
+    root = math.sqrt(y_rate * y_rate + 2.0 * bound * y)
+    if y_rate > 0.0:
+        return (root + y_rate) / bound
+    return 2.0 * y / (root - y_rate)
+
+
+@njit(error_model="numpy")
 def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
     """First zero of a wave in start < tau < end; `end` when there is none.
 
@@ -135,7 +144,8 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
     if bound <= TINY:
         return end, 0.0
     value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau)
-    if abs(value) <= tiny:  # leave the zero at the start: the slope decides the sign until 2 slope / bound
+    if abs(value) <= tiny + 1e-15 * (1.0 + start + abs(phase)) * abs(slope):
+        # leave the zero at the start: the slope decides the sign until 2 slope / bound
         tau += max(abs(slope) / bound, 1e-8)
         if tau >= end:
             return end, slope
@@ -145,8 +155,8 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
         y, y_rate = sign * value, sign * slope
         if y <= tiny:
             return tau, slope
-        step = 2.0 * y / (math.sqrt(y_rate * y_rate + 2.0 * bound * y) - y_rate)
-        if step <= 1e-16 * (1.0 + tau):
+        step = certain(y, y_rate, bound)
+        if step <= 2e-16 * (1.0 + tau):
             return tau, slope
         tau += step
         if tau >= end:

@@ -24,8 +24,8 @@ import math
 from numba import njit
 
 from orbits.models.coupled_flow import ahead as _ahead
+from orbits.models.coupled_flow import certain, harmonic, rates
 from orbits.models.coupled_flow import decompose as _decompose
-from orbits.models.coupled_flow import harmonic, rates
 from orbits.models.coupled_flow import leg as _leg
 
 STATE = 8
@@ -145,7 +145,6 @@ def advance(state, params, until, codes, modes, rows):
             M = 0.0
             while tau < left:
                 if tau >= renew:
-                    u2, u3 = H2 + Z2, H3 + Z3
                     u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
                     u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
                     M = whole * (math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON)
@@ -165,7 +164,7 @@ def advance(state, params, until, codes, modes, rows):
                         ahead = y_rate / M if M > 0.0 else step
                         step = min(step, max(ahead, 1e-9))
                     else:
-                        ahead = 2.0 * y / (math.sqrt(y_rate * y_rate + 2.0 * M * y) - y_rate) if M > 0.0 else step
+                        ahead = certain(y, y_rate, M) if M > 0.0 or y_rate < 0.0 else step
                         step = min(step, ahead)
                         if ahead < 2.3e-16 * (1.0 + tau):
                             slip = m
@@ -212,7 +211,7 @@ def advance(state, params, until, codes, modes, rows):
         Z3 = -2.0 * alpha * Z2 - kappa * z1
         Y0 = s * rate  # y and y'
         Y1 = 0.0 if fresh else s * (H2 + Z2) - pull
-        if Y0 < 1e-6 and s * w == -1.0 and low == 0.0 and -Y1 > 2.0 * a:
+        if Y0 < 1e-6 and s * w == -1.0 and low == 0.0 and Y1 + 2.0 * a < 0.0:
             # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
             shove = -Y1 - a  # |v''|
             factor = r * math.sqrt((shove - a) / (shove + a))
@@ -270,8 +269,7 @@ def advance(state, params, until, codes, modes, rows):
                 if not step > 1e-13:
                     step = 1e-13  # no acceleration in this direction to speak of
             else:
-                root = math.sqrt(y_rate * y_rate + 2.0 * M * y)
-                step = 2.0 * y / (root - y_rate) if root > y_rate else _HORIZON
+                step = certain(y, y_rate, M) if M > 0.0 or y_rate < 0.0 else math.inf
                 if step < 2.3e-16 * tau:
                     kind = 2
                     break
@@ -305,7 +303,7 @@ def advance(state, params, until, codes, modes, rows):
                     gain = s * (way - (q2_rate + 0.5 * sp * tau) * tau)
                     y = Y0 + s * speed - pull * tau
                     y_rate = s * (H2 + Z2) - pull
-                    if change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau or hi - lo <= 2.3e-16 * hi:
+                    if (change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau) or hi - lo <= 2.3e-16 * hi:
                         # one Newton step more, from values at hand
                         step = (gain - target) / y if y > 0.0 else 0.0
                         if abs(step) < change:
