@@ -68,10 +68,15 @@ def switch(
             f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
         )
 
+    from contvines.continuation.settings import Settings
     from contvines.graph.automatic import switch as leave
 
+    own = Settings().to_dict()
+    settings = {
+        k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
+    }  # trace allows one only
     with _interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
-        new = [graph.branches[name] for name in leave(graph, label, progress=progress)]
+        new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
     if new:
         with Store.open(file, write=True) as store:
             store.checkpoint(graph)

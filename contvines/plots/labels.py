@@ -92,7 +92,7 @@ def place_labels(
 def merge_labels(
     axes: "Axes", anchors: list[tuple[float, float]], texts: list[str], near: float = 9.0
 ) -> tuple[list[tuple[float, float]], list[str]]:
-    """One label for marks that lie within `near` points of one another on the page."""
+    """One label for marks that lie within `near` points of one another on the page; "+n" stands for n more."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     screen = axes.transData.transform(np.asarray(anchors, float).reshape(-1, 2)) * 72.0 / figure.dpi
@@ -104,7 +104,9 @@ def merge_labels(
                 break
         else:
             merged.append([i])
-    return [anchors[g[0]] for g in merged], [", ".join(dict.fromkeys(texts[i] for i in g)) for g in merged]
+    names = [list(dict.fromkeys(texts[i] for i in group)) for group in merged]
+    short = [", ".join(n) if len(n) <= 4 else f"{', '.join(n[:3])} +{len(n) - 3}" for n in names]
+    return [anchors[group[0]] for group in merged], short
 
 
 def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:

@@ -1,0 +1,176 @@
+"""The commands that compute, one after the other on one study, as a user would."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from contvines.command.cli import main
+from contvines.graph.persistence import same_graph
+from contvines.store import load
+
+STUDY = """
+[model]
+name = "absorber"
+restitution = 0.76
+friction = 0.5
+gravity = 0.211
+mass_ratio = 0.006
+[start]
+word = "LR"
+periods = 1
+amplitude = 0.55
+[continue]
+parameter = "amplitude"
+within = [0.2, 1.2]
+depth = {depth}
+virtual = {virtual}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a study and its finished diagram."""
+    path = tmp_path_factory.mktemp("runs")
+    (path / "s.toml").write_text(STUDY.format(depth=1, virtual="false"))
+    (path / "v.toml").write_text(STUDY.format(depth=2, virtual="true"))
+    call("diagram", path / "s.toml", "-o", path / "s.vines", "--quiet")
+    return path
+
+
+def call(*words):
+    try:
+        main([str(w) for w in words])
+    except SystemExit as end:
+        assert not end.code, f"exit status {end.code}"
+
+
+def test_show_keeps_the_contract(folder, capsys):
+    call("show", folder / "s.vines", "--json")
+    data = json.loads(capsys.readouterr().out)
+    assert {"model", "parameter", "branches", "special", "switches"} <= set(data)
+    branch = {
+        "label",
+        "word",
+        "periods",
+        "impacts",
+        "symmetric",
+        "real",
+        "range",
+        "points",
+        "stable",
+        "ended",
+    }
+    special = {"label", "kind", "branch", "value", "multipliers", "real", "criticality", "residual", "replay"}
+    assert all(branch <= set(b) for b in data["branches"])
+    assert all(special <= set(p) for p in data["special"])
+    assert all({"point", "from", "to"} <= set(s) for s in data["switches"])
+    first = data["branches"][0]
+    assert (first["label"], first["word"], first["periods"], first["impacts"]) == ("B1", "LR", 1, 2)
+    assert first["symmetric"] is True and first["real"] is True
+    kinds = {p["kind"] for p in data["special"]}
+    assert {"fold", "symmetry-breaking", "velocity-graze", "end"} <= kinds
+    for point in data["special"]:
+        assert set(point["value"]) == {"amplitude"}
+        assert all(len(m) == 2 for m in point["multipliers"])
+        assert point["criticality"] in (None, "supercritical", "subcritical")
+        assert point["residual"] < 1e-10
+        assert point["replay"] is None or point["replay"] < 1e-6
+    labels = {b["label"] for b in data["branches"]}
+    assert {s["from"] for s in data["switches"]} | {s["to"] for s in data["switches"]} <= labels
+
+
+def test_orbit_of_a_label_is_the_object_of_the_contract(folder, capsys):
+    call("orbit", folder / "s.vines", "SB1", "--json")
+    data = json.loads(capsys.readouterr().out)
+    assert [set(n) >= {"event", "phase", "B_pre", "B_post", "w", "w_rate"} for n in data["nodes"]] == [
+        True,
+        True,
+    ]
+    # a symmetry breaking: one multiplier of the full period is +1 (MODEL: -1 of the half map)
+    assert min(abs(complex(*m) - 1) for m in data["multipliers"]) < 1e-6
+    assert all({"kind", "segment", "value"} <= set(m) for m in data["margins"])
+    call("orbit", folder / "s.vines", "B1:3")
+    assert "multipliers:" in capsys.readouterr().out
+
+
+def test_trace_follows_one_branch(folder, capsys):
+    call("trace", folder / "s.toml", "-o", folder / "t.vines")
+    graph = load(folder / "t.vines", problems=False)
+    assert list(graph.branches) == ["B1"]
+    assert not graph.switches
+    whole = load(folder / "s.vines", problems=False)
+    assert graph.branches["B1"].points.tobytes() == whole.branches["B1"].points.tobytes()
+
+
+def test_switch_adds_the_branch_that_leaves_a_point(folder, capsys):
+    call("trace", folder / "s.toml", "-o", folder / "w.vines", "--quiet")
+    call("switch", folder / "w.vines", "SB1")
+    assert "points, amplitude from 0.7268" in capsys.readouterr().out
+    graph = load(folder / "w.vines", problems=False)
+    (switch,) = [s for s in graph.switches if s.point == "SB1"]
+    assert switch.source == "B1"
+    assert graph.branches[switch.target].description["symmetric"] is False
+    assert graph.special["SB1"].mirror
+    before = (folder / "w.vines").read_bytes()
+    call("switch", folder / "w.vines", "SB1")
+    assert "nothing new leaves here" in capsys.readouterr().out
+    assert (folder / "w.vines").read_bytes() == before
+
+
+def test_a_saved_graph_can_be_used_like_the_computed_one(folder, tmp_path):
+    graph = load(folder / "s.vines")
+    assert graph.branches["B1"].problem is not None
+    assert graph["SB1"].orbit.word.text == "LR"
+    assert graph.branches["B1"].measure("B").shape == graph.branches["B1"].values.shape
+    graph.save(tmp_path / "again.vines")
+    assert same_graph(load(tmp_path / "again.vines"), graph)
+
+
+def test_virtual_branches_are_marked_and_only_there_on_request(folder):
+    call("diagram", folder / "v.toml", "-o", folder / "v.vines", "--quiet", "--plot", folder / "v.png")
+    graph = load(folder / "v.vines", problems=False)
+    assert all(b.real for b in load(folder / "s.vines", problems=False).branches.values())
+    virtual = [b.label for b in graph.branches.values() if not b.real]
+    assert virtual
+    # the published period doubling of the bare maps, at C^2 = 0.8679, lies on a virtual branch
+    doublings = [p for p in graph.of_kind("period-doubling") if abs(p.value**2 - 0.8679) < 5e-5]
+    assert [(p.real, p.branch in virtual) for p in doublings] == [(False, True)]
+
+
+def test_a_start_that_is_not_there_says_what_was_tried(tmp_path, capsys):
+    text = STUDY.format(depth=1, virtual="false").replace("amplitude = 0.55", "amplitude = 0.21")
+    (tmp_path / "n.toml").write_text(text)
+    with pytest.raises(SystemExit) as end:
+        main(["diagram", str(tmp_path / "n.toml"), "-o", str(tmp_path / "n.vines")])
+    err = capsys.readouterr().err
+    assert end.value.code == 1
+    assert (
+        "n.toml: [start] no orbit 'LR' with periods = 1 was found at amplitude = 0.21; tried: the closed forms"
+        in err
+    )
+    assert "the nearest motion that the simulator finds is 'tt'" in err
+    assert not (tmp_path / "n.vines").exists()
+
+
+def test_sweep_is_drawn_over_the_branches(folder):
+    text = (folder / "s.toml").read_text() + "\n[sweep]\nwithin = [0.6, 0.8]\ncount = 5\ntransient = 50\n"
+    (folder / "o.toml").write_text(text)
+    call(
+        "sweep",
+        folder / "o.toml",
+        "-o",
+        folder / "o.csv",
+        "--over",
+        folder / "s.vines",
+        "--plot",
+        folder / "o.png",
+        "-q",
+    )
+    assert (folder / "o.png").stat().st_size > 10_000
+
+
+def test_everything_can_be_exported(folder):
+    for kind in ("csv", "json", "graphml", "mat"):
+        call("export", folder / "s.vines", "--to", kind, "-o", folder / f"e.{kind}")
+        assert Path(folder / f"e.{kind}").stat().st_size > 1000
