@@ -61,6 +61,8 @@ def main():
         right.plot(
             turns, ms.decay_amplitude(flow, start, 2 * np.pi * paper.MASS_RATIO * turns), color="k", lw=0.8
         )
+        bound = ms.decay_bound(flow, start, 2 * np.pi * paper.MASS_RATIO * turns)
+        right.plot(turns, bound, color=color, lw=0.8, ls=paper.DOTTED)
         for mark in (40, 125):
             numbers[f"mu = {mu}: simulated C after {mark} periods"] = float(np.interp(mark, turns, height))
         numbers[f"mu = {mu}: periods to release, slow flow"] = float(
@@ -69,7 +71,11 @@ def main():
     turns = np.linspace(0, periods, 200)
     right.plot(turns, start * np.exp(-0.5 * paper.MASS_RATIO * paper.DAMPING * 2 * np.pi * turns), color=paper.GREY,
                ls=paper.DOTTED, label="oscillator alone")  # fmt: skip
-    right.set(xlabel="periods", ylabel="$C$ of the free motion", ylim=(0, 0.75))
+    right.set(
+        xlabel="periods (black: slow flow, dotted: its exponential bound)",
+        ylabel="$C$ of the free motion",
+        ylim=(0, 0.75),
+    )
     right.legend(loc="upper right")
     return figure, numbers
 

@@ -24,6 +24,7 @@ def main():
     reach = 1.3 * float(np.max(np.abs(found.nodes[:, 1])))
     panels[0].set(ylim=(-0.2, 0.25))
     panels[1].set(xlim=(-reach, reach))
+    panels[1].locator_params(axis="x", nbins=5)
     level = float(ms.friction_level(0.5, 0.211))
     c = float(np.hypot(found.nodes[0, 2], found.nodes[0, 3] / machine.frequency))
     return figure, {

@@ -82,7 +82,9 @@ def main():
         if row.word not in seen and len(seen) < 6 and row.periods <= 3:
             panel = figure.add_subplot(grid[2, len(seen)])
             seen.append(row.word)
-            motion = simulate(row.detail.model, row.detail.state, periods=row.periods).sample(per_period=800)
+            machine = paper.coupled(2.47, frequency=row.value)
+            settled = simulate(machine, row.detail.state, periods=1500).end
+            motion = simulate(machine, settled, periods=row.periods).sample(per_period=800)
             panel.plot(motion.w, motion.w_rate, color=paper.RED, lw=1)
             panel.set(xlabel="$w$", xlim=(-1.05, 1.05))
             panel.set_title(f"{row.word[:12]}, {row.value:.3f}, {name}", fontsize=8)

@@ -88,12 +88,15 @@ def decay_amplitude(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArr
 
 
 def decay_bound(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArray:
-    """The paper's exponential upper bound of the amplitude ``C`` at slow times ``eps tau``; NaN where it
-    turns negative."""
+    """The paper's exponential upper bound of the amplitude ``C`` at slow times ``eps tau``.
+
+    NaN once it falls below the activation threshold: the absorber has let go before, and it bounds nothing.
+    """
     c = coefficients(flow)
     rest = c.offset_c / c.alpha_c
+    squared = (start**2 - rest) * np.exp(-c.alpha_c * np.asarray(slow_time, dtype=float)) + rest
     with np.errstate(invalid="ignore"):
-        return np.sqrt((start**2 - rest) * np.exp(-c.alpha_c * np.asarray(slow_time, dtype=float)) + rest)
+        return np.sqrt(np.where(squared >= np.asarray(flow.activation.amplitude) ** 2, squared, np.nan))
 
 
 def decay_rate(flow: SlowFlow) -> float:
