@@ -112,9 +112,8 @@ def user_function(engine: Engine, function: Any) -> Callable[[np.ndarray, np.nda
     if callable(function):
         return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
     try:
-        name, given = tuple(function)
-        value = float(given)
-    except (TypeError, ValueError):
+        name, value = function[0], float(function[1])
+    except (TypeError, ValueError, IndexError):
         raise ValueError(
             f"user function {function!r} must be a callable (u, p) -> float or a pair (measure, value)"
         ) from None

@@ -88,6 +88,10 @@ def trace_pending(run: Run, pending: Pending) -> None:
     run.serial += 1
     label = run.new_label("B")
     half, ended, closed = both_ways(run, engine, watch, pending, first, real, label)
+    if pending.kind == "rest" and np.ptp(half.values) < 1e-6 * run.unit and len(half) < 4:
+        run.numbers["B"] -= 1
+        run.remark(str(pending.point), "the equations cannot be followed beyond the border")
+        return
     branch = make_branch(label, engine, half, real, ended, closed, pending.point, origin_index(half, pending))
     run.graph.branches[label] = branch
     run.register.add(branch, engine)

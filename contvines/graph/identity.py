@@ -9,7 +9,6 @@ import numpy as np
 
 from ..branch import Branch
 from ..continuation.engine import Engine
-from ..special import SpecialPoint
 
 SAME = 1e-6
 
@@ -94,25 +93,6 @@ def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
     return at(0.5 * (low + high))[:-1]
 
 
-def same_special(
-    known: SpecialPoint, kind: str, problem: Any, u: np.ndarray, p: float, unit: float, loose: bool = False
-) -> bool:
-    """Whether a located point is a known special point.
-
-    Parameters
-    ----------
-    known : SpecialPoint
-    kind, problem, u, p
-        The located point.
-    unit : float
-        Length of the parameter interval.
-    loose : bool
-        Do not insist on equal unknowns, only on kind and parameter value: for one point seen in two problems.
-    """
-    if known.kind != kind or abs(known.value - p) > 1e-8 * unit:
-        return False
-    key, vector = problem.canonical(u, p)
-    other_key, other = known.problem.canonical(known.u, known.value)
-    if key == other_key and same_vector(vector, other):
-        return True
-    return loose and abs(known.value - p) <= 1e-9 * unit
+def same_form(one: tuple[Hashable, np.ndarray], other: tuple[Hashable, np.ndarray]) -> bool:
+    """Whether two canonical forms, as problems return them, are of one solution."""
+    return one[0] == other[0] and same_vector(one[1], other[1])

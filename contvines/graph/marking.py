@@ -11,11 +11,12 @@ from ..follow import Half
 from ..normal_forms import fold_coefficient
 from ..special import BORDERS, PREFIXES, SpecialPoint
 from ..switching import null_vectors
-from .identity import same_special
+from .identity import same_form
 from .pending import Pending
 from .run import Run
 
 BACK_AT_BORDER = 1e-6  # a branch seeded beyond a border comes back to it within this part of the interval
+SAME_VALUE = 1e-8  # special points further apart than this part of the interval are different
 
 
 def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending) -> list[SpecialPoint]:
@@ -115,6 +116,8 @@ def _known(
     at_end: bool,
 ) -> str | None:
     problem, point = engine.problem, event.point
+    if kind == "end":
+        return None
     if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
         source = run.graph.special[pending.point]
         if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit:
@@ -128,13 +131,17 @@ def _known(
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
                 return other.point
+    form = None
     for known in run.graph.special.values():
+        if known.kind != kind or abs(known.value - point.p) > SAME_VALUE * run.unit or known.problem is None:
+            continue
         if kind == "user" and known.note != event.note:
             continue
-        if known.problem is not None and same_special(
-            known, kind, problem, point.u, point.p, run.unit, loose=meets
-        ):
+        form = problem.canonical(point.u, point.p) if form is None else form
+        if same_form(form, run.form(known)):
             return known.label
+        if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit:
+            return known.label  # one point seen in two problems, whose forms need not agree
     return None
 
 

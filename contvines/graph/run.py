@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..events.watch import Located, Watch
+from ..special import SpecialPoint
 from .graph import Graph, Switch
 from .identity import Register
 from .pending import Pending
@@ -59,6 +62,7 @@ class Run:
         self.numbers: dict[str, int] = {}
         self.events: dict[str, Located] = {}
         self.engines: dict[int, tuple[Any, Engine, Watch]] = {}
+        self.forms: dict[str, tuple[SpecialPoint, Any]] = {}
         self.serial = 0
         self.points = 0
         self.unit = graph.within[1] - graph.within[0]
@@ -94,6 +98,13 @@ class Run:
             if known.point == point and {known.source, known.target} == {source, target}:
                 return
         self.graph.switches.append(Switch(point, source, target, self.graph.special[point].kind, note))
+
+    def form(self, point: SpecialPoint) -> tuple[Hashable, np.ndarray]:
+        """Canonical form of a special point, computed once."""
+        known = self.forms.get(point.label)
+        if known is None or known[0] is not point:
+            known = self.forms[point.label] = (point, point.problem.canonical(point.u, point.value))
+        return known[1]
 
     def remark(self, label: str, sentence: str) -> None:
         """Add a sentence to the note of a special point."""
