@@ -112,7 +112,8 @@ def user_function(engine: Engine, function: Any) -> Callable[[np.ndarray, np.nda
     if callable(function):
         return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
     try:
-        name, value = function[0], float(function[1])
+        pair: Any = function
+        name, value = pair[0], float(pair[1])
     except (TypeError, ValueError, IndexError):
         raise ValueError(
             f"user function {function!r} must be a callable (u, p) -> float or a pair (measure, value)"

@@ -1,0 +1,64 @@
+"""Identity of solutions and branches, apart from any diagram."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import contvines as cv
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+from contvines.graph.identity import Register, same_form, same_vector
+
+
+def logistic(x, r):
+    return r * x * (1 - x)
+
+
+def two_cycle(r):
+    root = np.sqrt((r - 3.0) * (r + 1.0))
+    return np.array([r + 1.0 - root, r + 1.0 + root]) / (2.0 * r)
+
+
+PROBLEM = cv.MapProblem(logistic, two_cycle(3.2), 3.2, cycle=2)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(3.05, 3.4), st.integers(0, 3), st.sampled_from([1, 2, 4]))
+def test_a_cycle_is_the_same_from_any_point_and_any_number_of_times(r, turn, repeat):
+    cycle = two_cycle(r)
+    written = np.roll(np.tile(cycle, repeat), turn)
+    problem = cv.MapProblem(logistic, written, r, cycle=2 * repeat)
+    assert same_form(problem.canonical(written, r), PROBLEM.canonical(cycle, r))
+
+
+def test_a_fixed_point_is_not_the_two_cycle():
+    fixed = np.full(2, 1.0 - 1.0 / 3.2)
+    assert not same_form(PROBLEM.canonical(fixed, 3.2), PROBLEM.canonical(two_cycle(3.2), 3.2))
+    assert same_form(
+        PROBLEM.canonical(fixed, 3.2), cv.MapProblem(logistic, fixed[:1], 3.2).canonical(fixed[:1], 3.2)
+    )
+
+
+def test_register_finds_a_branch_through_a_solution_and_only_then():
+    graph = cv.diagram(cv.MapProblem(logistic, [0.5], 2.5, parameter="r"), within=(2.0, 3.4), depth=1)
+    register = Register()
+    for branch in graph:
+        register.add(branch, Engine(branch.problem, (2.0, 3.4), Settings()))
+    found = register.find(PROBLEM, np.roll(two_cycle(3.3), 1), 3.3)
+    assert found is graph["B2"]
+    assert register.find(PROBLEM, np.full(2, 1.0 - 1.0 / 3.3), 3.3) is graph["B1"]
+    assert register.find(PROBLEM, two_cycle(3.3) + 1e-3, 3.3) is None
+    assert register.find(PROBLEM, two_cycle(3.5), 3.5) is None
+    assert register.find(PROBLEM, two_cycle(3.3), 3.3, real=False) is None
+
+
+def test_mirror_images_are_one():
+    problem = cv.AlgebraicProblem(lambda x, p: p * x - x**3, [0.0], -0.5, mirror=lambda x: -x)
+    assert same_form(problem.canonical(np.array([0.5]), 0.25), problem.canonical(np.array([-0.5]), 0.25))
+    assert not same_form(problem.canonical(np.array([0.5]), 0.25), problem.canonical(np.array([0.0]), 0.25))
+
+
+def test_same_vector():
+    assert same_vector(np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-7]))
+    assert not same_vector(np.array([1.0, 2.0]), np.array([1.0, 2.001]))
+    assert not same_vector(np.array([1.0]), np.array([1.0, 2.0]))
