@@ -30,7 +30,16 @@ import math
 import numpy as np
 
 from orbits.kernel import kernel
-from orbits.models.coupled_flow import derivative, first_zero, harmonic, oscillation, rates, transition, wave
+from orbits.models.coupled_flow import (
+    certain,
+    derivative,
+    first_zero,
+    harmonic,
+    oscillation,
+    rates,
+    transition,
+    wave,
+)
 
 NODE = 4
 FORCING, FREQUENCY, DAMPING, MASS_RATIO, RESTITUTION, FRICTION, GRAVITY, EXCITATION = range(8)
@@ -339,13 +348,62 @@ def unpin(data, work):
 
 
 @kernel
+def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start, end):
+    """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none.
+
+    w'' = q1'' - s mu g is followed from zero to zero by steps that cannot pass one (`coupled_flow.certain`); the fourth
+    derivative of q1 is an oscillator's response to a force of amplitude Omega^4 `force`, which bounds it. A zero needs to
+    be known to 1e-5 only: the minimum is then taken from the Taylor series, exact to roundoff.
+    """
+    square = omega * omega
+    kappa = alpha * alpha + beta * beta
+    smallest = np.inf
+    tau = start
+    bound = -1.0
+    while True:
+        angle = omega * tau
+        sine, cosine = math.sin(angle), math.cos(angle)
+        H0 = h0 * cosine + h1 / omega * sine
+        H1 = h1 * cosine - omega * h0 * sine
+        decay = math.exp(-alpha * tau)
+        angle = beta * tau
+        cosine = decay * math.cos(angle)
+        sine = decay * math.sin(angle) / beta
+        Z1 = z1 * cosine - (alpha * z1 + kappa * z0) * sine
+        Z2 = -2.0 * alpha * Z1 - kappa * (z0 * cosine + (z1 + alpha * z0) * sine)
+        Z3 = -2.0 * alpha * Z2 - kappa * Z1
+        y = s * (Z2 - square * H0) - pull
+        slope = s * (Z3 - square * H1)
+        if bound < 0.0:
+            fourth = square * square * H0 - 2.0 * alpha * Z3 - kappa * Z2
+            fifth = square * square * H1 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
+            growth = square * square * force * (end - start) / math.sqrt(kappa)
+            bound = math.sqrt(fourth * fourth + fifth * fifth / kappa) + growth
+            if not bound > 1e-300:
+                return smallest
+        sign = 1.0 if y > 0.0 else -1.0
+        step = certain(abs(y), sign * slope, bound)
+        if step < 1e-5:
+            zero = -y / slope if sign * slope < 0.0 else 0.0
+            if tau + zero >= end:
+                return smallest
+            if slope > 0.0:
+                speed = s * (H1 + Z1 - q2_rate) - pull * tau
+                smallest = min(smallest, speed + (y + 0.5 * slope * zero) * zero)
+            step = zero + max(abs(slope) / bound, 1e-5)
+        tau += step
+        if not tau < end:
+            return smallest
+
+
+@kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility, all positive for an orbit that a machine can follow.
 
     `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads parameters, sines and
     cosines of the last `linearise` from `work`. All zeros are found by `coupled_flow.first_zero`: none can be missed.
 
-    0. The flight after the node. Sliding: smallest s w' at an interior minimum (zeros of w'' = q1'' - s mu g). Without
+    0. The flight after the node. Sliding: smallest s w' at an interior minimum (`_slowest`). Without
        friction, where a flight may reverse: 1 - |w| at the zeros of w'. Stuck: smallest a - |v''| at an interior extremum.
     1. The event. Impact: approach speed. Turn: -s v'' - a with s the mode before, since the relative acceleration
        v'' - a S cannot vanish for any S in [-1, 1] exactly when |v''| > a. Stick: a - |v''|. Slip: m v''' at its start.
@@ -367,6 +425,7 @@ def margins(data, u, p, work, out):
     stuck_X, stuck_Y = harmonic(force, chi, rate * omega, 1.0 - whole * square)
     slide_alpha, slide_beta = rates(1.0, rate)
     stuck_alpha, stuck_beta = rates(whole, rate)
+    strength = force * math.sqrt(1.0 + chi * chi * rate * rate * square)
     for i in range(length):
         event = events[i]
         mode = modes[i]
@@ -394,7 +453,9 @@ def margins(data, u, p, work, out):
         else:
             X, Y, alpha, beta = stuck_X, stuck_Y, stuck_alpha, stuck_beta
         offset = -eps * mode * pull
-        A, B = oscillation(alpha, beta, q1 - X * s0 - Y * c0 - offset, q1_rate - omega * (X * c0 - Y * s0))
+        h0, h1 = X * s0 + Y * c0, omega * (X * c0 - Y * s0)
+        z0, z1 = q1 - h0 - offset, q1_rate - h1
+        A, B = oscillation(alpha, beta, z0, z1)
         P1, Q1, A1, B1 = derivative(omega, alpha, beta, X, Y, A, B)
         P2, Q2, A2, B2 = derivative(omega, alpha, beta, P1, Q1, A1, B1)
         P3, Q3, A3, B3 = derivative(omega, alpha, beta, P2, Q2, A2, B2)
@@ -415,13 +476,7 @@ def margins(data, u, p, work, out):
                 bound = square * math.hypot(P2, Q2) + (alpha * alpha + beta * beta) * math.hypot(A2, B2)
                 if bound > 0.0:
                     tau = min(abs(P3 * s0 + Q3 * c0 + A3) / bound, 0.5 * d)
-            while True:
-                tau, slope = first_zero(-mode * pull, P2, Q2, A2, B2, omega, alpha, beta, psi0, tau, d)
-                if tau >= d:
-                    break
-                if mode * slope > 0.0:
-                    speed, _ = wave(0.0, P1, Q1, A1, B1, omega, alpha, beta, psi0, tau)
-                    flight = min(flight, mode * (speed - q2_rate) - pull * tau)
+            flight = _slowest(mode, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, strength, tau, d)
         else:
             tau = 0.0
             while True:

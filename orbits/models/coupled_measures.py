@@ -10,9 +10,8 @@ from numba import njit
 
 from orbits.measures import event_table
 from orbits.models.base import Model
-from orbits.models.coupled_flow import ahead, derivative, first_zero, leg, oscillation, wave
+from orbits.models.coupled_flow import ahead, derivative, first_zero, leg, oscillation
 from orbits.words import Word
-
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
