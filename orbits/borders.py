@@ -60,7 +60,17 @@ def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
             continue
         persistence = np.sign(q - p) != old_side
         kind = "persistence" if persistence else "nonsmooth fold"
-        return [Seed(other, v, q, tangent, "border", f"{note}: {kind}, the word becomes {other.word.text}", bool(persistence))]
+        return [
+            Seed(
+                other,
+                v,
+                q,
+                tangent,
+                "border",
+                f"{note}: {kind}, the word becomes {other.word.text}",
+                bool(persistence),
+            )
+        ]
     return []
 
 
@@ -74,7 +84,9 @@ def from_rest(problem: Any, point: Any) -> list[Seed]:
             q = p * (1.0 + side * distance)
             if problem.orbit(problem_response(problem, q), q).real:
                 continue
-            values = dict(zip(problem.model.parameter_names, (float(x) for x in problem.values(q)), strict=True))
+            values = dict(
+                zip(problem.model.parameter_names, (float(x) for x in problem.values(q)), strict=True)
+            )
             try:
                 orbit = find(problem.model, "ss", 1, None, values)
             except (StartError, ValueError):
@@ -207,7 +219,9 @@ def _grow(
     return best
 
 
-def _beside(other: OrbitProblem, guess: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+def _beside(
+    other: OrbitProblem, guess: np.ndarray, p: float
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
     kernels, work = assemble(other.model), other.workspace()
@@ -262,7 +276,13 @@ def _simulated(
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
             continue
-        if abs(found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods) > 0.05:
+        if (
+            abs(
+                found.measure("friction_loss") / found.periods
+                - orbit.measure("friction_loss") / orbit.periods
+            )
+            > 0.05
+        ):
             continue
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
         other = problem.sibling(found.word, found.periods, symmetric, found.params)

@@ -23,10 +23,19 @@ def restitution_ratio(restitution: ArrayLike) -> np.ndarray:
     return (1.0 - r) / (1.0 + r)
 
 
-def friction_number(friction: ArrayLike, gravity: ArrayLike, mass_ratio: ArrayLike, frequency: ArrayLike = 1.0) -> np.ndarray:
+def friction_number(
+    friction: ArrayLike, gravity: ArrayLike, mass_ratio: ArrayLike, frequency: ArrayLike = 1.0
+) -> np.ndarray:
     """H = (pi/2) (1 + eps) mu g / Omega^2; at Omega = 1 the h~ of the literature."""
     eps, omega = np.asarray(mass_ratio, dtype=float), np.asarray(frequency, dtype=float)
-    return 0.5 * np.pi * (1.0 + eps) * np.asarray(friction, dtype=float) * np.asarray(gravity, dtype=float) / omega**2
+    return (
+        0.5
+        * np.pi
+        * (1.0 + eps)
+        * np.asarray(friction, dtype=float)
+        * np.asarray(gravity, dtype=float)
+        / omega**2
+    )
 
 
 def symmetric_square(beta: ArrayLike, R: ArrayLike, H: ArrayLike) -> np.ndarray:
@@ -84,7 +93,7 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     curvature = 0.25 * np.pi**2 + R**2
     least = float(fold_square(R, H))
     middle = float(fold_beta(R, H))
-    if C**2 < least * (1.0 - 1e-14):
+    if least * (1.0 - 1e-14) > C**2:
         raise ParameterError(
             f"amplitude = {C:g} has no symmetric orbit with two impacts per period: it begins at {np.sqrt(least):.10g}"
         )
@@ -140,17 +149,24 @@ def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     C, _, mu, g, eps, omega = (float(value) for value in params)
     a = (1.0 + eps) * mu * g
     if C * omega**2 <= a:
-        raise ParameterError(f"amplitude = {C:g} never beats friction: stick-slip needs more than {a / omega**2:.10g}")
+        raise ParameterError(
+            f"amplitude = {C:g} never beats friction: stick-slip needs more than {a / omega**2:.10g}"
+        )
     low, high = sliding_squares(friction_number(mu, g, eps, omega))
-    if C**2 > float(low):
-        raise ParameterError(f"amplitude = {C:g} slides without sticking: stick-slip ends at {np.sqrt(low):.10g}")
+    if float(low) < C**2:
+        raise ParameterError(
+            f"amplitude = {C:g} slides without sticking: stick-slip ends at {np.sqrt(low):.10g}"
+        )
     slip = (np.pi if mode > 0 else 0.0) + float(np.arcsin(a / (C * omega**2)))
 
     def rate(psi: float) -> float:
         return mode * C * omega * (np.cos(psi) - np.cos(slip)) - a * (psi - slip) / omega
 
     # w' rises until the shaking falls below friction (at slip + pi - 2 asin(..)), then falls through 0
-    left, right = 2.0 * np.pi * (mode > 0) + (np.pi if mode < 0 else 0.0) - float(np.arcsin(a / (C * omega**2))), slip + np.pi
+    left, right = (
+        2.0 * np.pi * (mode > 0) + (np.pi if mode < 0 else 0.0) - float(np.arcsin(a / (C * omega**2))),
+        slip + np.pi,
+    )
     for _ in range(200):
         middle = 0.5 * (left + right)
         if rate(middle) > 0.0:

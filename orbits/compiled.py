@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits import cyclic, periodic_qr, periodic_schur
+from orbits import cyclic, lanes, periodic_qr, periodic_schur
 from orbits import kernel as compiling
 from orbits.kernel import kernel, stored_kernel
 from orbits.models.base import Model
@@ -108,6 +108,7 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
         kernels.__file__,
         compiling.__file__,
         cyclic.__file__,
+        lanes.__file__,
         periodic_schur.__file__,
         periodic_qr.__file__,
         __file__,

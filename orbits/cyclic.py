@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from orbits.kernel import OPTIONS, kernel
+from orbits.lanes import LANES, SHORTEST, condense, expand, lanes_size, short_cycle
 from orbits.periodic_schur import scratch_size
 
 TINY = 1e-300
@@ -32,7 +33,7 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         order, trial)`` with shapes ``(L, n)``,
         ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
         ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
-        ``(L n,)``.
+        ``(L n,)``; then those of `orbits.lanes`.
     """
     n = node
     return (
@@ -52,6 +53,9 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         np.zeros(n),
         np.zeros(n + 1, np.int64),
         np.zeros(length * n),
+        np.zeros(lanes_size(length) if n == 2 else 0),
+        *short_cycle(length if n == 2 else 0),
+        np.zeros(2 * (4 * LANES + 1)),
     )
 
 
@@ -143,24 +147,8 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def bordered(data, work, border, target, step, tangent):
-        """Solve [[J, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`.
-
-        Parameters
-        ----------
-        data, work : tuple
-            Of the problem; the last linearisation is read from `work`.
-        border, step, tangent : float array (L n + 1,)
-        target : float
-
-        Returns
-        -------
-        float
-            Sign of the determinant (up to a constant of the word), 0 if the matrix is singular.
-        """
-        twist = data[4]
-        F, A, D, Q = work[0], work[1], work[2], work[3]
-        stored, panel, small, solution = work[6], work[7], work[8], work[9]
+    def eliminate(F, A, D, Q, twist, stored, panel, small, order, solution):
+        """Particular and null solution of J x + F_p p = -F, one node after the other; returns a sign."""
         length = F.shape[0]
         size = length * n
         sign = 1.0
@@ -194,7 +182,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                 small[i, c] = panel[i, at_first + c] + (panel[i, c] if c == 0 else twist * panel[i, c])
             small[i, n] = panel[i, at_p]
             small[i, n + 1] = panel[i, at_rhs]
-        sign *= close(small, solution, work[14])
+        sign *= close(small, solution, order)
         for block in range(length - 1, 0, -1):
             for i in range(n - 1, -1, -1):
                 pivot = stored[block, i, i]
@@ -220,6 +208,46 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                     null -= stored[block, i, c] * solution[1, block * n + c]
                 solution[0, block * n + i] = particular / pivot
                 solution[1, block * n + i] = null / pivot
+        return sign
+
+    @kernel
+    def eliminate_lanes(F, A, D, Q, twist, stored, panel, small, order, solution, scratch, short, found):
+        """The same with sixteen segments side by side, where the cycle is long enough."""
+        if F.shape[0] < SHORTEST:
+            return eliminate(F, A, D, Q, twist, stored, panel, small, order, solution)
+        nodes, sign = condense(F, A, D, Q, scratch, short)
+        F_, A_, D_, Q_ = short
+        small_found = found[: 2 * (2 * nodes + 1)].reshape((2, 2 * nodes + 1))
+        sign *= eliminate(F_[:nodes], A_, D_, Q_, twist, stored, panel, small, order, small_found)
+        expand(F.shape[0], scratch, small_found, twist, solution)
+        return sign
+
+    @kernel
+    def bordered(data, work, border, target, step, tangent):
+        """Solve [[J, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`.
+
+        Parameters
+        ----------
+        data, work : tuple
+            Of the problem; the last linearisation is read from `work`.
+        border, step, tangent : float array (L n + 1,)
+        target : float
+
+        Returns
+        -------
+        float
+            Sign of the determinant (up to a constant of the word), 0 if the matrix is singular.
+        """
+        F, A, D, Q = work[0], work[1], work[2], work[3]
+        stored, panel, small, solution, order = work[6], work[7], work[8], work[9], work[14]
+        size = solution.shape[1] - 1
+        if n == 2:
+            scratch, short, found = work[16], (work[17], work[18], work[19], work[20]), work[21]
+            sign = eliminate_lanes(
+                F, A, D, Q, data[4], stored, panel, small, order, solution, scratch, short, found
+            )
+        else:
+            sign = eliminate(F, A, D, Q, data[4], stored, panel, small, order, solution)
         along, across = 0.0, 0.0
         for i in range(size + 1):
             across += border[i] * solution[0, i]
@@ -229,10 +257,11 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
             sign = 0.0
         elif along < 0.0:
             sign = -sign
-        share = (target - across) / along
+        by = 1.0 / along
+        share = (target - across) * by
         for i in range(size + 1):
             step[i] = solution[0, i] + share * solution[1, i]
-            tangent[i] = solution[1, i] / along
+            tangent[i] = solution[1, i] * by
         return sign
 
     return SimpleNamespace(bordered=bordered)

@@ -18,7 +18,13 @@ LEFT, RIGHT, TURN, STICK, SLIP = 0, 1, 2, 3, 4
 LETTERS = "LRtsu"
 CODES = {letter: code for code, letter in enumerate(LETTERS)}
 MIRRORED = {"L": "R", "R": "L", "t": "t", "s": "s", "u": "u"}
-NAMES = {"L": "impact on the left wall", "R": "impact on the right wall", "t": "turn", "s": "stick", "u": "slip"}
+NAMES = {
+    "L": "impact on the left wall",
+    "R": "impact on the right wall",
+    "t": "turn",
+    "s": "stick",
+    "u": "slip",
+}
 IMPACTS = frozenset("LR")
 
 

@@ -44,9 +44,13 @@ def position_error(orbit: Orbit, points: int = 400) -> float:
     claimed = sample(turned, points)
     given = {name: value for name, value in orbit.parameters.items() if not hasattr(orbit.model, name)}
     model = orbit.model.changed(
-        **{name: value for name, value in orbit.parameters.items() if name not in given and name != "excitation"}
+        **{
+            name: value
+            for name, value in orbit.parameters.items()
+            if name not in given and name != "excitation"
+        }
     )
-    run = simulate(model, start, periods=orbit.periods + 1e-6, **given)
+    run = simulate(model, start, periods=orbit.periods + 1e-6, **given)  # type: ignore[arg-type]
     first = run.start[0] + 2.0 * np.pi * run.start[4]
     seen = run.sample(first + (claimed["phase"] - claimed["phase"][0]))
     return float(np.abs(seen.w - claimed["w"]).max())

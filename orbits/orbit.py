@@ -101,7 +101,9 @@ class Orbit:
         """
         if not self.symmetric:
             raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
-        problem = OrbitProblem(self.model, self.word, self.periods, self.model.default_parameter, self.params, True)
+        problem = OrbitProblem(
+            self.model, self.word, self.periods, self.model.default_parameter, self.params, True
+        )
         row = np.empty(2 * problem.n_multipliers + problem.n_margins)
         work = problem.workspace()
         assemble(self.model).examine(

@@ -63,7 +63,13 @@ class OrbitProblem:
     spectrum = "map"
 
     def __init__(
-        self, model: Model, word: Word, periods: int, parameter: str, params: np.ndarray, symmetric: bool = False
+        self,
+        model: Model,
+        word: Word,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
     ) -> None:
         if parameter not in model.parameter_names:
             raise ValueError(
@@ -75,7 +81,11 @@ class OrbitProblem:
         if len(word) == 0:
             raise ValueError("the empty word (absorber stuck) has no maps to solve")
         self.model, self.word, self.periods = model, word, int(periods)
-        self.parameter, self.params, self.symmetric = parameter, np.array(params, dtype=float), bool(symmetric)
+        self.parameter, self.params, self.symmetric = (
+            parameter,
+            np.array(params, dtype=float),
+            bool(symmetric),
+        )
         self.index = model.parameter_names.index(parameter)
         length = len(word) // 2 if symmetric else len(word)
         n = model.node
@@ -137,7 +147,7 @@ class OrbitProblem:
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""
-        return np.ascontiguousarray(nodes[: self.length], dtype=float).ravel()
+        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
 
     # ------------------------------------------------------------------ symmetries and larger problems
     @cached_property
@@ -148,10 +158,22 @@ class OrbitProblem:
         found = []
         if self.word.mirror_symmetric_halves and self.periods % 2 == 1:
             half = self.sibling(self.word, self.periods, symmetric=True)
-            found.append(Symmetry("symmetry-breaking", lambda u: self._rotated(u, -1.0), lambda u: (half, half.reduce(self.expand(u)))))
+            found.append(
+                Symmetry(
+                    "symmetry-breaking",
+                    lambda u: self._rotated(u, -1.0),
+                    lambda u: (half, half.reduce(self.expand(u))),
+                )
+            )
         if self.word.repetitions % 2 == 0 and self.periods % 2 == 0:
             root = self.sibling(self.word.head(len(self.word) // 2), self.periods // 2, symmetric=False)
-            found.append(Symmetry("period-doubling", lambda u: self._rotated(u, 1.0), lambda u: (root, root.reduce(self.expand(u)))))
+            found.append(
+                Symmetry(
+                    "period-doubling",
+                    lambda u: self._rotated(u, 1.0),
+                    lambda u: (root, root.reduce(self.expand(u))),
+                )
+            )
         return tuple(found)
 
     def _rotated(self, u: np.ndarray, sign: float) -> np.ndarray:
@@ -164,7 +186,9 @@ class OrbitProblem:
         image[self.length - half :, 0] += turn
         return image.ravel()
 
-    def sibling(self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None) -> OrbitProblem:
+    def sibling(
+        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+    ) -> OrbitProblem:
         """The problem of another word of the same machine against the same parameter."""
         return OrbitProblem(
             self.model, word, periods, self.parameter, self.params if params is None else params, symmetric
@@ -188,7 +212,9 @@ class OrbitProblem:
             second[:, 0] += self.shift
             direction = np.concatenate([along, along])
             return [
-                Embedding(double, np.concatenate([nodes, second]).ravel(), np.append(direction, tangent[-1]), kind)
+                Embedding(
+                    double, np.concatenate([nodes, second]).ravel(), np.append(direction, tangent[-1]), kind
+                )
             ]
         if kind == "branch-point":
             return [Embedding(self, np.array(u), np.array(tangent), kind)]
@@ -222,7 +248,9 @@ class OrbitProblem:
         p = np.atleast_1d(np.asarray(p, dtype=float))
         params = np.tile(self.params, (p.size, 1))
         params[:, self.index] = p
-        return measuring.measure(self.model, self.word, self.periods, self.expand(np.atleast_2d(u)), params, names)
+        return measuring.measure(
+            self.model, self.word, self.periods, self.expand(np.atleast_2d(u)), params, names
+        )
 
     def orbit(self, u: np.ndarray, p: float) -> Any:
         """The solution as an `orbits.orbit.Orbit`."""

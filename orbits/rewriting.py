@@ -73,7 +73,11 @@ def edits_at(orbit: Orbit, index: int) -> list[Edit]:
         early = late.copy()
         early[0] -= FIRST
         nodes = np.array([early, late])
-        return [Edit(place + 1, place + 1, ("s", "u"), (0, after), nodes, "gap", "a stick appears inside a flight")]
+        return [
+            Edit(
+                place + 1, place + 1, ("s", "u"), (0, after), nodes, "gap", "a stick appears inside a flight"
+            )
+        ]
     if letter == "t" and column != WALL:
         found = []
         if place + 1 < n and word.events[place + 1] == "s":
@@ -82,7 +86,10 @@ def edits_at(orbit: Orbit, index: int) -> list[Edit]:
         late = node.copy()
         late[0] += FIRST
         nodes = np.array([node, late])
-        return [*found, Edit(place, place + 1, ("s", "u"), (0, after), nodes, "gap", "a turn becomes a stick")]
+        return [
+            *found,
+            Edit(place, place + 1, ("s", "u"), (0, after), nodes, "gap", "a turn becomes a stick"),
+        ]
     if letter in "tsu" and column == WALL:
         return _wall(orbit, place - 1 if letter == "u" else place)
     if letter == "s" and place + 1 < n:
@@ -94,7 +101,9 @@ def edits_at(orbit: Orbit, index: int) -> list[Edit]:
         if place + 1 < n and word.events[place + 1] == "s":
             soft = soft.copy()
             soft[0] = orbit.nodes[place + 1, 0]
-            merged = Edit(place, place + 2, ("s",), (0,), soft[None], "margin", "an impact before a stick vanishes")
+            merged = Edit(
+                place, place + 2, ("s",), (0,), soft[None], "margin", "an impact before a stick vanishes"
+            )
             found.insert(0, merged)
         return found
     return []
@@ -110,9 +119,14 @@ def _stick(orbit: Orbit, place: int) -> list[Edit]:
         place, place + 1, ("t", "s"), (-before, 0), np.array([node, late]), "gap", "a turn appears before a stick"
     )  # fmt: skip
     if place > 0 and word.events[place - 1] == "t" and node[0] - orbit.nodes[place - 1, 0] < SHORT:
-        return [Edit(place - 1, place + 1, ("s",), (0,), node[None], "margin", "a turn before a stick disappears")]
+        return [
+            Edit(place - 1, place + 1, ("s",), (0,), node[None], "margin", "a turn before a stick disappears")
+        ]
     if out == before:
-        return [Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight"), turned]
+        return [
+            Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight"),
+            turned,
+        ]
     middle = node.copy()
     middle[0] = 0.5 * (node[0] + orbit.nodes[place + 1, 0])
     return [Edit(place, place + 2, ("t",), (out,), middle[None], "margin", "a stick becomes a turn"), turned]
@@ -131,11 +145,14 @@ def _wall(orbit: Orbit, place: int) -> list[Edit]:
     late = node.copy()
     late[0] += FIRST
     late[1] -= side * 0.1 * FIRST**2
-    return [Edit(place, place + 1, (wall, "s"), (-side, 0), np.array([hit, late]), "speed", "a stick hits the wall")]
+    return [
+        Edit(
+            place, place + 1, (wall, "s"), (-side, 0), np.array([hit, late]), "speed", "a stick hits the wall"
+        )
+    ]
 
 
 def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
-    word = orbit.word
     if column == EVENT:
         return [Edit(place, place + 1, (), (), orbit.nodes[:0], "margin", "an impact vanishes")]
     if column != FLIGHT:
@@ -155,7 +172,7 @@ def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
 def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
     """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand."""
     events, modes = list(word.events), list(word.modes)
-    rows = [row for row in nodes]
+    rows = list(nodes)
     for change in sorted(edits, key=lambda e: e.start, reverse=True):
         events[change.start : change.stop] = change.events
         modes[change.start : change.stop] = change.modes

@@ -24,7 +24,9 @@ def flight(orbit: Orbit, segment: int, ahead: np.ndarray) -> np.ndarray:
         orbit.nodes[segment],
     )
     out = np.empty((len(ahead), 4))
-    engine.sample(np.tile(state, (len(ahead), 1)), orbit.params, np.ascontiguousarray(ahead, dtype=float), out)
+    engine.sample(
+        np.tile(state, (len(ahead), 1)), orbit.params, np.ascontiguousarray(ahead, dtype=float), out
+    )
     return out
 
 

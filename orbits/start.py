@@ -64,7 +64,9 @@ def check_guess(word: Word, node: int, guess: Any) -> np.ndarray:
             f"({' '.join(word.events)}): give one {what} for each, slips included"
         )
     if not np.all(np.isfinite(nodes)):
-        raise StartError("guess has numbers that are not finite: give a phase and a velocity or position per event")
+        raise StartError(
+            "guess has numbers that are not finite: give a phase and a velocity or position per event"
+        )
     return nodes
 
 
@@ -100,7 +102,9 @@ def find(
     params = model.vector(parameters)
     reading = Word.parse(word, frictionless=model.friction_acceleration(params) == 0.0)
     if isinstance(periods, bool) or int(periods) != periods or periods < 1:
-        raise StartError(f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more")
+        raise StartError(
+            f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more"
+        )
     periods = int(periods)
     if len(reading) == 0:
         return _stuck(model, params)
@@ -129,7 +133,11 @@ def find(
     orbit = _repeated(model, reading, periods, parameters)
     if orbit is not None:
         return orbit
-    found = f"the nearest motion that the simulator finds is {nearest}" if nearest else "the simulator finds no periodic motion"
+    found = (
+        f"the nearest motion that the simulator finds is {nearest}"
+        if nearest
+        else "the simulator finds no periodic motion"
+    )
     given = ", ".join(f"{name} = {value:g}" for name, value in (parameters or {}).items())
     raise StartError(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
@@ -137,9 +145,7 @@ def find(
     )
 
 
-def _repeated(
-    model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None
-) -> Orbit | None:
+def _repeated(model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None) -> Orbit | None:
     """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
     times = math.gcd(word.repetitions, periods)
     if times == 1:
@@ -186,9 +192,7 @@ def _closed(model: Model, word: Word, periods: int, params: np.ndarray) -> Itera
         return
 
 
-def _simulated(
-    model: Model, word: Word, periods: int, params: np.ndarray
-) -> tuple[Orbit | None, str]:
+def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     from orbits.simulation.recurrence import find_attractor
 
@@ -210,7 +214,11 @@ def _simulated(
             polished = polish(_aligned(orbit, word))
             if polished is not None:
                 return polished, ""
-        gap = abs(orbit.word.impacts - word.impacts) + abs(len(orbit.word) - len(word)) + abs(orbit.periods - periods)
+        gap = (
+            abs(orbit.word.impacts - word.impacts)
+            + abs(len(orbit.word) - len(word))
+            + abs(orbit.periods - periods)
+        )
         if gap < distance:
             nearest, distance = f"{orbit.word.text!r} with periods = {orbit.periods}", gap
     return None, nearest

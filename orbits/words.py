@@ -100,7 +100,9 @@ class Word:
         for place, letter in enumerate(events):
             before = events[place - 1]
             if (letter == "u") != (before == "s"):
-                raise WordError(f"word {shown!r} has a slip that follows no stick: write s for a stick and its slip")
+                raise WordError(
+                    f"word {shown!r} has a slip that follows no stick: write s for a stick and its slip"
+                )
         return cls(tuple(events), _modes(events, signs, frictionless, shown), frictionless)
 
     # ------------------------------------------------------------------ facts
@@ -167,7 +169,9 @@ class Word:
     def mirror(self) -> Word:
         """The word of the mirror image: L and R, and the sliding directions, change places."""
         return Word(
-            tuple(MIRRORED[letter] for letter in self.events), tuple(-mode for mode in self.modes), self.frictionless
+            tuple(MIRRORED[letter] for letter in self.events),
+            tuple(-mode for mode in self.modes),
+            self.frictionless,
         )
 
     def repeat(self, times: int) -> Word:
@@ -218,7 +222,9 @@ def _are_chained_maps(tokens: Sequence[str]) -> bool:
     return all(tokens[i][1] == tokens[(i + 1) % len(tokens)][0] for i in range(len(tokens)))
 
 
-def _modes(events: Sequence[str], signs: Sequence[int | None], frictionless: bool, shown: str) -> tuple[int, ...]:
+def _modes(
+    events: Sequence[str], signs: Sequence[int | None], frictionless: bool, shown: str
+) -> tuple[int, ...]:
     """The mode after each event; None where nothing fixes it becomes a reversal of the motion before the stick."""
     n = len(events)
     if n == 0:
@@ -229,7 +235,9 @@ def _modes(events: Sequence[str], signs: Sequence[int | None], frictionless: boo
     for place, letter in enumerate(events):
         if letter == "u":
             after[place] = signs[place]
-    for _ in range(2 * n):  # let the known modes spread forwards over turns and backwards over turns and slips
+    for _ in range(
+        2 * n
+    ):  # let the known modes spread forwards over turns and backwards over turns and slips
         for place in range(n):
             letter, before = events[place], (place - 1) % n
             if letter == "t":

@@ -96,7 +96,9 @@ class Absorber(Model):
 
         params = self.vector({"amplitude": amplitude})
         nodes = symmetric_nodes(params, stable)
-        return Orbit(self, Word.parse("LR", frictionless=self.friction_acceleration(params) == 0.0), 1, nodes, params)
+        return Orbit(
+            self, Word.parse("LR", frictionless=self.friction_acceleration(params) == 0.0), 1, nodes, params
+        )
 
     def orbit(
         self,

@@ -82,7 +82,8 @@ class Model:
         unknown = [name for name in given if name not in self.parameter_names]
         if unknown:
             raise ParameterError(
-                f"{unknown[0]} is no parameter of the model {self.name!r}; it has " + ", ".join(self.parameter_names)
+                f"{unknown[0]} is no parameter of the model {self.name!r}; it has "
+                + ", ".join(self.parameter_names)
             )
         result = []
         for name in self.parameter_names:

@@ -34,12 +34,16 @@ def portrait(orbit: Orbit, points: int = 1200) -> Figure:
     import matplotlib.pyplot as plt
 
     with plt.style.context(str(files("orbits.plots") / "house.mplstyle")):
-        figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.0), width_ratios=(1.0, 1.5), layout="constrained")
+        figure, (left, right) = plt.subplots(
+            1, 2, figsize=(9.6, 4.0), width_ratios=(1.0, 1.5), layout="constrained"
+        )
         motion = orbit.sample(points)
         _phase(left, orbit, motion)
         _history(right, orbit, motion)
         kind = "symmetric" if orbit.symmetric else "asymmetric"
-        state = ("stable" if orbit.stable else "unstable") + ("" if orbit.real else ", virtual: no machine can follow it")
+        state = ("stable" if orbit.stable else "unstable") + (
+            "" if orbit.real else ", virtual: no machine can follow it"
+        )
         figure.suptitle(
             f"{orbit.word.text}, {orbit.impacts} impacts in {orbit.periods} forcing period"
             f"{'s' if orbit.periods > 1 else ''}, {kind}, {state}",
@@ -63,7 +67,9 @@ def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     table = orbit.events
     for i, letter in enumerate(orbit.word.events):
         if letter in "LR":  # the jump of the velocity
-            axes.plot([table.w[i]] * 2, [table.rate_pre[i], table.rate_post[i]], color=ORBIT, lw=0.8, ls=(0, (2, 2)))
+            axes.plot(
+                [table.w[i]] * 2, [table.rate_pre[i], table.rate_post[i]], color=ORBIT, lw=0.8, ls=(0, (2, 2))
+            )
     _events(axes, orbit, table.w, table.rate_post)
     axes.set(
         xlim=(-1.16 * bound, 1.16 * bound),
@@ -85,7 +91,9 @@ def _history(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     table = orbit.events
     eps = orbit.parameters["mass_ratio"]
     _events(axes, orbit, table.phase / (2.0 * np.pi), (table.v - table.w) / (1.0 + eps), labelled=True)
-    axes.set(xlabel=r"forcing periods $\Psi/2\pi$", ylabel=r"positions in units of $b$", xlim=(turns[0], turns[-1]))
+    axes.set(
+        xlabel=r"forcing periods $\Psi/2\pi$", ylabel=r"positions in units of $b$", xlim=(turns[0], turns[-1])
+    )
     axes.margins(y=0.02)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=4, frameon=False, fontsize="small")
 
@@ -96,5 +104,14 @@ def _events(axes: Any, orbit: Orbit, x: np.ndarray, y: np.ndarray, labelled: boo
         label = WHAT[letter] if labelled and letter not in shown else None
         shown.add(letter)
         axes.plot(
-            x[i], y[i], MARKS[letter], color="white", mec="black", mew=1.0, ms=6, ls="none", zorder=4, label=label
+            x[i],
+            y[i],
+            MARKS[letter],
+            color="white",
+            mec="black",
+            mew=1.0,
+            ms=6,
+            ls="none",
+            zorder=4,
+            label=label,
         )

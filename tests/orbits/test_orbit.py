@@ -79,7 +79,9 @@ def test_determinant_with_turns():
     """det A = prod r^2 over impacts * prod (|v''| - a)/(|v''| + a) over turns."""
     orbit = PAPER.orbit("LRtt", amplitude=0.95)
     a = 1.006 * 0.5 * 0.211
-    shaking = [abs(0.95 * np.sin(psi)) for psi, letter in zip(orbit.nodes[:, 0], orbit.word.events) if letter == "t"]
+    shaking = [
+        abs(0.95 * np.sin(psi)) for psi, letter in zip(orbit.nodes[:, 0], orbit.word.events) if letter == "t"
+    ]
     wanted = 0.76**4 * np.prod([(v - a) / (v + a) for v in shaking])
     assert np.prod(orbit.multipliers).real == pytest.approx(wanted, rel=1e-10)
 
@@ -143,7 +145,12 @@ def test_losses_balance_the_work_of_the_cavity():
 
 def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
     low, high = (float(x) for x in sliding_squares(friction_number(0.5, 0.211, 0.006)))
-    for square, word in ((0.5 * (low + high), "tt"), (1.01 * low, "tt"), (0.99 * low, "ss"), (0.5 * low, "ss")):
+    for square, word in (
+        (0.5 * (low + high), "tt"),
+        (1.01 * low, "tt"),
+        (0.99 * low, "ss"),
+        (0.5 * low, "ss"),
+    ):
         orbit = PAPER.orbit(word, amplitude=np.sqrt(square))
         assert orbit.real and orbit.symmetric and orbit.residual < 1e-12
         assert len(orbit.multipliers) == 1
@@ -159,7 +166,9 @@ def test_without_friction_words_need_no_turns():
     smooth = free.orbit("LRR", amplitude=1.35, guess=guess.nodes[hits])
     assert smooth.real and guess.real
     np.testing.assert_allclose(smooth.nodes, guess.nodes[hits], atol=1e-5)
-    np.testing.assert_allclose(np.sort(np.abs(smooth.multipliers)), np.sort(np.abs(guess.multipliers)), rtol=1e-5)
+    np.testing.assert_allclose(
+        np.sort(np.abs(smooth.multipliers)), np.sort(np.abs(guess.multipliers)), rtol=1e-5
+    )
 
 
 def test_polish_returns_the_orbit_itself():
