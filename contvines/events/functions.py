@@ -110,7 +110,8 @@ def user_function(engine: Engine, function: Any) -> Callable[[np.ndarray, np.nda
     """
     problem = engine.problem
     if callable(function):
-        return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
+        call: Callable[..., Any] = function
+        return lambda points, values: np.array([float(call(u, float(p))) for u, p in zip(points, values)])
     try:
         pair: Any = function
         name, value = pair[0], float(pair[1])

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from ..branch import Branch
 from ..continuation.engine import Engine, Solved
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
 from ..events.watch import MARGIN, Watch
 from ..follow import Half, follow, make_branch, single
+from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
 from .pending import Pending
@@ -83,6 +85,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
         return
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None:
+        if pending.kind == "border" and pending.point is not None:
+            pending.point = same_border(run, pending.point, known)
         run.connect(pending.point, pending.source, known.label, pending.note)
         return
     run.serial += 1
@@ -116,9 +120,37 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
         first = pending.origin
     else:
         first = engine.start(pending.u, pending.p, pending.tangent)
+        if first is not None and pending.kind == "root" and pending.tangent is None:
+            # off the point where the known branch ends, or it would be taken for that branch
+            first = beside(engine, first, run.settings.amplitude) or beside(
+                engine, first, -run.settings.amplitude
+            )
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
+
+
+def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
+    """A point of the same branch at a small distance, if it lies in the interval."""
+    guess = engine.join(point.u, point.p) + step * point.tangent
+    border = engine.weights * point.tangent
+    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), point.tangent)
+    return found if found is not None and engine.lower <= found.p <= engine.upper else None
+
+
+def same_border(run: Run, label: str, known: Branch) -> str:
+    """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
+    graph = run.graph
+    for _, other in known.marks:
+        point = graph.special[other]
+        if (
+            other != label
+            and point.kind in BORDERS
+            and abs(point.value - graph[label].value) <= 1e-9 * run.unit
+        ):
+            run.merge(label, other)
+            return other
+    return label
 
 
 def both_ways(

@@ -16,6 +16,7 @@ from .pending import Pending
 from .run import Run
 
 BACK_AT_BORDER = 1e-6  # a branch seeded beyond a border comes back to it within this part of the interval
+SIDE = "comes back to more symmetric solutions at"
 SAME_VALUE = 1e-8  # special points further apart than this part of the interval are different
 
 
@@ -61,6 +62,12 @@ def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending)
                 # now seen on the branch of the more symmetric solutions: that one owns it
                 point = _special(run, label, kind, engine, branch, event, index)
                 point.note = known.note
+                for other in run.graph.branches.values():
+                    ends = [
+                        e.replace(f"{SIDE} {label},", f"meets {branch.label} at {label},")
+                        for e in other.ended
+                    ]
+                    other.ended = (ends[0], ends[1])
                 run.graph.special[label] = point
                 fresh.append(point)
             elif known.branch != branch.label:
@@ -199,7 +206,7 @@ def _sentence(run: Run, label: str, kind: str, branch: Branch, meets: bool) -> s
     value = f"{branch.parameter} = {known.value:.10g}"
     if meets:
         if known.branch == branch.label:
-            return f"comes back to more symmetric solutions at {label}, {value}"
+            return f"{SIDE} {label}, {value}"
         return f"meets {known.branch} at {label}, {value}"
     if known.branch != branch.label:
         return f"meets {known.branch} at {label} ({kind}), {value}"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -105,6 +107,26 @@ class Run:
         if known is None or known[0] is not point:
             known = self.forms[point.label] = (point, point.problem.canonical(point.u, point.value))
         return known[1]
+
+    def merge(self, label: str, into: str) -> None:
+        """Two labels turn out to be one special point: the second one stays."""
+        graph = self.graph
+        for branch in graph.branches.values():
+            if any(mark == label for _, mark in branch.marks):
+                branch.marks = tuple((i, into if mark == label else mark) for i, mark in branch.marks)
+                ends = [
+                    re.sub(rf"reaches {label}\b", f"meets {graph.special[into].branch} at {into}", end)
+                    for end in branch.ended
+                ]
+                branch.ended = (ends[0], ends[1])
+        for pending in self.queue:
+            if pending.point == label:
+                pending.point = into
+        switches = [replace(s, point=into) if s.point == label else s for s in graph.switches]
+        graph.switches.clear()
+        for switch in switches:
+            self.connect(switch.point, switch.source, switch.target, switch.note)
+        del graph.special[label]
 
     def remark(self, label: str, sentence: str) -> None:
         """Add a sentence to the note of a special point."""
