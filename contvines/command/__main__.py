@@ -1,5 +1,5 @@
 """`python -m contvines.command` does what `contvines` does."""
 
-from contvines.command.cli import main
+from contvines.command.entry import main
 
 main()

@@ -62,12 +62,26 @@ def main(arguments: list[str] | None = None) -> None:
     debug = "--debug" in words
     words = [w for w in words if w != "--debug"]
     try:
-        app(words, prog_name="contvines")
+        status = app(words, prog_name="contvines", standalone_mode=False)
     except Exception as error:
         if debug:
             raise
+        if hasattr(error, "show") and hasattr(error, "exit_code"):  # the line itself cannot be understood
+            error.show()
+            sys.exit(error.exit_code)
+        if type(error).__name__ in ("Interrupted", "Abort"):
+            stopped(str(error))
         print(f"contvines: {sentence(error)}", file=sys.stderr)
         sys.exit(1)
+    if status == 130:  # Ctrl-C outside the computation
+        stopped()
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def stopped(note: str = "") -> None:
+    """End after Ctrl-C: say what is kept and how to go on, exit status 130."""
+    print(f"\ncontvines: stopped; {note or 'the same command begins again, or goes on'}.", file=sys.stderr)
+    sys.exit(130)
 
 
 def sentence(error: Exception) -> str:
@@ -84,7 +98,3 @@ def sentence(error: Exception) -> str:
             "the same command with --debug shows where"
         )
     return text if text.endswith((".", "?")) or "\n" in text else text + "."
-
-
-if __name__ == "__main__":
-    main()

@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from contvines.graph.graph import Graph
 
 
+class Interrupted(Exception):
+    """Ctrl-C in the middle of the work; the message says what is kept and how to go on."""
+
+
 def checked_study(path: Path) -> "Study":
     """A study whose values, machine and word can all be; see `read_study`.
 

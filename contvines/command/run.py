@@ -1,5 +1,7 @@
 """`contvines diagram`, `trace` and `switch`: the commands that continue."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -146,19 +148,15 @@ def _continue(
     return graph
 
 
-class _interruptible:
-    """Ctrl-C ends the command with a sentence and status 130."""
+@contextmanager
+def _interruptible(note: str) -> Iterator[None]:
+    """Ctrl-C ends the command with a sentence that says what is kept and how to go on."""
+    from contvines.command.compose import Interrupted
 
-    def __init__(self, note: str):
-        self.note = note
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: Any, *_: object) -> None:
-        if kind is not None and issubclass(kind, KeyboardInterrupt):
-            typer.echo(f"\ncontvines: stopped; {self.note}.", err=True)
-            raise typer.Exit(130)
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise Interrupted(note) from None
 
 
 def _check_picture(path: Path) -> None:

@@ -71,7 +71,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any
     """All rows, each written to the file as soon as it is there."""
     import numpy as np
 
-    from contvines.command.compose import loose, machine
+    from contvines.command.compose import Interrupted, loose, machine
     from orbits.simulation.sweep import measure_names
     from orbits.simulation.sweep import sweep as simulate
 
@@ -103,18 +103,11 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any
                 **others,
             )
         except KeyboardInterrupt:
-            rest = (
-                f"[sweep] within = [{low!r}, {rows[-1].value!r}]"
-                if down
-                else f"within = [{rows[-1].value!r}, {high!r}]"
-            )
-            rest = rest if rows else "the same command"
-            typer.echo(
-                f"\ncontvines: stopped; {len(rows)} of {len(values)} values are kept in {target}; "
-                f"{rest} with another -o does the rest.",
-                err=True,
-            )
-            raise typer.Exit(130) from None
+            left = [low, high] if not rows else [low, rows[-1].value] if down else [rows[-1].value, high]
+            raise Interrupted(
+                f"{len(rows)} of {len(values)} values are kept in {target}; "
+                f"[sweep] within = {left} with another -o does the rest"
+            ) from None
     return rows
 
 

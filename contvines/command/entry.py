@@ -1,0 +1,25 @@
+"""The console script: the command line, with Ctrl-C in good order from the first moment."""
+
+import sys
+
+
+def main() -> None:
+    """Run `contvines`; an interrupt ends as a sentence with exit status 130."""
+    sys.unraisablehook = _unraisable
+    try:
+        from contvines.command.cli import main as run
+
+        run()
+    except KeyboardInterrupt:
+        print("contvines: stopped; the same command begins again, or goes on.", file=sys.stderr)
+        sys.exit(130)
+
+
+def _unraisable(problem: "sys.UnraisableHookArgs") -> None:
+    """A Ctrl-C that fell into a callback of the compiler is given again, not lost."""
+    if problem.exc_type is not None and issubclass(problem.exc_type, KeyboardInterrupt):
+        import _thread
+
+        _thread.interrupt_main()
+    else:
+        sys.__unraisablehook__(problem)
