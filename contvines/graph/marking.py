@@ -63,11 +63,11 @@ def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending)
                 point = _special(run, label, kind, engine, branch, event, index)
                 point.note = known.note
                 for other in run.graph.branches.values():
-                    ends = [
+                    says = [
                         e.replace(f"{SIDE} {label},", f"meets {branch.label} at {label},")
                         for e in other.ended
                     ]
-                    other.ended = (ends[0], ends[1])
+                    other.ended = (says[0], says[1])
                 run.graph.special[label] = point
                 fresh.append(point)
             elif known.branch != branch.label:
