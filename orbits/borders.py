@@ -53,25 +53,88 @@ def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
     if rest:
         return rest
     old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), int(point.margin_index))
+    seeds = []
     for candidate in (*_proposals(problem, u, p, int(point.margin_index)), *_simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
-        if orbit.margin < -1e-9 or not orbit.replay() < FOLLOWED:
+        if not _followed(orbit):
             continue
-        persistence = np.sign(q - p) != old_side
+        smallest, v, tangent = _simplest(other, orbit, v, tangent)
+        persistence = bool(np.sign(q - p) != old_side)
         kind = "persistence" if persistence else "nonsmooth fold"
-        return [
-            Seed(
-                other,
-                v,
-                q,
-                tangent,
-                "border",
-                f"{note}: {kind}, the word becomes {other.word.text}",
-                bool(persistence),
-            )
-        ]
-    return []
+        text = f"{note}: {kind}, the word becomes {smallest.word.text}"
+        seeds.append(Seed(smallest, v, q, tangent, "border", text, persistence))
+        if smallest is not other:
+            seeds.extend(_onwards(smallest, v, p))
+        break
+    return seeds + list(_escapes(problem, u, p, int(point.margin_index)))
+
+
+def _followed(orbit: Orbit) -> bool:
+    return orbit.margin >= -1e-9 and orbit.replay() < FOLLOWED
+
+
+def _simplest(
+    problem: OrbitProblem, orbit: Orbit, u: np.ndarray, tangent: np.ndarray | None
+) -> tuple[OrbitProblem, np.ndarray, np.ndarray | None]:
+    """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
+    root = orbit.root()
+    if root.periods == problem.periods and root.symmetric == problem.symmetric:
+        return problem, u, tangent
+    smallest = problem.sibling(root.word, root.periods, root.symmetric)
+    return smallest, smallest.reduce(root.nodes), None
+
+
+def _onwards(problem: OrbitProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
+    """Where the simpler orbits, on whose border a branch of less symmetry ends, go on themselves."""
+    at_border, residual = _solved_at(problem, u, p)
+    if not residual < 1e-10:
+        return
+    index = int(np.argmin(np.abs(_row(problem, at_border, p))))
+    for other, v, q, tangent, note in _proposals(problem, at_border, p, index):
+        if _followed(other.orbit(v, q)):
+            text = f"{note}: the branches meet at the border, the word becomes {other.word.text}"
+            yield Seed(other, v, q, tangent, "border", text, False)
+            return
+
+
+def _solved_at(problem: OrbitProblem, guess: np.ndarray, p: float) -> tuple[np.ndarray, float]:
+    """Solution at a parameter value, and its residual."""
+    border = np.zeros(problem.dimension + 1)
+    border[-1] = 1.0
+    step, tangent = np.empty_like(border), np.empty_like(border)
+    u = guess.copy()
+    residual, _, _ = assemble(problem.model).newton(
+        problem.data, u, p, problem.workspace(), border, step, tangent, 1e-12, 40
+    )
+    return u, float(residual)
+
+
+def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
+    """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
+    orbit = problem.orbit(u, p)
+    if problem.symmetric:
+        wider = problem.sibling(problem.word, problem.periods, False)
+        what = "the symmetry breaks at the border"
+    else:
+        nodes = orbit.nodes.copy()
+        nodes[:, 0] += 2.0 * np.pi * orbit.periods
+        orbit = Orbit(
+            orbit.model, orbit.word.double(), 2 * orbit.periods, np.concatenate([orbit.nodes, nodes]), orbit.params
+        )
+        wider = problem.sibling(orbit.word, orbit.periods, False)
+        what = "the period doubles at the border"
+    for change in edits_at(orbit, index):
+        found = _grow(wider, orbit, p, [change])
+        if found is None:
+            continue
+        other, v, q, tangent = found
+        grown = other.orbit(v, q)
+        if grown.symmetric or grown.root().periods != other.periods or not _followed(grown):
+            continue
+        note = f"{change.note}: {what}, the word becomes {other.word.text}"
+        yield Seed(other, v, q, tangent, "border", note, False)
+        return
 
 
 def from_rest(problem: Any, point: Any) -> list[Seed]:
@@ -136,11 +199,24 @@ def _row(problem: OrbitProblem, u: np.ndarray, p: float) -> np.ndarray:
 
 
 def _real_side(problem: OrbitProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
-    """Sign of the parameter's change from the border into the branch's real part."""
-    step = 1e-6 / max(float(np.abs(tangent).max()), 1e-12)
-    ahead = _row(problem, u + step * tangent[:-1], p + step * float(tangent[-1]))[index]
-    behind = _row(problem, u - step * tangent[:-1], p - step * float(tangent[-1]))[index]
-    return float(np.sign(tangent[-1])) if ahead > behind else -float(np.sign(tangent[-1]))
+    """Sign of the parameter's change from the border into the branch's real part.
+
+    Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
+    border, so its tangent does not tell.
+    """
+    kernels, work = assemble(problem.model), problem.workspace()
+    step, along = np.empty(u.size + 1), np.empty(u.size + 1)
+    length = 1e-4 / max(float(np.abs(tangent).max()), 1e-12)
+    sides = []
+    for sign in (1.0, -1.0):
+        there = u + sign * length * tangent[:-1]
+        q = p + sign * length * float(tangent[-1])
+        residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
+        if residual < 1e-10:
+            sides.append((float(_row(problem, there, float(q))[index]), float(q) - p))
+    if not sides:
+        return 0.0
+    return float(np.sign(max(sides)[1]))
 
 
 def _proposals(
