@@ -1,17 +1,20 @@
 """Binding the continuation loop to the kernels of a problem.
 
-One source, :mod:`contvines.continuation.march`: ``bind`` copies its functions with other globals. For compiled problems
+One source (march.py, corrector.py, predictor.py): ``bind`` copies the functions with other globals. For compiled problems
 the copies are compiled and cached on disk under a name that carries a digest of the kernels' sources, so that a cached
 loop is never older than the kernels in it.
 """
 
 from __future__ import annotations
 
+import hashlib
 import types
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import march as source
+from . import corrector, predictor
+from . import march as loop
 
 
 class Bound(NamedTuple):
@@ -51,16 +54,24 @@ def bind(kernels: Any) -> Bound:
 def _make(kernels: Any) -> Bound:
     functions = {"linearise": kernels.linearise, "bordered": kernels.bordered, "inspect": kernels.inspect}
     if not kernels.compiled:
-        correct = copy_with(source.correct, **functions)
-        march = copy_with(source.march, correct=correct, predict=source.predict, **functions)
-        return Bound(correct, march, copy_with(source.solve, **functions))
+        correct = copy_with(corrector.correct, **functions)
+        march = copy_with(loop.march, correct=correct, predict=predictor.predict, **functions)
+        return Bound(correct, march, copy_with(corrector.solve, **functions))
     from numba import njit
 
     from ..problem import kernels_digest
 
-    suffix = "_" + kernels_digest(kernels)
+    suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     compile_ = njit(cache=True, forceinline=True, **OPTIONS)
-    correct = compile_(copy_with(source.correct, suffix, **functions))
-    predict = compile_(copy_with(source.predict, suffix))
-    march = compile_(copy_with(source.march, suffix, correct=correct, predict=predict, **functions))
-    return Bound(correct, march, compile_(copy_with(source.solve, suffix, **functions)))
+    correct = compile_(copy_with(corrector.correct, suffix, **functions))
+    predict = compile_(copy_with(predictor.predict, suffix))
+    march = compile_(copy_with(loop.march, suffix, correct=correct, predict=predict, **functions))
+    return Bound(correct, march, compile_(copy_with(corrector.solve, suffix, **functions)))
+
+
+def _loop_digest() -> str:
+    """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls."""
+    digest = hashlib.blake2b(digest_size=4)
+    for module in (corrector, predictor, loop):
+        digest.update(Path(str(module.__file__)).read_bytes())
+    return digest.hexdigest()

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from . import corrector
 from . import march as source
 from .binding import bind
 from .settings import Settings
@@ -122,7 +123,7 @@ class Engine:
         """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
         row = np.zeros(self.row_size)
         residual, sign = self.bound.solve(
-            self.data, self.work, u, p, border, target, self.step, self.tangent, row, source.EVERYTHING
+            self.data, self.work, u, p, border, target, self.step, self.tangent, row, corrector.EVERYTHING
         )
         if not residual < 1e300 or not np.all(np.isfinite(self.tangent)):
             return None
@@ -160,7 +161,7 @@ class Engine:
         """Largest absolute residual."""
         u, p = np.ascontiguousarray(u), float(p)
         found, _ = self.bound.solve(
-            self.data, self.work, u, p, self.border, 0.0, self.step, self.tangent, NO_ROW, source.LINEARISE
+            self.data, self.work, u, p, self.border, 0.0, self.step, self.tangent, NO_ROW, corrector.LINEARISE
         )
         return float(found)
 
@@ -178,7 +179,7 @@ class Engine:
             self.step,
             self.tangent,
             NO_ROW,
-            source.ELIMINATE,
+            corrector.ELIMINATE,
         )
         return self.step.copy()
 

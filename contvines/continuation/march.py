@@ -10,6 +10,9 @@ depend neither on the number of repetitions of an orbit nor on the unit of the p
 
 import math
 
+from .corrector import correct, inspect
+from .predictor import predict
+
 # entries of the control vector
 (
     METRIC_U,
@@ -26,154 +29,8 @@ import math
 ) = range(11)
 CONTROL_SIZE = 11
 
-# what `solve` does
-LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
-
 # status codes (contvines.continuation.status)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
-
-ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative to 1 + abs(unknown)
-STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
-HUGE = 1e6  # larger corrections are a divergence
-
-
-def linearise(data, u, p, work):
-    """Placeholder for the problem's kernel."""
-    raise NotImplementedError
-
-
-def bordered(data, work, border, n, step, tangent):
-    """Placeholder for the problem's kernel."""
-    raise NotImplementedError
-
-
-def inspect(data, u, p, work, row):
-    """Placeholder for the problem's kernel."""
-    raise NotImplementedError
-
-
-def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent):
-    """Newton's method for F(u, p) = 0, border.(u, p) = target; u is updated in place.
-
-    Each sweep is one linearisation and one elimination, which gives the correction and the tangent.
-
-    Returns
-    -------
-    p : float
-    sweeps : int
-        Number of sweeps; -1: no convergence; -2: not evaluable.
-    residual : float
-        Largest absolute residual at the last linearisation, before the last correction.
-    sign : float
-        Sign of the bordered determinant there.
-    size : float
-        Last correction, relative to 1 + abs(unknown).
-    """
-    n = u.shape[0]
-    before = 0.0
-    size = 0.0
-    residual = 0.0
-    sign = 0.0
-    for sweep in range(max_sweeps):
-        residual = linearise(data, u, p, work)
-        if not residual < 1e300:
-            return p, -2, residual, sign, size
-        gap = target - border[n] * p
-        for i in range(n):
-            gap -= border[i] * u[i]
-        sign = bordered(data, work, border, gap, step, tangent)
-        size = abs(step[n]) / (1.0 + abs(p))
-        finite = step[n] - step[n]
-        for i in range(n):
-            finite += step[i] - step[i]
-            change = abs(step[i]) / (1.0 + abs(u[i]))
-            if change > size:
-                size = change
-        if not (finite == 0.0 and size < HUGE):
-            return p, -1, residual, sign, size
-        if sweep > 1 and size > 2.0 * before and size > STALLED:
-            return p, -1, residual, sign, size
-        for i in range(n):
-            u[i] += step[i]
-        p += step[n]
-        if size <= 1e-11:
-            return p, sweep + 1, residual, sign, size
-        if sweep > 0:
-            ratio = size / before
-            # quadratic convergence: the next correction would be about ratio^2 size
-            if size <= tolerance and ratio * ratio * size <= ROUNDOFF:
-                return p, sweep + 1, residual, sign, size
-            if size <= STALLED and ratio > 0.3 and residual < 1e-9:
-                return p, sweep + 1, residual, sign, size
-        before = size
-    return p, -1, residual, sign, size
-
-
-def solve(data, work, u, p, border, target, step, tangent, row, what):
-    """One call of the kernels: LINEARISE only, ELIMINATE only (with the linearisation at hand), or EVERYTHING.
-
-    Returns
-    -------
-    residual : float
-        0 if there was no linearisation.
-    sign : float
-        Of the bordered determinant; 0 if there was no elimination.
-    """
-    residual = 0.0
-    sign = 0.0
-    if what != ELIMINATE:
-        residual = linearise(data, u, p, work)
-        if what == LINEARISE or not residual < 1e300:
-            return residual, sign
-        target -= border[u.shape[0]] * p
-        for i in range(u.shape[0]):
-            target -= border[i] * u[i]
-    sign = bordered(data, work, border, target, step, tangent)
-    if what == EVERYTHING:
-        inspect(data, u, p, work, row)
-    return residual, sign
-
-
-def predict(points, values, tangents, i, h, metric_u, metric_p, u):
-    """Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p.
-
-    The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order).
-    """
-    n = u.shape[0]
-    if i < 2:
-        for j in range(n):
-            u[j] = points[i - 1, j] + h * tangents[i - 1, j]
-        return values[i - 1] + h * tangents[i - 1, n]
-    square = metric_p * (values[i - 1] - values[i - 2]) ** 2
-    turn = metric_p * (tangents[i - 1, n] - tangents[i - 2, n]) ** 2
-    chord = 0.0
-    bend = 0.0
-    for j in range(n):
-        change = points[i - 1, j] - points[i - 2, j]
-        chord += change * change
-        change = tangents[i - 1, j] - tangents[i - 2, j]
-        bend += change * change
-    square += metric_u * chord
-    turn += metric_u * bend
-    d = math.sqrt(square) * (1.0 + turn / 24.0)
-    if not (d > 0.0 and turn < 1.0 and h < 4.0 * d):
-        for j in range(n):
-            u[j] = points[i - 1, j] + h * tangents[i - 1, j]
-        return values[i - 1] + h * tangents[i - 1, n]
-    share = h / d
-    for j in range(n):
-        here = tangents[i - 1, j]
-        there = tangents[i - 2, j]
-        mean = (points[i - 1, j] - points[i - 2, j]) / d
-        u[j] = points[i - 1, j] + h * (
-            here + share * (2.0 * here + there - 3.0 * mean + share * (here + there - 2.0 * mean))
-        )
-    here = tangents[i - 1, n]
-    there = tangents[i - 2, n]
-    mean = (values[i - 1] - values[i - 2]) / d
-    return values[i - 1] + h * (
-        here + share * (2.0 * here + there - 3.0 * mean + share * (here + there - 2.0 * mean))
-    )
 
 
 def march(

@@ -3,56 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from . import march as source
+from .chunk import Chunk
+from .closing import Closing
 from .engine import Engine, Solved
 from .settings import Settings
 from .status import Status
-
-
-@dataclass
-class Chunk:
-    """Consecutive points of a branch; the first one is the last point of the chunk before."""
-
-    points: np.ndarray
-    values: np.ndarray
-    tangents: np.ndarray
-    rows: np.ndarray
-    signs: np.ndarray
-    corrections: np.ndarray
-    status: Status
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def cut(self, n: int) -> Chunk:
-        """The first n points."""
-        return Chunk(
-            self.points[:n],
-            self.values[:n],
-            self.tangents[:n],
-            self.rows[:n],
-            self.signs[:n],
-            self.corrections[:n],
-            self.status,
-        )
-
-    def solved(self, i: int) -> Solved:
-        """Point i."""
-        return Solved(
-            self.points[i],
-            float(self.values[i]),
-            self.tangents[i],
-            self.rows[i],
-            float(self.signs[i]),
-            0.0,
-            float(self.corrections[i]),
-        )
-
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 ARRAYS = ("points", "values", "tangents", "rows", "signs", "corrections")
@@ -93,7 +53,7 @@ def chunks(
         return
     history = [start]
     h = settings.first_step if first_step is None else first_step
-    closing = _Closing(engine, start)
+    closing = Closing(engine, start)
     total, number = 1, 0
     most = min(8 * settings.chunk, LARGEST // (2 * n + engine.row_size))
     while True:
@@ -179,57 +139,6 @@ def _pack(solved: list[Solved], status: Status) -> Chunk:
         np.array([s.correction for s in solved]),
         status,
     )
-
-
-class _Closing:
-    """Recognises that a branch comes back to its start, modulo the shift by a period."""
-
-    def __init__(self, engine: Engine, start: Solved) -> None:
-        self.engine, self.start = engine, start
-        self.z = engine.join(start.u, start.p)
-        self.border = engine.weights * start.tangent
-        shift = engine.problem.period_shift
-        self.shift = (
-            None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
-        )
-
-    def cut(self, chunk: Chunk) -> Chunk | None:
-        """The chunk up to the start, or None if it does not get there."""
-        engine = self.engine
-        along = chunk.points @ self.border[:-1] + chunk.values * self.border[-1] - self.border @ self.z
-        turns = np.zeros(len(chunk))
-        if self.shift is not None:
-            shift = self.shift[:-1]
-            turns = np.round((chunk.points @ shift - self.z[:-1] @ shift) / (shift @ shift))
-            along -= turns * (shift @ self.border[:-1])
-        along[np.abs(along) <= 1e-13 * (1.0 + abs(self.border) @ abs(self.z))] = 0.0  # the start itself
-        passed = np.flatnonzero((along[:-1] < 0.0) & (along[1:] >= 0.0))
-        for i in passed[np.array(chunk.tangents[passed + 1] @ self.border) > 0.0]:
-            pair = slice(i, i + 2)
-            gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - self.z
-            if self.shift is not None:
-                gaps = gaps - turns[pair, None] * self.shift
-            if np.sqrt((gaps**2) @ engine.weights).min() > 1.5 * engine.norm(gaps[1] - gaps[0]):
-                continue
-            share = along[i] / (along[i] - along[i + 1])
-            guess = self.z + gaps[0] + share * (gaps[1] - gaps[0])
-            found = engine.solve(guess[:-1], guess[-1], self.border, float(np.dot(self.border, self.z)))
-            if found is None:
-                continue
-            gap = np.abs(engine.join(found.u, found.p) - self.z) / (1.0 + np.abs(self.z))
-            if gap.max() <= 1e-7 and engine.inner(found.tangent, self.start.tangent) > 0.0:
-                points, rest = chunk.cut(int(i) + 1), self.start
-                end = rest.u if self.shift is None else rest.u + turns[i] * self.shift[:-1]
-                return Chunk(
-                    np.vstack([points.points, end]),
-                    np.append(points.values, rest.p),
-                    np.vstack([points.tangents, rest.tangent]),
-                    np.vstack([points.rows, rest.row]),
-                    np.append(points.signs, rest.sign),
-                    np.append(points.corrections, rest.correction),
-                    Status.CLOSED,
-                )
-        return None
 
 
 class Point(NamedTuple):

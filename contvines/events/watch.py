@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
-from ..continuation.trace import Chunk
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .locate import Root, locate, locate_singular
 from .segment import Segment

@@ -1,0 +1,50 @@
+"""Chunk: consecutive points of a branch, as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .engine import Solved
+from .status import Status
+
+
+@dataclass
+class Chunk:
+    """Consecutive points of a branch; the first one is the last point of the chunk before."""
+
+    points: np.ndarray
+    values: np.ndarray
+    tangents: np.ndarray
+    rows: np.ndarray
+    signs: np.ndarray
+    corrections: np.ndarray
+    status: Status
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def cut(self, n: int) -> Chunk:
+        """The first n points."""
+        return Chunk(
+            self.points[:n],
+            self.values[:n],
+            self.tangents[:n],
+            self.rows[:n],
+            self.signs[:n],
+            self.corrections[:n],
+            self.status,
+        )
+
+    def solved(self, i: int) -> Solved:
+        """Point i."""
+        return Solved(
+            self.points[i],
+            float(self.values[i]),
+            self.tangents[i],
+            self.rows[i],
+            float(self.signs[i]),
+            0.0,
+            float(self.corrections[i]),
+        )

@@ -1,0 +1,60 @@
+"""Closing: a branch that comes back to its start."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .chunk import Chunk
+from .engine import Engine, Solved
+from .status import Status
+
+
+class Closing:
+    """Recognises that a branch comes back to its start, modulo the shift by a period."""
+
+    def __init__(self, engine: Engine, start: Solved) -> None:
+        self.engine, self.start = engine, start
+        self.z = engine.join(start.u, start.p)
+        self.border = engine.weights * start.tangent
+        shift = engine.problem.period_shift
+        self.shift = (
+            None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
+        )
+
+    def cut(self, chunk: Chunk) -> Chunk | None:
+        """The chunk up to the start, or None if it does not get there."""
+        engine = self.engine
+        along = chunk.points @ self.border[:-1] + chunk.values * self.border[-1] - self.border @ self.z
+        turns = np.zeros(len(chunk))
+        if self.shift is not None:
+            shift = self.shift[:-1]
+            turns = np.round((chunk.points @ shift - self.z[:-1] @ shift) / (shift @ shift))
+            along -= turns * (shift @ self.border[:-1])
+        along[np.abs(along) <= 1e-13 * (1.0 + abs(self.border) @ abs(self.z))] = 0.0  # the start itself
+        passed = np.flatnonzero((along[:-1] < 0.0) & (along[1:] >= 0.0))
+        for i in passed[np.array(chunk.tangents[passed + 1] @ self.border) > 0.0]:
+            pair = slice(i, i + 2)
+            gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - self.z
+            if self.shift is not None:
+                gaps = gaps - turns[pair, None] * self.shift
+            if np.sqrt((gaps**2) @ engine.weights).min() > 1.5 * engine.norm(gaps[1] - gaps[0]):
+                continue
+            share = along[i] / (along[i] - along[i + 1])
+            guess = self.z + gaps[0] + share * (gaps[1] - gaps[0])
+            found = engine.solve(guess[:-1], guess[-1], self.border, float(np.dot(self.border, self.z)))
+            if found is None:
+                continue
+            gap = np.abs(engine.join(found.u, found.p) - self.z) / (1.0 + np.abs(self.z))
+            if gap.max() <= 1e-7 and engine.inner(found.tangent, self.start.tangent) > 0.0:
+                points, rest = chunk.cut(int(i) + 1), self.start
+                end = rest.u if self.shift is None else rest.u + turns[i] * self.shift[:-1]
+                return Chunk(
+                    np.vstack([points.points, end]),
+                    np.append(points.values, rest.p),
+                    np.vstack([points.tangents, rest.tangent]),
+                    np.vstack([points.rows, rest.row]),
+                    np.append(points.signs, rest.sign),
+                    np.append(points.corrections, rest.correction),
+                    Status.CLOSED,
+                )
+        return None
