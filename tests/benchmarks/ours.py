@@ -1,0 +1,67 @@
+"""Our own competitors: the compiled loop alone, and the public API with everything it looks for."""
+
+import numpy as np
+
+import contvines as cv
+from contvines.continuation import march as source
+from contvines.continuation.binding import bind
+from orbits import Absorber
+from orbits.problem import OrbitProblem
+from orbits.words import Word
+
+from . import case
+from .floor import Run
+
+MACHINE = Absorber(
+    **dict(zip(("restitution", "friction", "gravity", "mass_ratio", "frequency"), case.PARAMS[1:].tolist()))
+)
+
+
+def problem(l):
+    """The full word written l/2 times, not reduced by its symmetry."""
+    found = OrbitProblem(MACHINE, Word.parse("LR").repeat(l // 2), l // 2, "amplitude", case.PARAMS)
+    found.u0, found.p0, _ = case.start(l)
+    return found
+
+
+class Core:
+    """The compiled loop: arrays allocated once, one call for the whole branch."""
+
+    def __init__(self, l, count=2000, step=case.STEP):
+        self.problem = problem(l)
+        n, rows = self.problem.dimension, 2 * self.problem.n_multipliers + self.problem.n_margins
+        self.points, self.values = np.empty((count, n)), np.empty(count)
+        self.tangents, self.rows = np.empty((count, n + 1)), np.zeros((count, rows))
+        self.points[0], self.values[0], self.tangents[0] = case.start(l)
+        control = np.zeros(source.CONTROL_SIZE)
+        control[source.METRIC_U], control[source.METRIC_P] = case.metric(l)
+        control[source.ANGLE], control[source.MIN_STEP], control[source.MAX_STEP] = case.ANGLE, 1e-9, step
+        control[source.TOLERANCE], control[source.SWEEPS] = case.TOLERANCE, 8
+        control[source.LOWER], control[source.UPPER] = case.INTERVAL
+        control[source.ROW_MARGINS] = 2 * self.problem.n_multipliers
+        arrays = (self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count))
+        scratch = (np.zeros(n), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1))
+        self.arguments = (self.problem.data, self.problem.workspace(), *arrays, 1, step, control, *scratch)
+        self.march = bind(self.problem.kernels).march
+
+    def run(self):
+        """Follow the branch; returns the number of points."""
+        return self.march(*self.arguments)[0]
+
+    def result(self):
+        """The run's points; the last one may lie on the end of the interval."""
+        filled = self.run()
+        return Run(self.points[:filled], self.values[:filled], self.rows[:filled], 0, 0)
+
+
+class PublicAPI:
+    """`cv.diagram` without switching: both directions, events located, stability, margins, the finished graph."""
+
+    def __init__(self, l, step=case.STEP):
+        self.problem = problem(l)
+        self.settings = {"max_step": step, "first_step": 0.5 * step, "max_points": 1_000_000}
+
+    def run(self):
+        """Returns the number of points on the branch."""
+        self.graph = cv.diagram(self.problem, within=case.INTERVAL, depth=0, settings=self.settings)
+        return sum(len(branch) for branch in self.graph)

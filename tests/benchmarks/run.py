@@ -1,0 +1,242 @@
+"""`python -m tests.benchmarks`: ratio tables, growth with the length of the word, simulation, start-up.
+
+Medians of interleaved rounds, so that whatever else the machine does hits all competitors alike. Ratios mean
+something, times belong to the machine that is named. Nothing here passes or fails by time.
+"""
+
+import argparse
+import os
+import platform
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numba
+import numpy as np
+import scipy
+
+from . import case, scripts
+from .auto import Auto
+from .flights import MODELS, Flights
+from .floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
+from .ours import Core, PublicAPI
+
+ROOT = Path(__file__).parents[2]
+LENGTHS = (2, 8, 32, 128, 512)
+GROWTH = tuple(2**k for k in range(1, 13))
+
+
+def machine():
+    """A line that names the machine and the versions."""
+    model = platform.processor() or platform.machine()
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        names = [
+            line.split(":")[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line
+        ]
+        model = names[0] if names else model
+    compiler = (
+        shutil.which("cc") and subprocess.run(["cc", "--version"], capture_output=True, text=True).stdout
+    )
+    return (
+        f"{model}, {os.cpu_count()} cores; {platform.system()}; Python {platform.python_version()}, "
+        f"numpy {np.__version__}, scipy {scipy.__version__}, numba {numba.__version__}; "
+        f"C compiler: {(compiler or 'none').splitlines()[0]}"
+    )
+
+
+def interleaved(competitors, rounds, least=4e-3):
+    """Median seconds per point of each competitor, the rounds taking turns; each returns its number of points."""
+    times = {name: [] for name in competitors}
+    for run in competitors.values():
+        run()
+    for _ in range(rounds):
+        for name, run in competitors.items():
+            begin = time.perf_counter()
+            points = run()
+            while time.perf_counter() - begin < least:
+                points += run()
+            times[name].append((time.perf_counter() - begin) / points)
+    return {name: statistics.median(found) for name, found in times.items()}
+
+
+def competitors(l, points, api_step, slow):
+    """name -> callable that makes points and says how many."""
+    count = points + 1
+    found = {}
+    if library() is not None:
+        for name, eliminate, flags in (
+            ("C floor", FORWARD, PLAIN),
+            ("C floor, vectorised sines", FORWARD, VECTOR),
+            ("C floor, orthogonal", ORTHOGONAL, PLAIN),
+        ):
+            floor = Floor(l, eliminate, flags, count)
+            found[name] = lambda floor=floor: floor.run() - 1
+    core = Core(l, count)
+    found["contvines, compiled loop"] = lambda: core.run() - 1
+    api = PublicAPI(l, api_step)
+    found["contvines, public API"] = api.run
+    few = max(3, min(30, 4000 // l))
+    found["scipy.sparse script"] = lambda: len(scripts.sparse(l, few)[0]) - 1
+    if slow:
+        found["numpy script"] = lambda: len(scripts.dense(l, few)[0]) - 1
+        found["scipy fsolve"] = lambda: len(scripts.by_fsolve(l, few)[0]) - 1
+    return found
+
+
+def by_auto(auto, l, rounds):
+    """Median seconds per point: long runs less short ones, so that starting the program does not count."""
+    points = {2: 20000, 8: 5000, 32: 500, 128: 12}.get(l)
+    if points is None:
+        return None
+    step = 0.3 / points
+    found = []
+    for _ in range(rounds):
+        short, few = auto.run(l, 2, step)
+        long, many = auto.run(l, points, step)
+        found.append((long - short) / (len(many) - len(few)))
+    return statistics.median(found)
+
+
+def continuation(rounds, lengths=LENGTHS):
+    """Microseconds per point and ratios, as {name: {l: seconds}}."""
+    table = {}
+    auto = Auto()
+    for l in lengths:
+        points = max(40, min(600, 100_000 // l))
+        api_step = case.STEP / 10 if l < 16 else case.STEP / 4 if l < 64 else case.STEP
+        for name, seconds in interleaved(competitors(l, points, api_step, l <= 128), rounds).items():
+            table.setdefault(name, {})[l] = seconds
+        if auto.available:
+            seconds = by_auto(auto, l, 3)
+            if seconds is not None:
+                table.setdefault("AUTO-07p (no multipliers)", {})[l] = seconds
+    return table
+
+
+def growth(rounds, lengths=GROWTH):
+    """Seconds per point of the compiled loop against l, and the exponents: of all lengths, and from 32 on."""
+    seconds = []
+    for l in lengths:
+        core = Core(l, max(12, min(600, 60_000 // l)))
+        seconds.append(interleaved({"loop": lambda core=core: core.run() - 1}, rounds)["loop"])
+    logs = np.log(lengths), np.log(seconds)
+    late = np.array(lengths) >= 32
+    slopes = [
+        np.polyfit(logs[0][part], logs[1][part], 1)[0] for part in (late | True, late) if part.sum() > 1
+    ]
+    return dict(zip(lengths, seconds)), slopes
+
+
+def simulation(rounds, count=20000):
+    """Nanoseconds per impact: {model: {name: seconds}}."""
+    table = {}
+    for name in MODELS:
+        flights = Flights(name)
+        runs = {"contvines": lambda f=flights: len(f.ours(count)[0])}
+        if library("simulation.c") is not None:
+            runs["C floor"] = lambda f=flights: len(f.floor(count)[0])
+        for method in ("DOP853", "LSODA", "RK45"):
+            runs[f"solve_ivp {method}"] = lambda f=flights, m=method: len(f.solve_ivp(10, m)[0])
+        table[name] = interleaved(runs, rounds)
+    return table
+
+
+def start_up(repeats=3):
+    """Wall seconds of commands in processes of their own: {what: seconds}."""
+    found = {}
+    with tempfile.TemporaryDirectory() as directory:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": f"{directory}/cache", "PYTHONPATH": str(ROOT)}
+
+        def timed(*arguments):
+            command = [sys.executable, "-c", "from contvines.command.cli import main; main()", *arguments]
+            begin = time.perf_counter()
+            subprocess.run(command, cwd=directory, env=environment, check=True, capture_output=True)
+            return time.perf_counter() - begin
+
+        def job(i):
+            return timed(
+                "diagram", str(ROOT / "examples/friction.toml"), "-o", f"{i}.vines", "--plot", f"{i}.png"
+            )
+
+        timed("--help")
+        found["contvines --help"] = statistics.median(timed("--help") for _ in range(repeats))
+        found["main job, first run, compilation included"] = job("first")
+        found["main job, later runs, picture included"] = statistics.median(job(i) for i in range(repeats))
+    return found
+
+
+def show(title, names, columns, cell):
+    """Print a table."""
+    width = max(map(len, names)) + 2
+    print(f"\n{title}\n" + "".ljust(width) + "".join(f"{column:>12}" for column in columns))
+    for name in names:
+        print(name.ljust(width) + "".join(f"{cell(name, column):>12}" for column in columns))
+
+
+def number(value, scale=1.0):
+    """Three digits, or a dash."""
+    if value is None:
+        return "-"
+    value *= scale
+    return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
+
+
+def main(arguments=None):
+    """Print the tables."""
+    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=9, help="interleaved rounds; medians are shown")
+    parser.add_argument("--quick", action="store_true", help="three rounds, short words, no start-up")
+    options = parser.parse_args(arguments)
+    rounds = 3 if options.quick else options.rounds
+    lengths = (2, 32) if options.quick else LENGTHS
+    print(machine())
+
+    table = continuation(rounds, lengths)
+    columns = [f"l={l}" for l in lengths]
+    of = dict(zip(columns, lengths))
+    show("microseconds per point", table, columns, lambda name, c: number(table[name].get(of[c]), 1e6))
+    for base in ("C floor", "C floor, orthogonal"):
+        if base in table:
+
+            def ratio(name, column, base=base):
+                seconds = table[name].get(of[column])
+                return number(seconds and seconds / table[base][of[column]])
+
+            show(f"times the {base}", table, columns, ratio)
+
+    seconds, slopes = growth(rounds, (2, 8, 32, 128) if options.quick else GROWTH)
+    show(
+        "growth of the compiled loop, microseconds per point",
+        ["loop"],
+        seconds,
+        lambda _, l: number(seconds[l], 1e6),
+    )
+    print(
+        "exponent: "
+        + ", ".join(f"{slope:.2f} {what}" for slope, what in zip(slopes, ("overall", "from l=32")))
+    )
+
+    flights = simulation(rounds, 2000 if options.quick else 20000)
+    names = list(next(iter(flights.values())))
+    show(
+        "nanoseconds per impact", names, list(flights), lambda name, model: number(flights[model][name], 1e9)
+    )
+    if "C floor" in names:
+        show(
+            "times the C floor",
+            names,
+            list(flights),
+            lambda name, model: number(flights[model][name] / flights[model]["C floor"]),
+        )
+    if not options.quick:
+        times = start_up()
+        show("seconds", list(times), ["wall"], lambda name, _: number(times[name]))
+
+
+if __name__ == "__main__":
+    main()

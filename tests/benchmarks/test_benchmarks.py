@@ -1,0 +1,85 @@
+"""Every part of the benchmark runs, and all competitors find the same branch. Nothing here is timed."""
+
+import numpy as np
+import pytest
+
+from tests.benchmarks import case, run, scripts
+from tests.benchmarks.auto import Auto
+from tests.benchmarks.flights import MODELS, Flights
+from tests.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
+from tests.benchmarks.ours import Core, PublicAPI
+
+needs_compiler = pytest.mark.skipif(library() is None, reason="no C compiler")
+
+
+def exact_amplitude(u):
+    """Amplitude of the symmetric orbit from the speed after its first impact (closed form)."""
+    r, mu, g, eps, omega = case.PARAMS[1:]
+    beta = (u[..., 1] - 0.5 * np.pi * (1.0 + eps) * mu * g / omega) / omega
+    C = [case.symmetric_orbit(b)[2] for b in np.atleast_1d(beta)]
+    return np.array(C)
+
+
+@needs_compiler
+@pytest.mark.parametrize("l", [2, 8, 64])
+@pytest.mark.parametrize(("eliminate", "flags"), [(FORWARD, PLAIN), (ORTHOGONAL, PLAIN), (FORWARD, VECTOR)])
+def test_floor_and_loop_take_the_same_steps(l, eliminate, flags):
+    floor, core = Floor(l, eliminate, flags, 200).result(), Core(l, 200).result()
+    assert len(floor.values) == len(core.values) == 200
+    np.testing.assert_allclose(floor.values, core.values, atol=1e-9)
+    np.testing.assert_allclose(floor.points, core.points, atol=1e-8)
+    np.testing.assert_allclose(floor.values, exact_amplitude(floor.points), atol=1e-11)
+    margins = np.isfinite(floor.rows[1:]) & np.isfinite(core.rows[1:])
+    assert margins[:, :4].all() and np.array_equal(np.isfinite(floor.rows[1:]), np.isfinite(core.rows[1:]))
+    np.testing.assert_allclose(floor.rows[1:][margins], core.rows[1:][margins], atol=1e-6)
+    assert floor.sweeps <= 3 * floor.tried
+
+
+def test_scripts_find_the_branch():
+    for script in (scripts.dense, scripts.sparse):
+        amplitudes, spectra = script(8, 20)
+        expected = np.array([case.start(8)[1], *Core(8, 40).result().values[1:]])
+        assert np.all(np.diff(amplitudes) > 0.0) and amplitudes[-1] < expected[-1] + 0.01
+        assert np.all(np.abs(spectra) < 1.0)
+    amplitudes, _ = scripts.by_fsolve(2, 5)
+    assert len(amplitudes) == 6
+
+
+def test_public_api_follows_both_directions():
+    api = PublicAPI(2)
+    points = api.run()
+    (branch,) = api.graph
+    assert points == len(branch.values)
+    np.testing.assert_allclose(branch.values, exact_amplitude(branch.points), atol=1e-10)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_simulations_agree(name):
+    flights = Flights(name)
+    phases, speeds = flights.ours(30)
+    for found in (flights.floor(30), flights.solve_ivp(6)):
+        if found is not None:
+            n = len(found[0])
+            assert n in (6, 30)
+            np.testing.assert_allclose(found[0], phases[:n], atol=1e-6)
+            np.testing.assert_allclose(found[1], speeds[:n], atol=1e-6)
+
+
+def test_auto_where_it_is_installed():
+    auto = Auto()
+    if not auto.available:
+        pytest.skip("AUTO-07p is not installed")
+    _, rows = auto.run(2, 10)
+    assert len(rows) == 10 and float(rows[0][4]) == pytest.approx(case.start(2)[1], rel=1e-9)
+
+
+def test_tables_print(capsys):
+    run.show(
+        "title",
+        ["a", "b"],
+        [1, 2],
+        lambda name, column: run.number(None if name == "a" else 1.23456 * column),
+    )
+    assert "1.23" in capsys.readouterr().out and run.machine()
+    seconds, slopes = run.growth(1, (2, 4))
+    assert set(seconds) == {2, 4} and len(slopes) == 1
