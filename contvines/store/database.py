@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .header import APPLICATION_ID, VERSION, StoreError, check_header, pending
-from .packing import digest_of, packed, plain, unpacked
+from .packing import digest_of, packed, split, unpacked
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -34,6 +34,7 @@ class Store:
     def __init__(self, connection: sqlite3.Connection, path: Path):
         self._db = connection
         self.path = path
+        self._kept: dict[tuple[str, str], tuple[str, dict[str, np.ndarray]]] = {}
 
     @classmethod
     def create(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> "Store":
@@ -171,13 +172,25 @@ class Store:
         from contvines.graph.persistence import graph_entries
 
         with self.transaction():
-            self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
-            for kind, key, content in graph_entries(graph):
-                self.put(kind, key, content)
+            if not self._kept:
+                self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
+            present = {self._renew(*entry) for entry in graph_entries(graph)}
+            for place in self._kept.keys() - present:
+                self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
+                del self._kept[place]
             finished = bool(graph.finished)
             self._db.execute("UPDATE meta SET value = ? WHERE key = 'finished'", (json.dumps(finished),))
             if finished:  # the journal has done its work
                 self._db.execute("DELETE FROM entry WHERE kind = 'journal'")
+
+    def _renew(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:
+        """Write an entry of the graph unless it is what was written last (arrays are not changed in place)."""
+        scalars, arrays = split(content)
+        known = self._kept.get((kind, key))
+        if known is None or known[0] != scalars or not _same_arrays(known[1], arrays):
+            self.put(kind, key, content)
+            self._kept[kind, key] = (scalars, arrays)
+        return kind, key
 
     def graph(self, *, problems: bool = True) -> Any:
         """The graph as of the last checkpoint; without `problems`, numbers only (quicker)."""
@@ -202,17 +215,15 @@ class Store:
 
     def put(self, kind: str, key: str, content: Mapping[str, Any]) -> None:
         """Write one entry, replacing one of the same kind and key; call inside `transaction`."""
-        arrays = {k: v for k, v in content.items() if isinstance(v, np.ndarray)}
-        scalars = json.dumps({k: plain(v) for k, v in content.items() if k not in arrays})
+        scalars, arrays = split(content)
         rows = [(name, *packed(array)) for name, array in sorted(arrays.items())]
-        self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", (kind, key))
-        cursor = self._db.execute(
-            "INSERT INTO entry (kind, key, scalars, digest) VALUES (?, ?, ?, ?)",
+        (identity,) = self._db.execute(
+            "INSERT INTO entry (kind, key, scalars, digest) VALUES (?1, ?2, ?3, ?4) "
+            "ON CONFLICT (kind, key) DO UPDATE SET scalars = ?3, digest = ?4 RETURNING id",
             (kind, key, scalars, digest_of(kind, key, scalars, rows)),
-        )
-        self._db.executemany(
-            "INSERT INTO array VALUES (?, ?, ?, ?, ?)", [(cursor.lastrowid, *row) for row in rows]
-        )
+        ).fetchone()
+        self._db.execute("DELETE FROM array WHERE entry = ?", (identity,))
+        self._db.executemany("INSERT INTO array VALUES (?, ?, ?, ?, ?)", [(identity, *row) for row in rows])
 
     def entries(
         self, kind: str | None = None, key: str | None = None
@@ -275,3 +286,7 @@ class Store:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _same_arrays(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
+    return one.keys() == other.keys() and all(one[name] is other[name] for name in one)

@@ -12,15 +12,19 @@ from typing import Any
 import numpy as np
 
 
-def plain(value: Any) -> Any:
-    """A value that JSON can hold: numpy scalars to Python's, tuples to lists."""
+def split(content: Mapping[str, Any]) -> tuple[str, dict[str, np.ndarray]]:
+    """JSON text of everything but the arrays, and the arrays."""
+    arrays = {k: v for k, v in content.items() if isinstance(v, np.ndarray)}
+    return json.dumps({k: v for k, v in content.items() if k not in arrays}, default=_plain), arrays
+
+
+def _plain(value: Any) -> Any:
+    """A value that JSON can hold, for numpy's scalars and foreign mappings."""
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, Mapping):
-        return {str(k): plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
-    return value
+        return dict(value)
+    raise TypeError(f"{type(value).__name__} cannot be kept in a file")
 
 
 def packed(array: np.ndarray) -> tuple[str, str, bytes]:

@@ -100,6 +100,26 @@ def test_checkpoint_keeps_the_journal_until_the_graph_is_finished(tmp_path):
         assert store.recall("a") is None
 
 
+def test_later_checkpoints_replace_what_has_changed_and_drop_what_is_gone(tmp_path):
+    graph = fakes.pitchfork_graph(False)
+    with Store.create(tmp_path / "c.vines", "f") as store:
+        store.checkpoint(graph)
+        graph.branches["B1"].ended = ("closed", "closed")  # an earlier branch learns something
+        graph.special["VG1"].u = np.array([0.25])
+        del graph.branches["B3"]
+        graph.switches.pop()
+        graph.branches["B4"] = fakes.pitchfork_graph().branches["B3"]
+        graph.branches["B4"].label = "B4"
+        store.checkpoint(graph)
+    assert same_graph(load(tmp_path / "c.vines"), graph)
+    with Store.open(
+        tmp_path / "c.vines", write=True
+    ) as store:  # a resumed run begins with its first branch again
+        first = fakes.pitchfork_graph(False)
+        store.checkpoint(first)
+        assert same_graph(store.graph(), first)
+
+
 def test_attach_creates_reopens_and_refuses_another_study(tmp_path):
     path = tmp_path / "s.vines"
     with Store.attach(path, "one", {"a": 1}) as store:
