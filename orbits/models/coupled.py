@@ -15,6 +15,7 @@ from orbits.models.base import NOT_NEGATIVE, POSITIVE, RESTITUTION, Model, Param
 
 if TYPE_CHECKING:
     from orbits.models.coupled_orbits import StuckResponse
+    from orbits.multiple_scales import Equilibrium
     from orbits.orbit import Orbit
     from orbits.words import Word
 
@@ -195,6 +196,23 @@ class Coupled(Model):
                 "resonance or increase forcing"
             )
         return self._closed("tt", nodes, params)
+
+    def orbit_near(self, equilibrium: Equilibrium, **parameters: float) -> Orbit:
+        """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
+
+        Parameters
+        ----------
+        equilibrium : orbits.multiple_scales.Equilibrium
+            Its detuning sets the frequency, 1 + mass_ratio * detuning.
+        **parameters
+            Parameters that replace the machine's own.
+        """
+        eps = float(parameters.get("mass_ratio", self.mass_ratio))
+        values = {"frequency": 1.0 + eps * equilibrium.detuning} | parameters
+        params = self.vector(values)
+        word = "LR" if equilibrium.manifold == "impacting" else "tt"
+        guess = self._closed(word, coupled_orbits.nodes_from_equilibrium(params, equilibrium), params)
+        return self.orbit(word, guess=guess.nodes, **values)
 
     def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Orbit:
         from orbits.orbit import Orbit

@@ -52,6 +52,8 @@ def harmonic(force, excitation, drag, stiffness):
         In-phase and quadrature amplitudes; infinite at an undamped resonance.
     """
     size = stiffness * stiffness + drag * drag
+    if force == 0.0:
+        return 0.0, 0.0
     if size == 0.0:
         return math.inf, math.inf
     scale = force / size

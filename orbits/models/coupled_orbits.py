@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +44,8 @@ def response(params: np.ndarray, stuck: bool = False) -> tuple[float, float]:
     drag = eps * lam * omega
     stiffness = 1.0 - (1.0 + eps if stuck else 1.0) * omega**2
     impedance = complex(stiffness, drag)
+    if G == 0.0:
+        return 0.0, 0.0
     if impedance == 0.0:
         return math.inf, math.inf
     amplitude = eps * G * complex(1.0, chi * drag) / impedance
@@ -105,6 +108,29 @@ def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
         first = np.array([psi, (1.0 + eps) * beta, q1 + eps * q2, q1_rate + eps * beta])
         found.append(_mirrored(first))
     return found[::-1] if abs(found[0][0, 1]) < abs(found[-1][0, 1]) else found
+
+
+def nodes_from_equilibrium(params: np.ndarray, equilibrium: Any) -> np.ndarray:
+    """First approximation of the nodes of `LR` or `tt`, shape (2, 4), from a steady state of the slow flow.
+
+    With v = C sin(Psi + gamma) and B, h of the slow flow: at the left wall v = 1 - pi B/2, v' = Omega (R B + h) and
+    B+ = B + h; at a turn towards the left wall v = w = -delta, v' = -Omega h. Exact to order eps.
+
+    Parameters
+    ----------
+    params : float array (8,)
+    equilibrium : orbits.multiple_scales.Equilibrium
+        With the same parameters and detuning (Omega - 1)/eps.
+    """
+    omega, eps, r = float(params[1]), float(params[3]), float(params[4])
+    h = 0.5 * math.pi * (1.0 + eps) * float(params[5]) * float(params[6])
+    if equilibrium.manifold == "impacting":
+        B = equilibrium.velocity
+        v, speed, second = 1.0 - 0.5 * math.pi * B, (1.0 - r) / (1.0 + r) * B + h, B + h
+    else:
+        v, speed, second = -equilibrium.turning_point, -h, -equilibrium.turning_point
+    psi = (math.atan2(v, speed) - equilibrium.phase) % (2.0 * math.pi)
+    return _mirrored(np.array([psi, second, v, omega * speed]))
 
 
 def _phase(h0: float, h1: float, half: _Half) -> float:

@@ -73,6 +73,16 @@ def _push(state, params):
 
 
 @njit(cache=True, error_model="numpy")
+def _push_rate(state, params):
+    """Third derivative of v of a state without friction and with w' = 0."""
+    G, omega, lam, eps, chi = params[0], params[1], params[2], params[3], params[7]
+    q1_rate = state[7] / (1.0 + eps)
+    drag = eps * lam
+    force = eps * G * omega * (math.cos(state[0]) - chi * drag * omega * math.sin(state[0]))
+    return force - q1_rate - drag * _push(state, params)
+
+
+@njit(cache=True, error_model="numpy")
 def launch(state, params):
     """Reduce the phase and set the mode of a start (Psi, w, w', mode, turns, low, v, v')."""
     psi, turns = _wrap(state[0])
@@ -81,12 +91,14 @@ def launch(state, params):
     a = (1.0 + params[3]) * params[5] * params[6]
     w = state[1]
     push = _push(state, params)
+    if push == 0.0 and a == 0.0:  # what comes next is up to the third derivative
+        push = _push_rate(state, params)
     if state[2] != 0.0:
         state[3] = 1.0 if state[2] > 0.0 else -1.0
-    elif abs(push) <= a or (abs(w) == 1.0 and push * w > 0.0):
+    elif (abs(push) <= a and a > 0.0) or (abs(w) == 1.0 and push * w >= 0.0):
         state[3] = 0.0
     else:
-        state[3] = 1.0 if push > 0.0 else -1.0
+        state[3] = 1.0 if push >= 0.0 else -1.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -114,6 +126,7 @@ def advance(state, params, until, codes, modes, rows):
     room = codes.shape[0]
     limit = min(until, turns + _FOREVER)
     fresh = False  # the leg starts with a slip: w' = w'' = 0
+    idle = 0  # legs in a row without progress
     count = 0
     status = _EVENTS_FULL
     while True:
@@ -131,20 +144,22 @@ def advance(state, params, until, codes, modes, rows):
             z2 = -2.0 * alpha * z1 - kappa * z0
             H2, H3 = -square * h0, -square * h1
             Z2, Z3 = z2, -2.0 * alpha * z2 - kappa * z1
-            scale = whole * (square * math.hypot(h0, h1 / omega) + kappa * math.hypot(z0, (z1 + alpha * z0) / beta))
-            tiny = 4e-16 * scale
+            driven = whole * square * math.hypot(h0, h1 / omega)  # bounds of |v''|
+            free = whole * kappa * math.hypot(z0, (z1 + alpha * z0) / beta)
+            tiny = 4e-16 * (driven + free)
             tau = 0.0
             way = 0.0
             speed = 0.0
             slip = 0.0
-            if scale < a or scale == 0.0:
-                tau = left
-                status = _REST
             leap = True  # a zero right at the start is judged by its slope, and left behind
             renew = -1.0
             M = 0.0
             while tau < left:
                 if tau >= renew:
+                    if driven + free * math.exp(-alpha * tau) < a or driven + free == 0.0:
+                        tau = left
+                        status = _REST
+                        break
                     u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
                     u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
                     M = whole * (math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON)
@@ -266,6 +281,10 @@ def advance(state, params, until, codes, modes, rows):
                 u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
                 M4 = math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON / math.sqrt(kappa)
                 step = max(y_rate / M if M > 0.0 else 0.0, 1.5 * jerk / M4 if M4 > 0.0 else 0.0)
+                if M == 0.0 and M4 == 0.0:  # neither friction nor forcing: nothing moves
+                    tau = left
+                    status = _REST
+                    break
                 if not step > 1e-13:
                     step = 1e-13  # no acceleration in this direction to speak of
             else:
@@ -315,6 +334,10 @@ def advance(state, params, until, codes, modes, rows):
             elif tau >= left:
                 break
         fresh = False
+        idle = idle + 1 if tau < 1e-11 else 0
+        if idle > 10000:
+            status = _FAILED
+            break
         # ---- what ended the leg ----------------------------------------------------------------------------
         v += way + eps * (q2_rate + 0.5 * sp * tau) * tau
         v_rate += speed + eps * sp * tau
@@ -338,7 +361,8 @@ def advance(state, params, until, codes, modes, rows):
                 low = 0.0
             if kind == 0:
                 rate = s * y if y > 0.0 else 0.0
-                status = _TIME_REACHED
+                if status != _REST:
+                    status = _TIME_REACHED
                 break
             rate = 0.0
             if a == 0.0:  # nothing happens where w' passes zero

@@ -1,0 +1,186 @@
+"""Orbits of the coupled machine: closed forms, limits, margins, measures."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from orbits import Coupled
+from orbits.closed_forms import symmetric_square
+from orbits.models.base import ParameterError
+from orbits.models.coupled_orbits import response, stuck_frequencies, stuck_response, symmetric_nodes
+from orbits.multiple_scales import SlowFlow, equilibria
+
+MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
+
+
+@pytest.mark.parametrize("frequency", [0.975, 0.985, 1.003, 1.02])
+@pytest.mark.parametrize("fast", [True, False])
+def test_closed_symmetric_orbits_solve_the_maps(frequency, fast):
+    """The closed form was derived from the half-wave symmetry, the maps from the flow: they must meet."""
+    orbit = MACHINE.symmetric_orbit(fast=fast, frequency=frequency)
+    assert orbit.residual < 1e-14
+    assert orbit.symmetric
+    if orbit.real:
+        assert orbit.replay() < 1e-12
+
+
+@pytest.mark.parametrize("frequency", [0.97, 0.985, 1.02])
+def test_closed_sliding_orbits_solve_the_maps(frequency):
+    orbit = MACHINE.sliding_orbit(frequency=frequency)
+    assert orbit.residual < 1e-14
+    assert orbit.word.text == "tt"
+    assert orbit.real and orbit.stable
+    assert len(orbit.multipliers) == 3  # the fourth is the shift of the absorber, exactly +1
+
+
+def test_where_there_is_no_orbit_a_sentence_says_so():
+    with pytest.raises(ParameterError, match="no symmetric orbit with two impacts"):
+        MACHINE.symmetric_orbit(frequency=0.9)
+    with pytest.raises(ParameterError, match="too weakly for pure sliding"):
+        MACHINE.sliding_orbit(frequency=0.5)
+
+
+def test_small_mass_ratio_recovers_the_slow_flow_at_first_order():
+    """sigma and G fixed, eps -> 0: C^2 tends to the equilibrium of the multiple-scales flow, with an error of order eps."""
+    sigma, forcing, damping = -2.58, 2.47, 0.9
+    flow = SlowFlow(
+        forcing=forcing, damping=damping, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=1e-12
+    )
+    limits = sorted(float(e.amplitude) ** 2 for e in equilibria(flow, sigma) if e.manifold == "impacting")
+    sizes = 0.006 / 2.0 ** np.arange(6)
+    errors = []
+    for eps in sizes:
+        machine = MACHINE.changed(mass_ratio=float(eps), frequency=1.0 + sigma * float(eps), damping=damping)
+        orbits = [machine.symmetric_orbit(fast=fast) for fast in (True, False)]
+        found = sorted(orbit.measure("C2") for orbit in orbits)
+        errors.append(np.abs(np.array(found) - limits))
+    orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert np.all(np.abs(orders[-1] - 1.0) < 0.02)
+    assert np.all(errors[-1] < 1e-3)
+
+
+def test_small_mass_ratio_recovers_the_reduced_machine():
+    """C^2 of v against the exact symmetric orbit of a cavity shaken harmonically, with the same velocity: order eps."""
+    R = (1 - 0.76) / (1 + 0.76)
+    gaps = []
+    for eps in (4e-3, 2e-3, 1e-3, 5e-4):
+        machine = MACHINE.changed(mass_ratio=eps, frequency=1.0 - 2.58 * eps)
+        orbit = machine.symmetric_orbit()
+        a, Omega = machine.friction_acceleration(orbit.params), orbit.params[1]
+        # B+ = Omega (beta + H), the velocity after an impact
+        beta = orbit.measure("B_post") / Omega - 0.5 * np.pi * a / Omega**2
+        gaps.append(abs(orbit.measure("C2") - float(symmetric_square(beta, R, 0.5 * np.pi * a / Omega**2))))
+    orders = np.log2(np.array(gaps[:-1]) / np.array(gaps[1:]))
+    assert np.all(np.abs(orders - 1.0) < 0.05)
+
+
+def test_stuck_response_is_the_textbook_oscillator():
+    """Transmissibility of a damped oscillator on a moving base: zeta = c/(2 sqrt(k (M + m)))."""
+    machine = MACHINE.changed(forcing=0.5, frequency=0.93, damping=3.0)
+    mass = 1.006
+    ratio = 0.93 * np.sqrt(mass)
+    zeta = 0.5 * 3.0 * 0.006 / np.sqrt(mass)
+    expected = 0.5 * 0.006 * np.sqrt(
+        (1 + (2 * zeta * ratio) ** 2) / ((1 - ratio**2) ** 2 + (2 * zeta * ratio) ** 2)
+    )
+    found = machine.stuck_response()
+    assert found.amplitude == pytest.approx(expected, rel=1e-13)
+    assert found.reserve == pytest.approx(mass * (0.5 * 0.211 - 0.93**2 * expected), rel=1e-12)
+    X, _ = response(machine.changed(excitation="truncated", damping=0.0).vector())
+    np.testing.assert_allclose(X, 0.5 * 0.006 / (1 - 0.93**2), rtol=1e-13)
+
+
+@pytest.mark.parametrize("excitation", ["exact", "truncated"])
+def test_stuck_response_slips_at_its_frequencies(excitation):
+    params = MACHINE.changed(excitation=excitation).vector()
+    for frequency in stuck_frequencies(params):
+        params[1] = frequency
+        found = stuck_response(params)
+        assert abs(found.reserve) < 1e-9 * max(1.0, found.shaking)
+    # the lower one lies below the resonance of the joined masses, the next above it
+    low, high = stuck_frequencies(params)[:2]
+    assert low < 1 / np.sqrt(1.006) < high
+
+
+@pytest.mark.parametrize("word", ["LR", "tt", "susu", "LRtt", "LRtR"])
+def test_measures_against_quadrature_and_the_balance_of_energy(word):
+    frequency = {"LR": 0.985, "tt": 0.975, "susu": 0.95, "LRtt": 0.99, "LRtR": 1.0}[word]
+    machine = MACHINE.changed(frequency=frequency, damping=1.0)
+    orbit = machine.orbit(word)
+    found = orbit.measures()
+    lost = found["damping_loss"] + found["impact_loss"] + found["friction_loss"]
+    assert found["input_work"] == pytest.approx(lost, rel=1e-10)
+    points = orbit.sample(20000)
+    assert found["max_abs_q1"] == pytest.approx(np.abs(points["cavity"]).max(), abs=1e-6)
+    sine = np.trapezoid(points["v"] * np.sin(points["phase"]), points["phase"]) / np.pi
+    cosine = np.trapezoid(points["v"] * np.cos(points["phase"]), points["phase"]) / np.pi
+    assert found["C2"] == pytest.approx(sine**2 + cosine**2, abs=1e-6)
+    assert found["amplitude"] ** 2 == pytest.approx(found["C2"], rel=1e-13)
+    assert np.tan(found["v_phase"]) == pytest.approx(cosine / sine, abs=1e-5)
+
+
+def test_a_flight_s_margin_is_its_slowest_moment():
+    """Against fine sampling of the flight, on orbits whose flights slow down inside."""
+    for frequency in (0.987, 0.988, 1.0035, 1.004):
+        orbit = MACHINE.symmetric_orbit(frequency=frequency)
+        flights = [m.value for m in orbit.margins if m.kind == "flight"]
+        points = orbit.sample(40000)
+        for segment, mode in enumerate(orbit.word.modes):
+            speed = mode * points["w_rate"][points["segment"] == segment]
+            inner = speed[1:-1][(speed[1:-1] < speed[:-2]) & (speed[1:-1] < speed[2:])]
+            if inner.size:
+                assert min(abs(inner.min() - value) for value in flights) < 1e-6
+
+
+def test_excitation_through_the_damper_is_a_small_term():
+    """Its effect on the response is of order eps lambda."""
+    exact = MACHINE.symmetric_orbit(frequency=0.985)
+    truncated = MACHINE.changed(excitation="truncated").symmetric_orbit(frequency=0.985)
+    gap = abs(exact.measure("C2") - truncated.measure("C2"))
+    assert 0.0 < gap < 0.05
+    assert len(symmetric_nodes(MACHINE.changed(excitation=0.5).vector())) == 2
+
+
+def test_the_mirror_image_is_the_same_orbit():
+    orbit = MACHINE.orbit("LRtR", frequency=1.0)
+    image = orbit.mirror()
+    assert image.residual < 1e-11
+    np.testing.assert_allclose(np.sort(np.abs(image.multipliers)), np.sort(np.abs(orbit.multipliers)), rtol=1e-8)
+    assert image.measure("max_abs_q1") == pytest.approx(orbit.measure("max_abs_q1"), rel=1e-12)
+
+
+def test_friction_that_vanishes_leaves_the_frictionless_orbit():
+    """friction -> 0 with words that have no turns: the same nodes from both descriptions."""
+    nodes = [MACHINE.changed(friction=mu).symmetric_orbit(frequency=0.985).nodes for mu in (0.0, 1e-9)]
+    np.testing.assert_allclose(nodes[0], nodes[1], atol=1e-7)
+    assert MACHINE.changed(friction=0.0).symmetric_orbit(frequency=0.985).word.frictionless
+
+
+def test_work_of_the_base_is_that_of_the_force():
+    """Input of the sliding orbit: the integral of the force on q1 times q1', by adaptive quadrature."""
+    orbit = MACHINE.sliding_orbit(frequency=0.975)
+    points = orbit.sample(4000)
+    rate = (points["v_rate"] + 0.006 * points["w_rate"]) / 1.006
+    G, Omega, lam, eps = orbit.params[:4]
+
+    def power(phase):
+        force = G * (np.sin(phase) + eps * lam * Omega * np.cos(phase))
+        return force * np.interp(phase, points["phase"], rate) / Omega
+
+    start = points["phase"][0]
+    whole = quad(power, start, start + 2 * np.pi, limit=400)[0]
+    assert orbit.measure("input_work") == pytest.approx(whole, rel=1e-5)
+
+
+def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():
+    flow = SlowFlow(forcing=2.47, damping=1.0, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    for state in equilibria(flow, -2.58):
+        orbit = MACHINE.orbit_near(state)
+        assert orbit.params[1] == pytest.approx(1.0 - 2.58 * 0.006)
+        assert orbit.residual < 1e-10
+        assert orbit.word.text == ("LR" if state.manifold == "impacting" else "tt")
+        assert orbit.measure("amplitude") == pytest.approx(state.amplitude, abs=0.03)
+        if state.manifold == "impacting":
+            assert orbit.measure("B") == pytest.approx(state.velocity, abs=0.03)
+        # v = C sin(Psi + gamma)
+        assert np.exp(1j * orbit.measure("v_phase")) == pytest.approx(np.exp(1j * state.phase), abs=0.1)
