@@ -121,7 +121,7 @@ def follow(
                 np.insert(chunk.values, where, [e.point.p for e in events]),
                 np.insert(chunk.tangents, where, np.array([e.point.tangent for e in events]), axis=0),
                 np.insert(chunk.rows, where, np.array([e.point.row for e in events]), axis=0),
-                [(int(w) + i, e) for i, (w, e) in enumerate(zip(where, events))],
+                [(int(w) + i, e) for i, (w, e) in enumerate(zip(where, events)) if e.kind != "plain"],
                 status,
             )
         parts.append(part)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
+from .dips import below_zero, lengths_of, suspects
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .locate import Root, locate, locate_singular
 from .segment import Segment
@@ -26,8 +27,8 @@ class Located(NamedTuple):
     position : float
         Index of the point before it plus the fraction of the segment.
     kind : str
-        fold, branch-point, period-doubling, symmetry-breaking, neimark-sacker, hopf, a border, user, or "meets" where a
-        branch comes back to the fixed space of a symmetry.
+        fold, branch-point, period-doubling, symmetry-breaking, neimark-sacker, hopf, a border, user; "meets" where a
+        branch comes back to the fixed space of a symmetry; "plain" for a point between two special points.
     index : int
         Which multiplier, margin, symmetry or user function.
     point : Solved
@@ -101,12 +102,19 @@ class Watch:
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             interesting |= values[:-1] * values[1:] < 0.0
+        splits = self._dips(chunk, real)
+        interesting[list(splits)] = True
         interesting[:skip] = False
         events: list[Located] = []
         for i in np.flatnonzero(interesting):
             i = int(i)
             segment = Segment(engine, chunk.solved(i), chunk.solved(i + 1))
-            found = self.examine(segment, real=real)
+            if i in splits:
+                s, middle = splits[i]
+                plain = Located(s, "plain", 0, middle, (np.nan, np.nan), 0.0)
+                found = [*self._both(segment, s, middle, real), plain]
+            else:
+                found = self.examine(segment, real=real)
             found += self.examine_users(
                 segment, {name: values[i : i + 2] for name, values in user_values.items()}
             )
@@ -123,6 +131,41 @@ class Watch:
                 if event.kind == "meets" or event.note == "border":
                     return events
         return events
+
+    def _dips(self, chunk: Chunk, real: bool) -> dict[int, tuple[float, Solved]]:
+        """Segments inside which the smallest margin is negative, or stability lost, though not at their ends."""
+        engine = self.engine
+        tests: list[tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]] = []
+        if engine.problem.n_margins and real:
+            tests.append((engine.smallest_margin(chunk.rows), engine.smallest_margin))
+        if self.kind != "none" and engine.m:
+            tests.append((self._damping(chunk.rows), self._damping))
+        found: dict[int, tuple[float, Solved]] = {}
+        lengths = lengths_of(engine, chunk.points, chunk.values) if tests else np.zeros(0)
+        for values, test in tests:
+            for i in suspects(lengths, values):
+                for k in (int(i) - 1, int(i)):
+                    segment = Segment(engine, chunk.solved(k), chunk.solved(k + 1))
+                    split = below_zero(segment, lambda point, test=test: float(test(point.row)))
+                    if split is not None and k not in found:
+                        found[k] = split
+        return found
+
+    def _damping(self, rows: np.ndarray) -> np.ndarray:
+        """Positive where stable: minus the logarithm of the largest multiplier (minus the largest real part)."""
+        spectrum = self.engine.spectrum(rows)
+        if self.kind == "flow":
+            return -spectrum.real.max(axis=-1)
+        with np.errstate(divide="ignore"):
+            return -np.log(np.abs(spectrum).max(axis=-1))
+
+    def _both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
+        """The special points of a segment from its two parts."""
+        parts = (Segment(self.engine, segment.a, middle), Segment(self.engine, middle, segment.b))
+        first, second = (self.examine(part, real, depth) for part in parts)
+        return [e._replace(position=s * e.position) for e in first] + [
+            e._replace(position=s + (1.0 - s) * e.position) for e in second
+        ]
 
     def _apart(self, event: Located, stop: Located) -> bool:
         engine, a, b = self.engine, event.point, stop.point
@@ -155,11 +198,7 @@ class Watch:
         if discarded and outside != 0 and depth < 10:
             middle = segment.at(0.5)
             if middle is not None:
-                first, second = Segment(self.engine, a, middle), Segment(self.engine, middle, b)
-                events = [e._replace(position=0.5 * e.position) for e in self.examine(first, real, depth + 1)]
-                return events + [
-                    e._replace(position=0.5 + 0.5 * e.position) for e in self.examine(second, real, depth + 1)
-                ]
+                return self._both(segment, 0.5, middle, real, depth + 1)
         events += folds
         for event in self._sharpen(segment, crossings):
             events.append(event)

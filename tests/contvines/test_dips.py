@@ -1,0 +1,69 @@
+"""Narrow windows between two points: nothing changes sign at the points, and still nothing is missed."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import contvines as cv
+from contvines.dense import KERNELS, dense_workspace
+from contvines.events.dips import suspects
+from contvines.problem import Kernels, ProblemDefaults
+
+
+def inspect(data, u, p, work, row):
+    row[0], row[1] = data.multiplier(p), 0.0
+    row[2] = data.margin(p)
+
+
+class Line(ProblemDefaults):
+    """u = p with a margin and a multiplier that are given functions of p."""
+
+    dimension, n_multipliers, n_margins, spectrum, parameter = 1, 1, 1, "map", "p"
+    kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect)
+    u0, p0 = np.array([-0.95]), -0.95
+
+    def __init__(self, margin=lambda p: 1.0, multiplier=lambda p: 0.5):
+        self.margin, self.multiplier, self.data = margin, multiplier, self
+
+    def workspace(self):
+        return dense_workspace(1)
+
+    def equations(self, u, p):
+        return u - p, np.eye(1), np.array([-1.0])
+
+    def margin_kind(self, j):
+        return "velocity-graze"
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
+def test_short_loss_of_a_margin(centre, half):
+    graph = cv.diagram(Line(margin=lambda p: (p - centre) ** 2 - half**2), within=(-1.0, 1.0))
+    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
+    assert graph["B1"].values[-1] == graph["VG1"].value
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
+def test_short_loss_of_stability(centre, half):
+    graph = cv.diagram(Line(multiplier=lambda p: -1.0 + (p - centre) ** 2 - half**2), within=(-1.0, 1.0))
+    found = sorted(point.value for point in graph.of_kind("period-doubling"))
+    assert found == pytest.approx([centre - half, centre + half], abs=1e-12)
+    np.testing.assert_allclose(
+        graph["B1"].stable_intervals(), [(-1.0, centre - half), (centre + half, 1.0)], atol=1e-12
+    )
+
+
+def test_a_touch_from_above_is_no_event():
+    graph = cv.diagram(Line(margin=lambda p: (p - 0.1234) ** 2 + 1e-9), within=(-1.0, 1.0))
+    assert len(graph) == 1 and not graph.of_kind("velocity-graze")
+
+
+def test_suspects():
+    x = np.array([0.0, 0.1, 0.2, 0.3])
+    lengths = np.diff(x)
+    assert suspects(lengths, (x - 0.13) ** 2 - 0.01**2).tolist() == [1, 2]
+    assert suspects(lengths, (x - 0.13) ** 2 + 0.01**2).tolist() == []
+    assert suspects(lengths, np.array([1.0, np.inf, 1.0, np.inf])).tolist() == []
+    assert suspects(lengths[:1], np.array([1.0, 0.1])).tolist() == []
