@@ -20,6 +20,7 @@ from orbits.words import Word
 NEAR = 1e-7  # margins this small vanish together
 SIZES = (2e-3, 2e-4, 2e-5)  # of what grows beyond the border
 FOLLOWED = 1e-6  # largest replay error of a seed
+GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 
 class Seed(NamedTuple):
@@ -318,7 +319,7 @@ def _beside(
                 sides.append((float(_row(other, u, q).min()), u, q, side * along))
         if sides:
             margin, u, q, along = max(sides, key=lambda entry: entry[0])
-            if margin > 0.0:
+            if margin > GROWING * distance:  # not one that vanishes all along, as at a wall touched without speed
                 return other, u, q, along
     return None
 

@@ -16,19 +16,21 @@ from orbits.simulation.return_map import state_of
 
 AT_BORDER = 1e-4  # margins below this may make two events one
 DEFINITE = 1e-2  # speed after an event from which a simulation starts without doubt
+WILD = 1e3  # multipliers above this blow rounding up within a period
 AGREED = 1e-9  # deviations below this need no second look
 
 
 def replay_error(orbit: Orbit) -> float:
     """Largest deviation of the simulation over one period of the orbit.
 
-    Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, the relative
-    position w is compared at many instants as well, and the smaller deviation counts. Infinite if the simulation does
-    something else.
+    Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
+    unstable orbits the relative position w is compared at many instants as well, stretch by stretch, and the smaller
+    deviation counts. Infinite if the simulation does something else.
     """
     error = float(replay(orbit).error)
     margins = np.array([margin.value for margin in orbit.margins])
-    if error < AGREED or not np.any(np.abs(margins) < AT_BORDER):
+    delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(orbit.multipliers) > WILD)
+    if error < AGREED or not (delicate or np.isfinite(error)):
         return error
     return min(error, position_error(orbit))
 
@@ -37,7 +39,7 @@ def position_error(orbit: Orbit, points: int = 400) -> float:
     """Largest difference of the relative positions over one period.
 
     The simulation is started at every definite event and followed to the next one: an impact of vanishing speed has
-    infinite derivatives, so that rounding grows beyond all bounds over a whole period of a long orbit.
+    infinite derivatives, and a very unstable orbit large ones, so that rounding would grow out of bounds over a period.
     """
     speeds = np.abs(orbit.events.rate_post)
     definite = np.flatnonzero(speeds > DEFINITE)

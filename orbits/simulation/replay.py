@@ -208,15 +208,37 @@ def _returns(
     periods: int,
     growth: float,
 ) -> bool:
-    """Start 1e-6 off the orbit, wait until multipliers have shrunk that ten thousandfold, and compare."""
-    state = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
-    state[2] *= 1.0 + 1e-6
-    if codes[0] > 1:
-        state[0] += 1e-6
-    engine.launch(state, params)
-    cycles = min(200_000.0 / periods, np.ceil(np.log(1e-4) / np.log(max(growth, 1e-3))) + 2.0)
-    skip(engine, state, params, state[4] + cycles * periods, int(1000 * cycles * periods))
-    seen, after, rows, _ = collect(engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3)
+    """Start a little off the orbit, wait until multipliers have shrunk that ten millionfold, and compare.
+
+    Beside a border the orbit may attract from very near only: a smaller displacement is tried as well.
+    """
+    cycles = min(200_000.0 / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
+    for size, near in ((1e-6, 1e-8), (1e-8, 1e-9)):
+        state = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
+        state[2] *= 1.0 + size
+        if codes[0] > 1:
+            state[0] += size
+        engine.launch(state, params)
+        skip(engine, state, params, state[4] + cycles * periods, int(1000 * cycles * periods))
+        if _is_on(engine, params, codes, modes, nodes, periods, state, near):
+            return True
+    return False
+
+
+def _is_on(
+    engine: Any,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    periods: int,
+    state: np.ndarray,
+    near: float,
+) -> bool:
+    """Whether the motion from a state goes through the orbit's nodes."""
+    seen, after, rows, _ = collect(
+        engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3
+    )
     found = nodes_of(engine, params, seen, after, rows)
     n = len(codes)
     for k in range(max(0, len(seen) - n + 1)):
@@ -224,6 +246,6 @@ def _returns(
             here = found[k : k + n].copy()
             if not np.any(codes < 2):
                 here[:, 1] += nodes[0, 1] - here[0, 1]
-            if cyclic_distance(here, nodes) < 1e-8:
+            if cyclic_distance(here, nodes) < near:
                 return True
     return False
