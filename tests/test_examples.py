@@ -7,7 +7,7 @@ import pytest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCRIPTS = {"pitchfork", "henon", "absorber"}
-STUDIES = {"friction", "friction_low"}
+STUDIES = {"friction", "friction_low", "frequency"}
 
 
 def example(name):
@@ -96,3 +96,23 @@ def test_studies(name, machine, tmp_path, monkeypatch):
     asymmetric = [s.target for s in graph.switches if s.kind == "symmetry-breaking"]
     assert len(asymmetric) == 1
     assert graph.special[next(s.point for s in graph.switches if s.kind == "symmetry-breaking")].mirror
+
+
+def test_frequency_response_of_the_coupled_machine(tmp_path, monkeypatch):
+    from contvines.command.cli import main
+    from contvines.store import load
+
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as end:
+        main(["diagram", str(EXAMPLES / "frequency.toml"), "--quiet"])
+    assert not end.value.code
+    graph = load("frequency.vines")
+    assert graph.finished
+    assert all(branch.real for branch in graph.branches.values())
+    words = {branch.description["word"] for branch in graph.branches.values()}
+    assert {"LR", "tt"} <= words
+    # event-driven simulation, which knows nothing of the continuation, follows a stable orbit of every stable branch
+    for branch in graph.branches.values():
+        inside = [i for i in range(1, len(branch) - 1) if branch.stable[i - 1 : i + 2].all()]
+        if inside:
+            assert branch.orbit(inside[len(inside) // 2]).replay() < 1e-6, branch

@@ -1,5 +1,6 @@
 """The README's two commands, its code and its names are true."""
 
+import os
 import re
 import shlex
 import subprocess
@@ -24,9 +25,9 @@ def test_main_job_runs_as_written(tmp_path):
     words = shlex.split(command("run").rpartition(" && ")[2])
     assert words[0] == ".venv/bin/contvines"
     words = [str(TOP / w) if w.startswith("examples/") else w for w in words[1:]]
-    done = subprocess.run(
-        [sys.executable, "-m", "contvines.command", *words], cwd=tmp_path, capture_output=True, text=True
-    )
+    line = [sys.executable, "-m", "contvines.command", *words]
+    here = {**os.environ, "PYTHONPATH": str(TOP)}
+    done = subprocess.run(line, cwd=tmp_path, env=here, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert "SB1" in done.stdout
     assert sorted(p.name for p in tmp_path.iterdir()) == ["friction.png", "friction.vines"]
