@@ -47,7 +47,9 @@ def test_short_loss_of_a_margin(centre, half):
 @settings(max_examples=40, deadline=None)
 @given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
 def test_short_loss_of_stability(centre, half):
-    graph = cv.diagram(Line(multiplier=lambda p: -1.0 + (p - centre) ** 2 - half**2), within=(-1.0, 1.0))
+    graph = cv.diagram(
+        Line(multiplier=lambda p: -1.0 + 0.5 * ((p - centre) ** 2 - half**2)), within=(-1.0, 1.0)
+    )
     found = sorted(point.value for point in graph.of_kind("period-doubling"))
     assert found == pytest.approx([centre - half, centre + half], abs=1e-12)
     np.testing.assert_allclose(
