@@ -253,3 +253,48 @@ def test_a_stuck_start_stays_stuck_where_friction_holds():
     assert machine.stuck_response().real
     run = simulate(machine, stuck_state(machine.vector()), periods=50)
     assert run.codes.size == 0
+
+
+def test_period_doubling_behind_the_borders():
+    """The asymmetric response with two turns in its long flight, `LRtt`, doubles: return map by integration."""
+
+    def whole_map(params, x):
+        """From just after an impact on the left to the next one: (Psi, B, v, v') -> same, through R, t, t."""
+        _G, Omega, _lam, eps, r, _mu, _g, _chi = params
+        psi, B, v, v_rate = x
+        y = np.array([(v + eps) / (1 + eps), v_rate - eps * B / (1 + eps), (v - 1) / (1 + eps), B / (1 + eps)])
+        rows = integrate(params, psi / Omega, y, -1, 4)
+        assert "".join(row[0] for row in rows) == "RttL"
+        _letter, phase, _w, before, v, v_rate = rows[-1]
+        return np.array([phase - 2 * np.pi, v_rate + r * before, v, v_rate])
+
+    def by_integration(Omega):
+        nonlocal x
+        params = MACHINE.vector({"frequency": Omega})
+        for _ in range(8):
+            columns = []
+            for j in range(4):
+                h = np.zeros(4)
+                h[j] = 1e-5
+                columns.append((whole_map(params, x + h) - whole_map(params, x - h)) / 2e-5)
+            M = np.array(columns).T
+            step = np.linalg.solve(np.eye(4) - M, whole_map(params, x) - x)
+            x = x + step
+            if np.abs(step).max() < 1e-9:
+                break
+        spectrum = np.linalg.eigvals(M)
+        return float(spectrum[np.abs(spectrum.imag) < 1e-8].real.min()) + 1.0
+
+    def compiled(Omega):
+        nonlocal orbit
+        orbit = MACHINE.orbit("LRtt", guess=orbit.nodes, frequency=Omega)
+        multipliers = orbit.multipliers
+        return float(multipliers[np.abs(multipliers.imag) < 1e-8].real.min()) + 1.0
+
+    orbit = MACHINE.orbit("LRtt", frequency=0.9905)
+    x = np.array(orbit.nodes[0])
+    found = brentq(compiled, 0.9905, 0.9909, xtol=1e-13)
+    assert orbit.real
+    low, high = by_integration(found - 2e-5), by_integration(found + 2e-5)
+    assert low * high < 0.0
+    assert found - 2e-5 + 4e-5 * low / (low - high) == pytest.approx(found, abs=2e-7)
