@@ -40,6 +40,7 @@ def locate(
     test: Callable[[Solved], float],
     tolerance: float = 1e-14,
     fallback_zero: bool = False,
+    jump: float = np.inf,
 ) -> Root | None:
     """The zero of a test function whose bordered system is regular there.
 
@@ -52,6 +53,9 @@ def locate(
         Width of the final bracket relative to the segment.
     fallback_zero : bool
         Where the ends do not have opposite signs after all, take the end at which the test is smallest.
+
+    jump : float
+        A test that changes by more than this over a tiny part of the segment jumps; the root is then not continuous.
 
     Returns
     -------
@@ -75,7 +79,7 @@ def locate(
             return None
         s = 0.0 if abs(fa) < abs(fb) else 1.0
         return Root(s, solved[s], 0.0)
-    s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance)
+    s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance, jump)
     width = abs(solved[high].p - solved[low].p) + 4e-16 * abs(solved[s].p)
     return Root(s, solved[s], max(width, solved[s].correction * 1e-3), abs(fhigh - flow) <= JUMP)
 

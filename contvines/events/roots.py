@@ -9,7 +9,13 @@ import numpy as np
 
 
 def bracketed_root(
-    f: Callable[[float], float], a: float, b: float, fa: float, fb: float, tolerance: float = 1e-14
+    f: Callable[[float], float],
+    a: float,
+    b: float,
+    fa: float,
+    fb: float,
+    tolerance: float = 1e-14,
+    jump: float = np.inf,
 ) -> tuple[float, float, float, float, float]:
     """Root of f between a and b by Chandrupatla's method (Adv. Eng. Software 28 (1997) 145).
 
@@ -23,6 +29,8 @@ def bracketed_root(
         Bracket, fa and fb of opposite sign (or one of them zero).
     tolerance : float
         Width of the final bracket relative to the first one.
+    jump : float
+        Give up where f still changes by more than this over a bracket of 1e-5 of the first one: f has a jump there.
 
     Returns
     -------
@@ -55,6 +63,8 @@ def bracketed_root(
             return x1, x1, x1, f1, f1
         best = x1 if abs(f1) < abs(f2) else x2
         limit = 0.5 * tolerance * width / max(abs(x2 - x1), 1e-300)
+        if abs(f1 - f2) > jump and abs(x2 - x1) < 1e-5 * width:
+            break
         if limit > 0.5 or abs(x2 - x1) <= tolerance * width:
             break
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2) if f3 != f2 else 2.0

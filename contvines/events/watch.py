@@ -186,7 +186,7 @@ class Watch:
             low, high = sorted((int(before[column]), int(after[column])))
             for k in range(low + 1, high + 1):
                 test = self._multiplier(name, k)
-                root = locate(segment, test)
+                root = locate(segment, test, jump=0.05)
                 if root is None or not root.continuous:
                     discarded = True
                     continue
@@ -281,22 +281,23 @@ class Watch:
             return []
         events = []
         if real:
-            for j in np.flatnonzero((b < MARGIN) & (a >= MARGIN)):
+            crossing_ones = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
+            if len(crossing_ones):
 
-                def margin(point: Solved, j: int = int(j)) -> float:
-                    return min(float(engine.margins(point.row)[j]), 1.0)
+                def margin(point: Solved) -> float:
+                    return min(float(engine.margins(point.row)[crossing_ones].min()), 1.0)
 
                 root = locate(segment, margin, fallback_zero=True)
                 if root is not None:
-                    events.append(self._located(root, engine.problem.margin_kind(int(j)), int(j), "border"))
+                    j = int(crossing_ones[np.argmin(engine.margins(root.point.row)[crossing_ones])])
+                    events.append(self._located(root, engine.problem.margin_kind(j), j, "border"))
         elif (a < MARGIN).any() and not (b < MARGIN).any():
             j = int(np.argmin(a))
             root = locate(segment, lambda point: min(float(engine.margins(point.row).min()), 1.0))
             if root is not None:
                 j = int(np.argmin(engine.margins(root.point.row)))
                 events.append(self._located(root, engine.problem.margin_kind(j), j, "border"))
-        events.sort(key=lambda e: e.position)
-        return events[:1]
+        return events
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""
