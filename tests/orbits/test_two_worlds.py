@@ -1,0 +1,152 @@
+"""Two worlds that know nothing of each other must agree: the maps of a word, and the event-driven simulation.
+
+Machines are drawn over r in [0.3, 0.95], mu in [0, 1], g in [0.05, 0.5]. Set CONTVINES_LARGE to try many more of them.
+"""
+
+import os
+import warnings
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+from orbits.simulation import find_attractor, simulate
+from orbits.start import polish
+
+LARGE = bool(os.environ.get("CONTVINES_LARGE"))
+BLOCKS = 60 if LARGE else 12  # of ten machines each: about 70 in 100 have a periodic attractor that makes events
+TRACED = 600 if LARGE else 100
+
+
+def draw(seed):
+    """A machine, an amplitude and a start."""
+    rng = np.random.default_rng(seed)
+    friction = 0.0 if seed % 10 == 0 else rng.uniform(0.0, 1.0)
+    machine = Absorber(
+        restitution=rng.uniform(0.3, 0.95),
+        friction=friction,
+        gravity=rng.uniform(0.05, 0.5),
+        mass_ratio=rng.choice([0.0, 0.006, 0.05]),
+    )
+    start = {"phase": rng.uniform(0.0, 6.28), "w": rng.uniform(-0.9, 0.9), "w_rate": rng.uniform(-2.0, 2.0)}
+    return machine, rng.uniform(0.1, 2.2), start
+
+
+def attractor_of(seed, max_period=4):
+    """The simulated attractor if it is periodic, makes events and has at most 8 impacts; else None."""
+    machine, amplitude, start = draw(seed)
+    found = find_attractor(machine, start, amplitude=amplitude, max_period=max_period)
+    if found.kind not in ("periodic", "sliding") or found.word is None or not len(found.codes) or found.impacts > 8:
+        return None
+    return found
+
+
+def distance(a, b):
+    """Largest difference of two node arrays, phases modulo 2 pi."""
+    gap = a - b
+    gap[:, 0] -= 2.0 * np.pi * np.round(gap[:, 0] / (2.0 * np.pi))
+    return float(np.abs(gap).max())
+
+
+@pytest.mark.parametrize("block", range(BLOCKS))
+def test_every_simulated_attractor_solves_its_word(block):
+    """Nodes to 1e-9 and multipliers to 1e-6, those of the simulated return map being central differences."""
+    seen = 0
+    for seed in range(10 * block, 10 * block + 10):
+        found = attractor_of(seed)
+        if found is None:
+            continue
+        seen += 1
+        solved = polish(found.orbit)
+        assert solved is not None, (seed, found.text)
+        assert solved.real, (seed, found.text, solved.margin)
+        simulated = found.multipliers
+        if solved.impacts == 0:  # the trivial multiplier of a motion that may be moved as a whole
+            trivial = int(np.argmin(np.abs(simulated - 1.0)))
+            assert simulated[trivial] == pytest.approx(1.0, abs=1e-6)
+            simulated = np.delete(simulated, trivial)
+        if np.all(np.abs(solved.multipliers) < 0.999):  # nearer to a bifurcation the simulation has not settled
+            assert distance(solved.nodes.copy(), found.orbit.nodes) < 1e-9, (seed, found.text)
+        assert np.poly(simulated) == pytest.approx(np.poly(solved.multipliers), abs=1e-6), (seed, found.text)
+        assert solved.stable, (seed, found.text)
+    assert seen >= 3
+
+
+def comes_back(orbit):
+    """Whether simulations from ever nearer starts beside a stable orbit settle on it.
+
+    The state after an event is moved; after as many periods as the multipliers ask for, positions are compared at 200
+    instants of the forcing.
+    """
+    growth = min(0.99, float(np.abs(orbit.multipliers).max()))
+    cycles = int(np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3)))) + 10
+    events = orbit.events
+    place = int(np.argmax(np.abs(events.rate_post)))
+    amplitude = orbit.parameters["amplitude"]
+    sample = orbit.sample(400)
+    phase, w = sample["phase"], sample["w"]
+    for size, near in ((1e-6, 1e-7), (1e-8, 1e-9)):
+        start = {
+            "phase": float(events.phase[place]) % (2.0 * np.pi),
+            "w": float(events.w[place]) * (1.0 - size) if orbit.impacts == 0 else float(np.clip(events.w[place], -1, 1)),
+            "w_rate": float(events.rate_post[place]) * (1.0 + size),
+        }
+        run = simulate(orbit.model, start, periods=(cycles + 2) * orbit.periods, amplitude=amplitude)
+        # the run's own clock starts at the start's phase; the orbit's event `place` had turned so far
+        late = float(events.phase[place]) - start["phase"]
+        instants = phase - late + 2.0 * np.pi * orbit.periods * cycles
+        seen = run.sample(instants).w
+        gap = seen - w
+        if orbit.impacts == 0:
+            gap = gap - gap.mean()
+        if np.abs(gap).max() < near:
+            return True
+    return False
+
+
+@pytest.mark.parametrize("block", range(TRACED // 10))
+def test_no_orbit_reported_real_and_stable_is_left(block):
+    """Along the branches through simulated attractors, perturbed simulations come back to every stable orbit tried."""
+    tried = 0
+    for seed in range(1000 + 10 * block, 1000 + 10 * block + 10):
+        found = attractor_of(seed)
+        if found is None:
+            continue
+        rng = np.random.default_rng(seed)
+        centre = float(found.params[0])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            graph = cv.diagram(
+                polish(found.orbit), over="amplitude", within=(max(0.02, 0.8 * centre), 1.2 * centre), depth=1
+            )
+        for branch in graph.branches.values():
+            inner = np.flatnonzero(branch.stable[1:-1]) + 1
+            for i in rng.permutation(inner)[:2]:
+                orbit = branch.orbit(int(i))
+                if not len(orbit.word) or orbit.margin < 1e-3 or np.abs(orbit.multipliers).max() > 0.99:
+                    continue
+                assert branch.real
+                assert orbit.real
+                tried += 1
+                assert comes_back(orbit), (seed, branch.label, orbit.word.text, float(branch.values[i]))
+    assert tried >= 5
+
+
+def test_the_tests_would_notice():
+    """Unstable orbits are left, and so is an orbit of the bare maps that no machine follows."""
+    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    unstable = absorber.symmetric_orbit(amplitude=np.sqrt(0.6))
+    assert unstable.real
+    assert not unstable.stable
+    assert not comes_back(unstable)
+    graph = cv.diagram(
+        absorber.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 0.92), depth=1, virtual=True
+    )
+    ghosts = [b for b in graph.branches.values() if not b.real and b.description["word"] == "LR" and b.stable.any()]
+    assert ghosts
+    for branch in ghosts:
+        ghost = branch.orbit(int(np.flatnonzero(branch.stable)[-1]))
+        assert not ghost.real
+        assert not comes_back(ghost)
+        assert not ghost.replay() < 1e-3
