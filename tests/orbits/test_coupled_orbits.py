@@ -9,6 +9,7 @@ from orbits.closed_forms import symmetric_square
 from orbits.models.base import ParameterError
 from orbits.models.coupled_orbits import response, stuck_frequencies, stuck_response, symmetric_nodes
 from orbits.multiple_scales import SlowFlow, equilibria
+from orbits.simulation import find_attractor
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 
@@ -184,3 +185,31 @@ def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():
             assert orbit.measure("B") == pytest.approx(state.velocity, abs=0.03)
         # v = C sin(Psi + gamma)
         assert np.exp(1j * orbit.measure("v_phase")) == pytest.approx(np.exp(1j * state.phase), abs=0.1)
+
+
+def test_margins_of_stuck_segments_and_frictionless_flights():
+    """Against fine sampling: a - |v''| where the absorber sticks, 1 - |w| at the extrema of a flight that may reverse."""
+    orbit = MACHINE.orbit("susu", frequency=0.95)
+    a, omega = MACHINE.friction_acceleration(orbit.params), orbit.params[1]
+    points = orbit.sample(40000)
+    stuck = points["segment"] == orbit.word.modes.index(0)
+    push = np.abs(np.gradient(points["v_rate"][stuck], points["phase"][stuck] / omega))[2:-2]
+    inner = push[1:-1][(push[1:-1] > push[:-2]) & (push[1:-1] > push[2:])]
+    found = [m.value for m in orbit.margins if m.kind in ("flight", "hold") or "slip" in m.kind]
+    assert all(value > 0.0 for value in found)
+    assert not inner.size or min(abs(a - inner.max() - value) for value in found) < 1e-5
+
+    machine = MACHINE.changed(friction=0.0, mass_ratio=0.05, restitution=0.923, forcing=2.886)
+    attractor = find_attractor(machine, {"w": 0.3, "v": 0.5}, frequency=1.025)
+    orbit = attractor.orbit
+    assert orbit.word.frictionless and len(orbit.word) > 2
+    flights = [m.value for m in orbit.margins if m.kind == "wall"]
+    points = orbit.sample(60000)
+    seen = 0
+    for segment in range(len(orbit.word)):
+        w = points["w"][points["segment"] == segment]
+        inner = w[1:-1][(w[1:-1] - w[:-2]) * (w[1:-1] - w[2:]) > 0.0]
+        if inner.size:
+            seen += 1
+            assert min(abs(1.0 - np.abs(inner).max() - value) for value in flights) < 1e-6
+    assert seen
