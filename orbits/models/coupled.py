@@ -212,7 +212,7 @@ class Coupled(Model):
         params = self.vector(values)
         word = "LR" if equilibrium.manifold == "impacting" else "tt"
         guess = self._closed(word, coupled_orbits.nodes_from_equilibrium(params, equilibrium), params)
-        return self.orbit(word, guess=guess.nodes, **values)
+        return self.orbit(word, 1, guess.nodes, **values)
 
     def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Orbit:
         from orbits.orbit import Orbit

@@ -69,7 +69,7 @@ def own_measures(
     share of the moving base counts as excitation), in units of m b^2 omega_0^2 like ``impact_loss`` and
     ``friction_loss``; the four balance.
     """
-    from orbits.simulation.coupled_kernels import works
+    from orbits.simulation.coupled_segments import works
 
     table = event_table(model, word, nodes, params)
     modes = np.array(word.modes, dtype=float)
