@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
+FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
 MARGIN = -1e-12  # margins below this are negative
 
 
@@ -81,8 +83,10 @@ class Watch:
             return []
         engine = self.engine
         slope = chunk.tangents[:, -1]
-        fold = slope[:-1] * slope[1:] < 0.0
-        turned = chunk.signs[:-1] * chunk.signs[1:] < 0.0
+        steep = np.abs(slope) > FLAT * (engine.upper - engine.lower)
+        fold = changes(slope) & (steep[:-1] | steep[1:])
+        chunk = replace(chunk, signs=without_zeros(chunk.signs))
+        turned = changes(chunk.signs)
         numbers = counts(engine.spectrum(chunk.rows), self.kind)
         changed = np.any(numbers[:-1] != numbers[1:], axis=1)
         interesting = fold | turned | changed
@@ -101,7 +105,7 @@ class Watch:
         interesting |= meets
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
-            interesting |= values[:-1] * values[1:] < 0.0
+            interesting |= changes(values)
         splits = self._dips(chunk, real)
         interesting[list(splits)] = True
         interesting[:skip] = False
@@ -221,7 +225,8 @@ class Watch:
         return Located(root.position, kind, index, root.point, (np.nan, np.nan), root.error, note)
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
-        if not segment.a.tangent[-1] * segment.b.tangent[-1] < 0.0:
+        ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
+        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * (self.engine.upper - self.engine.lower):
             return []
         root = locate(segment, lambda point: float(point.tangent[-1]))
         if root is None or not root.continuous:
@@ -303,13 +308,30 @@ class Watch:
         """Zeros of the user functions on one segment."""
         events = []
         for index, (name, ends) in enumerate(values.items()):
-            if not ends[0] * ends[1] < 0.0:
+            if not changes(np.asarray(ends))[0]:
                 continue
             f = self.users[name]
             root = locate(segment, lambda point, f=f: float(f(point.u[None, :], np.array([point.p]))[0]))
             if root is not None and root.continuous:
                 events.append(self._located(root, "user", index, name))
         return events
+
+
+def changes(values: np.ndarray) -> np.ndarray:
+    """Whether the sign changes between neighbours; an exact zero counts as positive."""
+    positive = values >= 0.0
+    return positive[:-1] != positive[1:]
+
+
+def without_zeros(signs: np.ndarray) -> np.ndarray:
+    """Signs in which a zero (a point that is singular to roundoff) has taken the sign before it."""
+    if np.all(signs):
+        return signs
+    signs = signs.copy()
+    for i in np.flatnonzero(signs == 0.0):
+        others = signs[i + 1 :][signs[i + 1 :] != 0.0]
+        signs[i] = signs[i - 1] if i > 0 else (others[0] if len(others) else 1.0)
+    return signs
 
 
 def _near(position: float, others: list[float], distance: float = SAME) -> bool:

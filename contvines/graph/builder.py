@@ -120,11 +120,16 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
         first = pending.origin
     else:
         first = engine.start(pending.u, pending.p, pending.tangent)
-        if first is not None and pending.kind == "root" and pending.tangent is None:
-            # off the point where the known branch ends, or it would be taken for that branch
-            first = beside(engine, first, run.settings.amplitude) or beside(
-                engine, first, -run.settings.amplitude
-            )
+        if first is not None:
+            step = 0.0
+            if pending.kind == "root" and pending.tangent is None:
+                # off the point where the known branch ends, or it would be taken for that branch
+                step = run.settings.amplitude
+            elif abs(first.tangent[-1]) <= 1e-6 * run.unit or first.sign == 0.0:
+                # off a fold or branch point, which would else lie on neither of the two halves
+                step = run.settings.first_step
+            if step > 0.0:
+                first = beside(engine, first, step) or beside(engine, first, -step) or first
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first

@@ -69,3 +69,24 @@ def test_suspects():
     assert suspects(lengths, (x - 0.13) ** 2 + 0.01**2).tolist() == []
     assert suspects(lengths, np.array([1.0, np.inf, 1.0, np.inf])).tolist() == []
     assert suspects(lengths[:1], np.array([1.0, 0.1])).tolist() == []
+
+
+def test_points_that_hit_a_special_point_exactly():
+    """The start itself is the fold, the branch point, the zero of a user function."""
+    fold = cv.diagram(cv.AlgebraicProblem(lambda u, p: p - u**2, [0.0], 0.0), within=(-1.0, 1.0))
+    assert [p.value for p in fold.of_kind("fold")] == pytest.approx([0.0], abs=1e-14)
+    for spectrum in ("none", "flow"):
+        problem = cv.AlgebraicProblem(lambda x, p: p * x - x**2, [0.0], -0.5, spectrum=spectrum)
+        graph = cv.diagram(problem, within=(-0.5, 0.5), settings={"first_step": 0.5, "max_step": 0.5})
+        assert [p.value for p in graph.of_kind("branch-point")] == pytest.approx([0.0], abs=1e-14)
+        assert len(graph) == 2
+    line = cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0)
+    graph = cv.diagram(line, within=(-1.0, 1.0), user_functions={"zero": lambda u, p: u[0]})
+    assert [p.value for p in graph.of_kind("user")] == pytest.approx([0.0], abs=1e-15)
+
+
+def test_a_vertical_branch_has_no_folds():
+    """(p - 1/3) u = 0 and more: along p = 1/3 the parameter stands still."""
+    problem = cv.AlgebraicProblem(lambda u, p: (p - 1.0 / 3.0) * (1.0 + u**2), [0.2], 1.0 / 3.0)
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert not graph.of_kind("fold") and "run away" in graph["B1"].ended[0]
