@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.compiled import assemble
+from orbits.monitors import PER_NODE
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
 from orbits.rewriting import Edit, applied, edits_at
@@ -113,6 +114,7 @@ def _solved_at(problem: OrbitProblem, guess: np.ndarray, p: float) -> tuple[np.n
 
 def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
     """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
+    problem, u, index = _turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
     if problem.symmetric:
         wider = problem.sibling(problem.word, problem.periods, False)
@@ -220,10 +222,25 @@ def _real_side(problem: OrbitProblem, u: np.ndarray, p: float, tangent: np.ndarr
     return float(np.sign(max(sides)[1]))
 
 
+def _turned(
+    problem: OrbitProblem, u: np.ndarray, p: float, index: int
+) -> tuple[OrbitProblem, np.ndarray, int]:
+    """The same border read from another event, so that what changes does not straddle the end of the word."""
+    place, column = divmod(index, PER_NODE)
+    letter = problem.word.events[place]
+    if 0 < place < problem.length - 1 or (place == 0 and letter != "u") or problem.length < 2:
+        return problem, u, index
+    first = place - 1 if letter == "u" else place
+    turned = problem.orbit(u, p).rotate(first % len(problem.word))
+    other = problem.sibling(turned.word, problem.periods, problem.symmetric)
+    return other, other.reduce(turned.nodes), PER_NODE * (place - first) + column
+
+
 def _proposals(
     problem: OrbitProblem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[OrbitProblem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the local rules propose."""
+    problem, u, index = _turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
     values = _row(problem, u, p)
     together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
