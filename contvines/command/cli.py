@@ -6,7 +6,7 @@ numpy, numba, matplotlib, rich and pydantic are imported by the commands that ne
 
 import gc
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -66,9 +66,10 @@ def main(arguments: list[str] | None = None) -> None:
     except Exception as error:
         if debug:
             raise
-        if hasattr(error, "show") and hasattr(error, "exit_code"):  # the line itself cannot be understood
-            error.show()
-            sys.exit(error.exit_code)
+        explain: Any = getattr(error, "show", None)
+        if callable(explain):  # the line itself cannot be understood
+            explain()
+            sys.exit(getattr(error, "exit_code", 2))
         if type(error).__name__ in ("Interrupted", "Abort"):
             stopped(str(error))
         print(f"contvines: {sentence(error)}", file=sys.stderr)

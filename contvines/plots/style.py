@@ -1,5 +1,6 @@
 """The one style of all pictures, the marks of special points, and how a figure is made and saved."""
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -85,10 +86,8 @@ def new_axes(axes: "Axes | None", **figure: Any) -> "tuple[Figure, Axes]":
 
 
 def new_figure(**options: Any) -> "Figure":
-    """A figure without a window: it can be drawn anywhere and needs no closing."""
-    import sys
-
-    if "matplotlib.pyplot" in sys.modules:  # an interactive session shows it as its own
+    """A figure that needs no window and no closing; one of pyplot's where pyplot shows windows."""
+    if _windows():
         return sys.modules["matplotlib.pyplot"].figure(**options)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -100,11 +99,17 @@ def new_figure(**options: Any) -> "Figure":
 
 def settle(figure: "Figure", freeze: bool = True) -> None:
     """Give everything its final place; a figure without a window is then not laid out again."""
-    import sys
-
     figure.draw_without_rendering()
-    if freeze and "matplotlib.pyplot" not in sys.modules:
+    if freeze and not _windows():
         figure.set_layout_engine("none")
+
+
+def _windows() -> bool:
+    """Whether the user's session shows pyplot's figures in windows (notebooks show what is returned)."""
+    if "matplotlib.pyplot" not in sys.modules:
+        return False
+    backend = sys.modules["matplotlib.pyplot"].get_backend().lower()
+    return backend not in ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template") and "inline" not in backend
 
 
 def save_figure(figure: "Figure", path: str | Path) -> None:
