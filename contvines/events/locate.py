@@ -75,7 +75,8 @@ def locate(
     if not (np.isfinite(fa) and np.isfinite(fb)):
         return None
     if fa * fb > 0.0:
-        if not fallback_zero:
+        # an end that is the zero itself may have either sign, by roundoff
+        if not fallback_zero and min(abs(fa), abs(fb)) > 1e-9 * max(abs(fa), abs(fb)):
             return None
         s = 0.0 if abs(fa) < abs(fb) else 1.0
         return Root(s, solved[s], 0.0)

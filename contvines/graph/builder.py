@@ -86,6 +86,9 @@ def trace_pending(run: Run, pending: Pending) -> None:
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None:
         if pending.kind == "border" and pending.point is not None:
+            if known.label == pending.source:
+                run.remark(pending.point, "the solution found beyond lies on the same branch")
+                return
             pending.point = same_border(run, pending.point, known)
         run.connect(pending.point, pending.source, known.label, pending.note)
         return

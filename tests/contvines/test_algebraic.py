@@ -219,3 +219,37 @@ def test_bad_input_is_refused():
         cv.diagram(problem, over="q", within=(-1, 1))
     with pytest.raises(TypeError, match="seed"):
         cv.diagram(3.0, over="q", within=(-1, 1))  # type: ignore[arg-type]
+
+
+def test_lorenz():
+    """sigma = 10, b = 8/3: pitchfork at r = 1, Hopf at r = 470/19 (Strogatz, section 9.2); C+ and C- are one branch."""
+
+    def lorenz(u, r):
+        x, y, z = u
+        return np.array([10.0 * (y - x), x * (r - z) - y, x * y - 8.0 / 3.0 * z])
+
+    problem = cv.AlgebraicProblem(
+        lorenz,
+        [0.0, 0.0, 0.0],
+        0.5,
+        parameter="r",
+        spectrum="flow",
+        mirror=lambda u: np.array([-u[0], -u[1], u[2]]),
+    )
+    graph = cv.diagram(problem, within=(0.0, 30.0))
+    assert len(graph) == 2
+    assert of_kind(graph, "symmetry-breaking") == pytest.approx([1.0], abs=1e-12)
+    assert graph["SB1"].criticality == "supercritical"
+    assert of_kind(graph, "hopf") == pytest.approx([470.0 / 19.0], abs=1e-11)
+    side = graph["B2"]
+    np.testing.assert_allclose(side.points[:, 2], side.values - 1.0, atol=1e-11)
+    np.testing.assert_allclose(side.stable_intervals(), [(1.0, 470.0 / 19.0)], atol=1e-11)
+
+
+def test_lemniscate_crosses_itself():
+    """(x^2 + p^2)^2 = p^2 - x^2: closed, folds at p = +-1, and a node at 0 that the branch passes twice."""
+    problem = cv.AlgebraicProblem(lambda x, p: (x * x + p * p) ** 2 - p * p + x * x, [0.0], 1.0)
+    graph = cv.diagram(problem, within=(-1.5, 1.5))
+    assert of_kind(graph, "fold") == pytest.approx([-1.0, 1.0], abs=1e-12)
+    assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-12)
+    assert len(graph) == 1 and graph["B1"].closed
