@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits import cyclic, lanes, periodic_qr, periodic_schur
+from orbits import cyclic, lanes, periodic_qr, periodic_schur, trigonometry
 from orbits import kernel as compiling
 from orbits.kernel import kernel, stored_kernel
 from orbits.models.base import Model
@@ -109,6 +109,7 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
         compiling.__file__,
         cyclic.__file__,
         lanes.__file__,
+        trigonometry.__file__,
         periodic_schur.__file__,
         periodic_qr.__file__,
         __file__,

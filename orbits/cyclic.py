@@ -33,7 +33,7 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         order, trial)`` with shapes ``(L, n)``,
         ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
         ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
-        ``(L n,)``; then those of `orbits.lanes`.
+        ``(L n,)``; then those of `orbits.lanes`, and ``(L + 1,)`` twice.
     """
     n = node
     return (
@@ -56,6 +56,8 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         np.zeros(lanes_size(length) if n == 2 else 0),
         *short_cycle(length if n == 2 else 0),
         np.zeros(2 * (4 * LANES + 1)),
+        np.zeros(length + 1),
+        np.zeros(length + 1),
     )
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.kernel import kernel
+from orbits.trigonometry import sines_cosines
 
 NODE = 2
 AMPLITUDE, RESTITUTION, FRICTION, GRAVITY, MASS_RATIO, FREQUENCY = range(6)
@@ -41,7 +42,8 @@ def linearise(data, u, p, work):
         Largest residual, infinity where the maps cannot be evaluated.
     """
     events, modes, params, ip, twist, shift, pinned = data
-    F, A, D, Q, par, trig = work[0], work[1], work[2], work[3], work[4], work[5]
+    F, A, D, Q, par = work[0], work[1], work[2], work[3], work[4]
+    sines, cosines = work[22], work[23]
     length = F.shape[0]
     for j in range(6):
         par[j] = params[j]
@@ -58,11 +60,9 @@ def linearise(data, u, p, work):
     by_omega = 1.0 / omega
     speed = C * omega
     largest = 0.0
-    for i in range(length):
-        trig[i, 0] = np.sin(u[2 * i])
-        trig[i, 1] = np.cos(u[2 * i])
-    trig[length, 0] = twist * trig[0, 0]
-    trig[length, 1] = twist * trig[0, 1]
+    sines_cosines(u, 2, length, sines, cosines)
+    sines[length] = twist * sines[0]
+    cosines[length] = twist * cosines[0]
     for i in range(length):
         event = events[i]
         if i + 1 < length:
@@ -75,8 +75,8 @@ def linearise(data, u, p, work):
             y1 = twist * u[1]
         psi0 = u[2 * i]
         y0 = u[2 * i + 1]
-        s0, c0 = trig[i, 0], trig[i, 1]
-        s1, c1 = trig[i + 1, 0], trig[i + 1, 1]
+        s0, c0 = sines[i], cosines[i]
+        s1, c1 = sines[i + 1], cosines[i + 1]
         mode = modes[i]
         if mode == 0:  # stuck: the absorber waits for the slip
             after = modes[i + 1] if i + 1 < length else twist * modes[0]
@@ -238,7 +238,7 @@ def margins(data, u, p, work, out):
     3 the duration of the segment. Infinity where there is nothing to watch.
     """
     events, modes, params, ip, twist, shift, pinned = data
-    par, trig = work[4], work[5]
+    par, sines, cosines = work[4], work[22], work[23]
     length = events.shape[0]
     C, mu, g, eps, omega = par[0], par[2], par[3], par[4], par[5]
     a = (1.0 + eps) * mu * g
@@ -255,13 +255,11 @@ def margins(data, u, p, work, out):
         if i + 1 < length:
             psi1 = u[2 * i + 2]
             arrival = events[i + 1]
-            after = modes[i + 1]
         else:
             psi1 = u[0] + shift
             arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
-            after = modes[0] if twist > 0.0 else -modes[0]
-        s0, c0 = trig[i, 0], trig[i, 1]
-        c1 = trig[i + 1, 1]
+        s0, c0 = sines[i], cosines[i]
+        c1 = cosines[i + 1]
         d = (psi1 - psi0) / omega
         beta = u[2 * i + 1] if event < 2 else speed * c0
         flight = np.inf
