@@ -1,0 +1,113 @@
+"""A run from Python, interrupted anywhere and run again with the same journal, gives the graph of a run left alone."""
+
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import contvines as cv
+from contvines.graph.persistence import same_graph
+from contvines.store import Store
+
+
+def logistic():
+    """The graph of the logistic map's fixed point and its cascade; its period doubling lies at r = 3 (Feigenbaum)."""
+    return cv.MapProblem(lambda x, r: r * x * (1 - x), u0=[0.6], p0=2.5, parameter="r")
+
+
+def run(journal=None):
+    return cv.diagram(logistic(), within=(2.0, 3.56), depth=3, journal=journal)
+
+
+@pytest.fixture(scope="module")
+def alone():
+    graph = run()
+    assert min(p.value for p in graph.of_kind("period-doubling")) == pytest.approx(3.0, abs=1e-10)
+    return graph
+
+
+def test_interrupted_at_every_record(tmp_path, alone, monkeypatch):
+    path = tmp_path / "r.vines"
+    record = Store.record
+    interruptions = 0
+
+    def once(self, key, content):
+        record(self, key, content)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Store, "record", once)
+    while True:
+        with cv.resume(path) as journal:
+            before = journal.records
+            try:
+                graph = run(journal)
+            except KeyboardInterrupt:
+                interruptions += 1
+                assert journal.records == before + 1
+                assert not journal.finished
+            else:
+                break
+    assert interruptions > 10
+    assert same_graph(graph, alone)
+    assert same_graph(cv.load(path, problems=False), alone)
+
+
+def test_a_journal_does_not_change_the_result(tmp_path, alone):
+    with cv.resume(tmp_path / "j.vines") as journal:
+        assert same_graph(run(journal), alone)
+        assert journal.finished
+
+
+def test_two_runs_at_once_on_one_file(tmp_path, alone):
+    path = tmp_path / "two.vines"
+    cv.resume(path).close()
+    graphs = []
+
+    def work():
+        with cv.resume(path) as journal:
+            graphs.append(run(journal))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [same_graph(g, alone) for g in graphs] == [True, True]
+    assert same_graph(cv.load(path, problems=False), alone)
+
+
+numbers = (
+    st.floats(allow_nan=True, allow_infinity=True) | st.integers(-(2**53), 2**53) | st.booleans() | st.none()
+)
+scalars = st.recursive(
+    numbers | st.text(), lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner), max_leaves=8
+)
+shapes = st.lists(st.integers(0, 4), min_size=0, max_size=3).map(tuple)
+arrays = st.builds(
+    lambda shape, seed, kind: (
+        np.random.default_rng(seed).standard_normal(shape).astype(kind) if shape else np.array(1.5)
+    ),
+    shapes,
+    st.integers(0, 99),
+    st.sampled_from(["f8", "c16", "i8", "?"]),
+)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(content=st.dictionaries(st.text(), scalars | arrays, max_size=5), key=st.text())
+def test_whatever_is_recorded_is_recalled(tmp_path_factory, content, key):
+    path = tmp_path_factory.mktemp("store") / "x.vines"
+    with Store.create(path, "f") as store:
+        store.record(key, content)
+    with Store.open(path) as store:
+        again = store.recall(key)
+    assert again is not None
+    assert again.keys() == content.keys()
+    for name, value in content.items():
+        if isinstance(value, np.ndarray):
+            assert (again[name].dtype, again[name].shape) == (value.dtype, value.shape)
+            assert again[name].tobytes() == value.tobytes()
+        else:
+            assert repr(again[name]) == repr(value)
