@@ -60,7 +60,7 @@ class Store:
                 db.execute("COMMIT")
             finally:
                 db.close()
-            os.link(draft, path)  # fails, rather than clobbers, if someone else was first
+            _publish(draft, path)
         except FileExistsError:
             raise StoreError(f"{path}: this file exists already; choose another name with -o.") from None
         except (sqlite3.Error, OSError) as error:
@@ -286,6 +286,18 @@ class Store:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _publish(draft: Path, path: Path) -> None:
+    """Give a whole file its name; fails, rather than clobbers, if someone else was first."""
+    try:
+        os.link(draft, path)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        if path.exists():
+            raise FileExistsError from None
+        os.rename(draft, path)
 
 
 def _same_arrays(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
