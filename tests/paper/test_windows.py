@@ -1,0 +1,225 @@
+"""P_3^1 and P_4^1 of the paper's set, found by simulation and continued to both ends of their windows.
+
+The folds, doublings and grazes that bound them are roots of the brute-force return map of `brute`, stated to ten digits.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpmath import eye, mp, mpf
+
+import contvines as cv
+from orbits import Absorber
+from orbits.simulation import find_attractor
+
+sys.path.insert(0, str(Path(__file__).parent))
+from brute import Machine, eigenvalues, secant
+
+ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+# amplitudes C
+THREE = {"fold": "1.0037342178", "period-doubling": "1.4125623672", "velocity-graze": "1.9824794254"}
+FOUR = {"fold": "2.4791282575", "symmetry-breaking": "3.0980096865", "velocity-graze": "5.0515380711"}
+
+
+@pytest.fixture(scope="module")
+def three():
+    found = find_attractor(ABSORBER, {"w_rate": 0.2}, amplitude=1.2)
+    assert (found.impacts, found.periods, found.word.canonical().text) == (3, 1, "LRLt")
+    return cv.diagram(found.orbit, over="amplitude", within=(0.2, 3.5), depth=1)
+
+
+@pytest.fixture(scope="module")
+def four():
+    found = find_attractor(ABSORBER, {"w_rate": 1.0}, amplitude=2.6)
+    assert (found.impacts, found.periods, found.symmetric) == (4, 1, True)
+    return cv.diagram(found.orbit, over="amplitude", within=(0.2, 8.0), depth=1)
+
+
+def points_of(graph, label="B1"):
+    return {p.kind: p for p in graph.special.values() if p.branch == label and p.real}
+
+
+def node_on_left(orbit):
+    """(psi, B+) at the impact on the left wall that flies straight to the right one, and the letters that follow.
+
+    A mirror image does as well.
+    """
+    for candidate in (orbit, orbit.mirror()):
+        text = candidate.word.text
+        for place, letter in enumerate(candidate.word.events):
+            turned = candidate.rotate(place)
+            text = turned.word.text
+            if letter == "L" and text[1] == "R":
+                return turned.nodes[0], text[1:] + text[0]
+    raise AssertionError("no straight flight from the left wall")
+
+
+def fixed_point(branch, amplitude):
+    """Brute-force machine, word and fixed point, started from the nearest point of the stable part of a branch."""
+    i = int(np.argmin(np.abs(branch.values - float(amplitude)) + 10.0 * ~branch.stable))
+    guess, letters = node_on_left(branch.orbit(i))
+    machine = Machine(mpf(amplitude) ** 2)
+    word = {"letters": letters}
+    return machine, word, machine.orbit(guess, word)
+
+
+def determinant(branch, sign):
+    """det(A + sign I) as a function of the amplitude."""
+
+    def value(amplitude):
+        machine, word, node = fixed_point(branch, amplitude)
+        A = machine.derivative(node, word) + sign * eye(2)
+        return A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]
+
+    return value
+
+
+def fold_by_brute_force(branch, point):
+    """Fixed point and det(A - I) = 0 at once; unknowns psi, B+ and the amplitude."""
+    guess, letters = node_on_left(point.orbit)
+    word = {"letters": letters}
+
+    def residual(psi, B, amplitude):
+        machine = Machine(amplitude**2)
+        node = mp.matrix([psi, B])
+        gap = machine.image(node, word) - node
+        A = machine.derivative(node, word) - eye(2)
+        return [gap[0], gap[1], A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]]
+
+    start = (mpf(guess[0]), mpf(guess[1]), mpf(point.value))
+    return mp.findroot(residual, start, tol=mpf(10) ** -30)[2]
+
+
+def graze_by_brute_force(point):
+    """Where the smallest s w' of the flights vanishes: interpolated backwards from four amplitudes before it."""
+    speeds, amplitudes = [], []
+    for k in range(1, 5):
+        guess, letters = node_on_left(point.problem.orbit(*_stepped(point, -k * 1e-5)))
+        amplitude = mpf(point.value) - k * mpf("1e-5")
+        machine = Machine(amplitude**2)
+        node = machine.orbit(guess, {"letters": letters})
+        speeds.append(min(machine.go((node[0], node[1]), len(letters))[2]["lowest"]))
+        amplitudes.append(amplitude)
+    assert all(speed > 0 for speed in speeds)
+    total = mpf(0)
+    for j, amplitude in enumerate(amplitudes):  # Lagrange, amplitude as a function of the speed, at speed 0
+        weight = mpf(1)
+        for k, other in enumerate(speeds):
+            if k != j:
+                weight *= other / (other - speeds[j])
+        total += weight * amplitude
+    return total
+
+
+def test_window_of_three_impacts(three):
+    """From a fold to a velocity graze; stable up to the doubling. All but the graze bound what a simulation finds."""
+    points = points_of(three)
+    for kind, value in THREE.items():
+        assert points[kind].value == pytest.approx(float(value), abs=1e-9)
+        assert points[kind].replay < 1e-8
+    branch = three["B1"]
+    assert branch.range == pytest.approx((points["fold"].value, points["velocity-graze"].value), abs=1e-14)
+    assert branch.stable_intervals() == [
+        pytest.approx((points["fold"].value, points["period-doubling"].value), abs=1e-12)
+    ]
+    # the unstable half goes from the fold to the graze of a wall, where one of the three impacts vanishes
+    assert points["wall-graze"].value == pytest.approx(1.314658555, abs=1e-9)
+    impacts = points["wall-graze"].orbit.events.rate_post[
+        [letter in "LR" for letter in points["wall-graze"].orbit.word.events]
+    ]
+    assert np.abs(impacts).min() < 1e-10
+
+
+def test_window_of_three_impacts_by_brute_force(three):
+    branch, points = three["B1"], points_of(three)
+    fold = fold_by_brute_force(branch, points["fold"])
+    assert abs(fold - points["fold"].value) < 1e-12
+    doubling = secant(determinant(branch, +1), "1.4125", "1.4126")
+    assert abs(doubling - points["period-doubling"].value) < 1e-12
+    graze = graze_by_brute_force(points["velocity-graze"])
+    assert abs(graze - points["velocity-graze"].value) < 1e-12
+
+
+def test_window_of_three_impacts_by_simulation(three):
+    """What the simulator finds on either side of the stable window's ends."""
+    points = points_of(three)
+    beside = points["fold"].value + 1e-5
+    orbit = min((three["B1"].orbit(int(i)) for i in np.flatnonzero(three["B1"].stable)), key=_amplitude)
+    start = {"phase": orbit.events.phase[0] % 6.283185307179586, "w": orbit.events.w[0], "w_rate": orbit.events.rate_post[0]}
+    inside = find_attractor(ABSORBER, start, amplitude=beside, transient=3000)
+    assert (inside.impacts, inside.periods) == (3, 1)
+    outside = find_attractor(ABSORBER, start, amplitude=points["fold"].value - 1e-5, transient=3000, patience=1)
+    assert (outside.impacts, outside.periods) != (3, 1)
+    below, above = (
+        find_attractor(ABSORBER, {"w_rate": 0.2}, amplitude=points["period-doubling"].value + side, transient=5000)
+        for side in (-1e-3, 1e-3)
+    )
+    assert (below.impacts, below.periods) == (3, 1)
+    assert (above.impacts, above.periods) == (6, 2)
+
+
+def _amplitude(orbit):
+    return orbit.parameters["amplitude"]
+
+
+def test_window_of_four_impacts(four):
+    """Symmetric, two impacts at each wall: from a fold to a velocity graze in both long flights at once."""
+    points = points_of(four)
+    for kind, value in FOUR.items():
+        assert points[kind].value == pytest.approx(float(value), abs=1e-9)
+        assert points[kind].replay < 1e-8
+    branch = four["B1"]
+    assert branch.range == pytest.approx((points["fold"].value, points["velocity-graze"].value), abs=1e-14)
+    assert branch.stable_intervals() == [
+        pytest.approx((points["fold"].value, points["symmetry-breaking"].value), abs=1e-12)
+    ]
+    # the unstable half ends where an impact becomes a turn; there both P_2^1 with turns and P_3^1 begin
+    graze = points["wall-graze"]
+    words = [four[s.target].description for s in four.switches if s.point == graze.label]
+    assert sorted(word["impacts"] for word in words) == [2, 3]
+
+
+def test_window_of_four_impacts_by_brute_force(four):
+    branch, points = four["B1"], points_of(four)
+    assert abs(fold_by_brute_force(branch, points["fold"]) - points["fold"].value) < 1e-12
+    graze = graze_by_brute_force(points["velocity-graze"])
+    assert abs(graze - points["velocity-graze"].value) < 1e-12
+    beside = [fixed_point(branch, mpf(points["symmetry-breaking"].value) + side) for side in (mpf("-1e-9"), mpf("1e-9"))]
+    below, above = (max(z.real for z in eigenvalues(m.derivative(x, w))) for m, w, x in beside)
+    # of the full period the critical multiplier is the square of the half map's -1: it passes +1 upwards
+    assert below < 1.0 < above
+
+
+def test_beyond_each_graze_the_bare_maps_leave_the_simulation(three, four):
+    """On the real side the simulator follows the orbit; beyond the border it does not, and follows the new word."""
+    for graph in (three, four):
+        point = points_of(graph)["velocity-graze"]
+        target = next(graph[s.target] for s in graph.switches if s.point == point.label)
+        for sign, real in ((-1.0, True), (1.0, False)):
+            moved = point.problem.orbit(*_stepped(point, sign * 1e-4))
+            assert moved.residual < 1e-12
+            assert moved.real == real
+            assert (moved.replay() < 1e-7) == real
+        inner = target.orbit(len(target) // 2)
+        assert inner.word.text.count("s") > 0
+        assert inner.replay() < 1e-9
+
+
+def _stepped(point, distance):
+    """The solution of the same word at another amplitude."""
+    from orbits.start import polish
+
+    problem = point.problem
+    u = point.u + distance / point.tangent[-1] * point.tangent[:-1]
+    orbit = polish(problem.orbit(u, point.value + distance))
+    return problem.reduce(orbit.nodes), point.value + distance
+
+
+def test_three_goes_on_to_turns_and_back_to_four(three, four):
+    """The branch of P_4^1 reaches P_3^1 by a wall graze: both diagrams list the same points of it."""
+    mine = {round(p.value, 9) for p in three.special.values() if p.kind == "stick" and p.real}
+    others = {round(p.value, 9) for p in four.special.values() if p.kind == "stick" and p.real}
+    assert {1.992038958, 2.019117107} <= mine & others
