@@ -282,7 +282,9 @@ def margins(data, u, p, work, out):
                 last = base + two_pi * np.floor((psi1 - base) / two_pi)
                 if last >= psi1 - 1e-9 * (1.0 if arrival >= 2 else 0.0):
                     last -= two_pi
-                if last > psi0 + 1e-9 * (1.0 if event >= 2 else 0.0):
+                # a slip starts at such a minimum, which is not inside the flight; the next one is 2 pi away
+                early = 1.0 if event == 4 else (1e-9 if event >= 2 else 0.0)
+                if last > psi0 + early:
                     cosine = -mode * np.sqrt(1.0 - ratio * ratio)
                     # s w' = s (speed cos - beta) - a (t - t0): the last minimum is the lowest one
                     flight = mode * (speed * cosine - beta) - a * (last - psi0) / omega
