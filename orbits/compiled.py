@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits import cyclic, lanes, periodic_qr, periodic_schur, trigonometry
+from orbits import cyclic, lanes, periodic_qr, periodic_schur, small_eigenvalues, trigonometry
 from orbits import kernel as compiling
 from orbits.kernel import kernel, stored_kernel
 from orbits.models.base import Model
@@ -112,6 +112,7 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
         trigonometry.__file__,
         periodic_schur.__file__,
         periodic_qr.__file__,
+        small_eigenvalues.__file__,
         __file__,
     ]
     digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
@@ -122,7 +123,7 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
         {
             **globals(),
             "unpin": kernels.unpin,
-            "multipliers": periodic_schur.multipliers,
+            "multipliers": periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers,
             "margins": kernels.margins,
         },
     )

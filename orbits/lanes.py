@@ -18,7 +18,7 @@ from numba import njit
 from orbits.kernel import OPTIONS, kernel
 
 LANES = 16
-SHORTEST = 48  # cycles shorter than this are eliminated one node after the other
+SHORTEST = 32  # cycles shorter than this are eliminated one node after the other
 PACK, KEEP, STATE, ENDS = 12 * LANES, 16 * LANES, 13 * LANES, 14 * LANES
 NEVER_ZERO = 1e-290
 LANE_OPTIONS: dict[str, Any] = {**OPTIONS, "forceinline": True, "fastmath": {"contract", "nsz", "arcp"}}

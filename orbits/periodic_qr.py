@@ -38,8 +38,8 @@ def scaled(mantissa, exponent):
     return math.ldexp(fraction, total)
 
 
-@njit(cache=True, error_model="numpy")
-def _sort(re, im):
+@kernel
+def sort_eigenvalues(re, im):
     """Descending modulus, then real part, then imaginary part (insertion sort in place)."""
     for i in range(1, re.size):
         x, y = re[i], im[i]
@@ -54,8 +54,8 @@ def _sort(re, im):
         re[j + 1], im[j + 1] = x, y
 
 
-@njit(cache=True, error_model="numpy")
-def _factors(A, D, twist, M, lu):
+@kernel
+def factors(A, D, twist, M, lu):
     """Fill M[i] = -D_i^{-1} A_i (LU, partial pivoting), closure included; False if some D_i is singular."""
     length, n = A.shape[0], A.shape[1]
     for i in range(length):
@@ -94,8 +94,8 @@ def _factors(A, D, twist, M, lu):
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def _deficiency(A):
+@kernel
+def deficiency(A):
     """Least number of multipliers that vanish exactly: a zero row of A_i forgets one direction (a stick)."""
     most = 0
     for i in range(A.shape[0]):
@@ -341,7 +341,7 @@ def periodic_multipliers(A, D, twist, re, im, scratch):
     size = length * n * n
     M = scratch[:size].reshape((length, n, n))
     room = scratch[size : size + n * n].reshape((n, n))
-    if not _factors(A, D, twist, M, room):
+    if not factors(A, D, twist, M, room):
         re[:] = math.nan
         im[:] = math.nan
         return False
@@ -355,8 +355,8 @@ def periodic_multipliers(A, D, twist, re, im, scratch):
     _reduce(T)
     converged = _iterate(T, small)
     _diagonal(T, re, im, small[:n], small[n : 2 * n])
-    _sort(re, im)
-    lost = min(_deficiency(A), n)
+    sort_eigenvalues(re, im)
+    lost = min(deficiency(A), n)
     for k in range(n - lost, n):
         re[k] = im[k] = 0.0
     return converged

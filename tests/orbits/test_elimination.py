@@ -25,7 +25,7 @@ def dense(work, twist, border):
 
 @pytest.mark.parametrize("node", [2, 4])
 @pytest.mark.parametrize("twist", [1.0, -1.0])
-@pytest.mark.parametrize("length", [1, 2, 3, 10, 47, 48, 49, 63, 64, 65, 100, 200])
+@pytest.mark.parametrize("length", [1, 2, 3, 10, 31, 32, 33, 47, 48, 63, 64, 100, 200])
 def test_against_dense_algebra(node, twist, length):
     draw = np.random.default_rng(1000 * node + length)
     work = workspace(length, node, 6)
@@ -42,7 +42,7 @@ def test_against_dense_algebra(node, twist, length):
     assert sign == np.linalg.slogdet(matrix)[0]
 
 
-@pytest.mark.parametrize("length", [47, 4096])
+@pytest.mark.parametrize("length", [31, 4096])
 def test_unstable_cycles_lose_nothing(length):
     """Saddles that stretch by 8 and shrink by 8 per node: forward products reach 1e3700, the elimination must not."""
     draw = np.random.default_rng(length)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from orbits.eigenvectors import eigenvector
 from orbits.periodic_schur import multipliers, periodic_multipliers, scratch_size
+from orbits.small_eigenvalues import eigenvalues
 
 BOTH = pytest.mark.parametrize("method", [multipliers, periodic_multipliers])
 
@@ -188,3 +189,20 @@ def test_eigenvectors_solve_the_cycle(length, twist):
 def test_eigenvector_refuses_zero():
     with pytest.raises(ValueError, match="finite and not zero"):
         eigenvector(np.ones((1, 2, 2)), np.ones((1, 2, 2)), 1.0, 0.0)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 6])
+def test_small_eigenvalues(n):
+    """Against LAPACK on random matrices, and exactly on a nilpotent, a permutation and a diagonal one."""
+    draw = np.random.default_rng(n)
+    re, im = np.empty(n), np.empty(n)
+    for _ in range(50):
+        matrix = draw.normal(size=(n, n)) * 10.0 ** draw.uniform(-2, 2, (n, 1))
+        assert eigenvalues(matrix.copy(), re, im)
+        expected = np.linalg.eigvals(matrix)
+        assert max(np.abs(expected - x).min() for x in re + 1j * im) < 1e-10 * np.abs(matrix).max()
+        assert (re + 1j * im).sum() == pytest.approx(np.trace(matrix), abs=1e-11 * np.abs(matrix).max())
+    assert eigenvalues(np.diag(np.ones(n - 1), 1), re, im) and not re.any() and not im.any()
+    assert eigenvalues(np.diag(np.arange(n) + 1.0), re, im) and sorted(re) == list(range(1, n + 1))
+    assert eigenvalues(np.roll(np.eye(n), 1, axis=0), re, im)
+    np.testing.assert_allclose(np.abs(re + 1j * im), 1.0, atol=1e-14)
