@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 
+PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
 LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
 
 
@@ -27,12 +28,12 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     upper = spectrum.imag > 0.0
     if kind == "map":
         columns = (
-            real & (spectrum.real > 1.0),
-            real & (spectrum.real < -1.0),
-            upper & (np.abs(spectrum) > 1.0),
+            real & (spectrum.real > 1.0 + PAST),
+            real & (spectrum.real < -1.0 - PAST),
+            upper & (np.abs(spectrum) > 1.0 + PAST),
         )
     elif kind == "flow":
-        columns = (real & (spectrum.real > 0.0), np.zeros_like(real), upper & (spectrum.real > 0.0))
+        columns = (real & (spectrum.real > PAST), np.zeros_like(real), upper & (spectrum.real > PAST))
     else:
         return result
     for place, past in enumerate(columns):
@@ -49,7 +50,12 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
     else:
         values = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
     if len(values) < k:
-        return -LIMIT
+        if name == "pair" or len(values) == len(spectrum):
+            return -LIMIT
+        # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
+        # as it does in conservative systems
+        place = 0.0 if kind == "flow" else (-1.0 if name == "minus" else 1.0)
+        return -min(float(np.abs(spectrum[spectrum.imag != 0.0] - place).min()), LIMIT)
     value = float(values[k - 1])
     if kind == "map":
         value = float(np.log(value)) if value > 0.0 else -LIMIT

@@ -158,3 +158,16 @@ def test_bad_input_is_refused():
         cv.MapProblem(lambda x, r: [1.0, 2.0], [0.5], 3.0)
     with pytest.raises(ValueError, match="needs"):
         cv.MapProblem(logistic, [0.5, 0.6], 3.0, cycle=3, dimension=1)
+
+
+def test_area_preserving_map_has_no_spurious_events():
+    """Henon's map with b = -1 preserves areas: elliptic multipliers stay on the circle until the flip.
+
+    x' = 1 - a x^2 - y, y' = x: fixed point a x^2 + 2 x = 1, trace -2 a x; the trace is -2 where a x = 1, so a = 3.
+    """
+    problem = cv.MapProblem(
+        lambda x, a: np.array([1 - a * x[0] ** 2 - x[1], x[0]]), [0.4, 0.4], 0.5, parameter="a"
+    )
+    graph = cv.diagram(problem, within=(0.1, 3.5), depth=0)
+    assert not graph.of_kind("neimark-sacker") and not graph.of_kind("branch-point")
+    assert values(graph, "period-doubling") == pytest.approx([3.0], abs=1e-9)
