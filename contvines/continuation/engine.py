@@ -198,7 +198,13 @@ class Engine:
         """Smallest margin of each row, +inf where there are none."""
         if rows.shape[-1] == 2 * self.m:
             return np.full(rows.shape[:-1], np.inf)
-        smallest = np.fmin.reduce(rows[..., 2 * self.m :], axis=-1)  # fmin passes over NaN
+        margins = rows[..., 2 * self.m :]  # fmin passes over NaN
+        if margins.shape[-1] > 16:
+            smallest = np.fmin.reduce(margins, axis=-1)
+        else:  # few columns, many rows
+            smallest = margins[..., 0].copy()
+            for j in range(1, margins.shape[-1]):
+                np.fmin(smallest, margins[..., j], out=smallest)
         return np.where(np.isnan(smallest), np.inf, smallest)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:

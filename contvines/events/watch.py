@@ -88,7 +88,8 @@ class Watch:
         chunk = replace(chunk, signs=without_zeros(chunk.signs))
         turned = changes(chunk.signs)
         numbers = counts(engine.spectrum(chunk.rows), self.kind)
-        changed = np.any(numbers[:-1] != numbers[1:], axis=1)
+        jumps = numbers[:-1] != numbers[1:]
+        changed = jumps[:, 0] | jumps[:, 1] | jumps[:, 2]
         interesting = fold | turned | changed
         if engine.problem.n_margins:
             negative = engine.smallest_margin(chunk.rows) < MARGIN
@@ -101,7 +102,7 @@ class Watch:
             part = test.part(chunk.points)
             size = np.abs(part).max(axis=1)
             far = (size[:-1] > 1e-6) & (size[1:] > 1e-6)
-            meets |= far & ((part[:-1] * part[1:]).sum(axis=1) < 0.0)
+            meets |= far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)
         interesting |= meets
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
