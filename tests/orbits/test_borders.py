@@ -1,0 +1,166 @@
+"""Borders one by one: what the diagram says at a border, the simulator must do beside it."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+from orbits.simulation import find_attractor
+from orbits.start import polish
+
+PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+def switches(graph, point):
+    return [switch for switch in graph.switches if switch.point == point.label]
+
+
+def at(graph, value, kind=None):
+    """The real special point nearest to a parameter value."""
+    points = [p for p in graph.special.values() if p.real and (kind is None or p.kind == kind)]
+    return min(points, key=lambda p: abs(p.value - value))
+
+
+@pytest.fixture(scope="module")
+def pitchfork():
+    """A machine whose asymmetric orbits come from the smooth pitchfork and go back at a border."""
+    machine = Absorber(restitution=0.4040, friction=0.5859, gravity=0.4207)
+    found = find_attractor(machine, {"w_rate": 1.0}, amplitude=1.4)
+    return machine, cv.diagram(found.orbit, over="amplitude", within=(0.8, 2.0), depth=2)
+
+
+def test_symmetry_breaks_at_a_border(pitchfork):
+    """Symmetric `LR` and `LsRs` and asymmetric `LRs` meet in one velocity graze; only the asymmetric one is stable below."""
+    machine, graph = pitchfork
+    closing = next(
+        p for p in graph.special.values()
+        if p.kind in ("stick", "velocity-graze") and len(switches(graph, p)) == 2
+    )  # fmt: skip
+    met = {graph[closing.branch].description["word"]} | {
+        graph[s.target].description["word"] for s in switches(graph, closing)
+    }
+    assert {"".join(sorted(word)) for word in met} == {"LR", "LRs", "LRss"}
+    below = find_attractor(machine, {"w_rate": 1.0}, amplitude=closing.value - 2e-3, transient=3000)
+    above = find_attractor(machine, {"w_rate": 1.0}, amplitude=closing.value + 2e-3, transient=3000)
+    assert not below.symmetric
+    assert above.symmetric
+    assert sorted(below.text) == sorted("LRs")
+    assert sorted(above.text) == sorted("LsRs")
+    # no branch twice, and the symmetric orbits are followed as such
+    descriptions = [(b.description["word"], b.description["symmetric"], b.range) for b in graph.branches.values()]
+    assert len(set(descriptions)) == len(descriptions)
+    assert any(word == "LR" and symmetric for word, symmetric, _ in descriptions)
+
+
+def test_the_same_border_from_the_symmetric_side(pitchfork):
+    """Started on the symmetric orbits, the diagram finds the asymmetric ones at the border as well."""
+    machine, graph = pitchfork
+    closing = next(p for p in graph.special.values() if len(switches(graph, p)) == 2 and p.kind != "symmetry-breaking")
+    other = cv.diagram(machine.symmetric_orbit(amplitude=0.85), over="amplitude", within=(0.8, 2.0), depth=1)
+    graze = at(other, closing.value, "velocity-graze")
+    assert graze.value == pytest.approx(closing.value, abs=1e-10)
+    words = sorted("".join(sorted(other[s.target].description["word"])) for s in switches(other, graze))
+    assert words == ["LRs", "LRss"]
+
+
+def test_persistence_is_told_from_a_fold():
+    """The note of each crossing agrees with the ranges of the two branches."""
+    graph = cv.diagram(PAPER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=3)
+    checked = 0
+    for switch in graph.switches:
+        point = graph.special[switch.point]
+        if not ("persistence" in switch.note or "nonsmooth fold" in switch.note):
+            continue
+        source, target = graph[switch.source], graph[switch.target]
+        sides = []
+        for branch in (source, target):
+            end = int(np.argmin(np.abs(branch.values - point.value) + 1e3 * ~_ends(branch, point.value)))
+            inner = branch.values[1] if end == 0 else branch.values[-2]
+            sides.append(np.sign(inner - point.value))
+        checked += 1
+        assert (sides[0] != sides[1]) == ("persistence" in switch.note), switch
+    assert checked >= 6
+
+
+def _ends(branch, value):
+    ends = np.zeros(len(branch), bool)
+    ends[[0, -1]] = np.abs(branch.values[[0, -1]] - value) < 1e-7
+    return ends
+
+
+@pytest.mark.parametrize("rotation", range(6))
+def test_borders_do_not_depend_on_how_the_word_is_read(rotation):
+    """Every rotation of `LsR`, `LtsR` and `LttR` meets the same borders, also where the change straddles its end."""
+    found = find_attractor(PAPER, {"w_rate": 1.0}, amplitude=0.88)
+    orbit = found.orbit
+    places = [k for k, letter in enumerate(orbit.word.events) if letter != "u"]
+    turned = polish(orbit.rotate(places[rotation % len(places)]))
+    if rotation >= len(places):
+        turned = turned.mirror()
+    graph = cv.diagram(turned, over="amplitude", within=(0.6, 1.0), depth=0)
+    values = sorted(p.value for p in graph.special.values() if p.kind in ("stick", "velocity-graze"))
+    assert np.square(values) == pytest.approx([0.7322667848, 0.7489568973, 0.7982897117], abs=1e-9)
+    assert sorted(len(b.description["word"]) for b in graph.branches.values()) == [2, 3, 4, 4]
+
+
+def test_the_slip_is_no_graze():
+    """A symmetric island of three periods: no false border where the flight after a slip starts with w' = w'' = 0."""
+    rng = np.random.default_rng(318)
+    values = rng.uniform(0.3, 0.95), rng.uniform(0, 1), rng.uniform(0.05, 0.5)
+    machine = Absorber(restitution=values[0], friction=values[1], gravity=values[2])
+    orbit = next(
+        found.orbit
+        for rate in np.linspace(-2.0, 2.0, 41)
+        if (found := find_attractor(machine, {"w_rate": rate, "phase": 1.0}, amplitude=0.9618)).periods == 3
+    )
+    graph = cv.diagram(orbit, over="amplitude", within=(0.6, 1.2), depth=0)
+    for point in graph.special.values():
+        if point.kind in ("velocity-graze", "wall-graze", "stick"):
+            assert min(abs(m.value) for m in point.orbit.margins) < 1e-9, point
+
+
+def test_without_friction_flights_graze_the_walls():
+    """mu = 0: `LR` loses an impact or gains one where a flight or an impact grazes a wall; the simulator agrees."""
+    machine = Absorber(restitution=0.8077, friction=0.0, gravity=0.3)
+    graph = cv.diagram(machine.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.05, 2.4), depth=2)
+    kinds = [p.kind for p in graph.special.values()]
+    assert "symmetry-breaking" in kinds
+    assert "wall-graze" in kinds
+    assert not {"velocity-graze", "stick"} & set(kinds)
+    for point in graph.special.values():
+        assert point.replay < 1e-5
+    words = {b.description["word"] for b in graph.branches.values()}
+    assert any("LL" in w + w or "RR" in w + w for w in words)
+    for branch in graph.branches.values():
+        inner = np.flatnonzero(branch.stable[1:-1]) + 1
+        for i in inner[:: max(1, len(inner) // 3)]:
+            orbit = branch.orbit(int(i))
+            if orbit.margin < 1e-2 or np.abs(orbit.multipliers).max() > 0.98:
+                continue
+            start = {
+                "phase": orbit.events.phase[0] % (2 * np.pi),
+                "w": np.clip(orbit.events.w[0], -1, 1),
+                "w_rate": orbit.events.rate_post[0] * (1 + 1e-7),
+            }
+            seen = find_attractor(machine, start, amplitude=float(branch.values[i]), max_period=8)
+            assert (seen.impacts, seen.periods) == (orbit.impacts, orbit.periods)
+            assert seen.word.canonical() == orbit.word.canonical()
+
+
+@pytest.mark.parametrize("amplitude", [0.6, 0.9, 1.3])
+def test_friction_that_vanishes_joins_the_frictionless_orbits(amplitude):
+    """As a -> 0 an orbit with turns tends to the one without; so do its multipliers."""
+    sizes = (1e-3, 1e-4, 1e-5)
+    free = Absorber(restitution=0.7, friction=0.0, gravity=0.3)
+    found = find_attractor(free, {"w_rate": 1.0}, amplitude=amplitude)
+    assert found.periods
+    gaps = []
+    for friction in sizes:
+        machine = Absorber(restitution=0.7, friction=friction, gravity=0.3)
+        near = find_attractor(machine, found.state, amplitude=amplitude)
+        assert near.impacts == found.impacts
+        speeds = [np.sort(np.abs(o.orbit.events.B_post[[c in "LR" for c in o.orbit.word.events]])) for o in (found, near)]
+        gaps.append(float(np.abs(speeds[0] - speeds[1]).max()))
+        assert np.poly(near.orbit.multipliers) == pytest.approx(np.poly(found.orbit.multipliers), abs=30 * friction)
+    assert gaps[2] < 2e-5
+    assert gaps[0] > gaps[1] > gaps[2]
