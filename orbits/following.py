@@ -44,7 +44,7 @@ def position_error(orbit: Orbit, points: int = 400) -> float:
     """
     speeds = np.abs(orbit.events.rate_post)
     definite = np.flatnonzero(speeds > DEFINITE)
-    places = definite if definite.size else np.array([_calmest(orbit)])
+    places = definite if definite.size else _calm(orbit)
     places = places[:: -(-len(places) // STRETCHES)]
     durations = lengths(orbit)
     ends = np.append(places[1:], places[0] + len(orbit.word))
@@ -83,6 +83,7 @@ def _stretch_error(orbit: Orbit, durations: np.ndarray, place: int, events: int,
     return float(np.abs(seen.w - claimed).max())
 
 
-def _calmest(orbit: Orbit) -> int:
-    """A slip if there is one (friction gives way at a known phase), else the first event."""
-    return next((i for i, letter in enumerate(orbit.word.events) if letter == "u"), 0)
+def _calm(orbit: Orbit) -> np.ndarray:
+    """Slips if there are any (friction gives way at a known phase), else all events."""
+    slips = [i for i, letter in enumerate(orbit.word.events) if letter == "u"]
+    return np.array(slips or range(len(orbit.word)))
