@@ -12,7 +12,8 @@ from .branch import Branch
 from .continuation.engine import Engine, Solved
 from .continuation.status import Status
 from .continuation.trace import chunks
-from .events.watch import Located, Watch
+from .events.examine import Located
+from .events.watch import Watch
 
 
 @dataclass

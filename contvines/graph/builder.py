@@ -10,7 +10,8 @@ from ..branch import Branch
 from ..continuation.engine import Engine, Solved
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
-from ..events.watch import MARGIN, Watch
+from ..events.examine import MARGIN
+from ..events.watch import Watch
 from ..follow import Half, follow, make_branch, single
 from ..special import BORDERS
 from .leaving import leave

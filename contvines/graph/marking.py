@@ -6,7 +6,7 @@ import numpy as np
 
 from ..branch import Branch
 from ..continuation.engine import Engine
-from ..events.watch import Located
+from ..events.examine import Located
 from ..follow import Half
 from ..normal_forms import fold_coefficient
 from ..special import BORDERS, PREFIXES, SpecialPoint

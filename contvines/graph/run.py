@@ -12,7 +12,8 @@ import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..events.watch import Located, Watch
+from ..events.examine import Located
+from ..events.watch import Watch
 from ..special import SpecialPoint
 from .graph import Graph, Switch
 from .identity import Register

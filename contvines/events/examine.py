@@ -1,0 +1,222 @@
+"""Examining one segment of a branch: which special points it holds, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..continuation.engine import Engine, Solved
+from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
+from .locate import Root, locate, locate_singular
+from .segment import Segment
+
+NAMES = ("plus", "minus", "pair")
+SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
+FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
+MARGIN = -1e-12  # margins below this are negative
+
+
+class Located(NamedTuple):
+    """A special point on a chunk.
+
+    Attributes
+    ----------
+    position : float
+        Index of the point before it plus the fraction of the segment.
+    kind : str
+        fold, branch-point, period-doubling, symmetry-breaking, neimark-sacker, hopf, a border, user; "meets" where a
+        branch comes back to the fixed space of a symmetry; "plain" for a point between two special points.
+    index : int
+        Which multiplier, margin, symmetry or user function.
+    point : Solved
+    bracket : (float, float)
+    error : float
+        Estimated error of the parameter value.
+    note : str
+    """
+
+    position: float
+    kind: str
+    index: int
+    point: Solved
+    bracket: tuple[float, float]
+    error: float
+    note: str = ""
+
+
+class Examiner:
+    """Finds the special points of segments.
+
+    Parameters
+    ----------
+    engine : Engine
+    user_functions : mapping of name to function, optional
+        See :func:`contvines.events.functions.user_function`.
+    """
+
+    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
+        self.engine = engine
+        problem = engine.problem
+        self.kind = problem.spectrum
+        self.symmetries = [SymmetryTest(s, engine.n, problem.period_shift) for s in problem.symmetries]
+        self.users = {name: user_function(engine, f) for name, f in (user_functions or {}).items()}
+
+    def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
+        """The special points of one segment (positions in [0, 1])."""
+        a, b = segment.a, segment.b
+        events = self._meetings(segment)
+        met = [e.position for e in events]
+        folds = self._fold(segment, met)
+        singular = 0
+        discarded = False
+        crossings: list[Located] = []
+        before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
+        for column, name in enumerate(NAMES):
+            low, high = sorted((int(before[column]), int(after[column])))
+            for k in range(low + 1, high + 1):
+                test = self._multiplier(name, k)
+                root = locate(segment, test, jump=0.05)
+                if root is None or not root.continuous:
+                    discarded = True
+                    continue
+                if name != "plus":
+                    crossings.append(self._located(root, self._kind(name), k))
+                elif not _near(root.position, [e.position for e in folds] + met):
+                    crossings.append(self._located(root, "branch-point", k))
+        outside = (after - before) @ np.array([1, 1, 2])
+        if discarded and outside != 0 and depth < 10:
+            middle = segment.at(0.5)
+            if middle is not None:
+                return self.both(segment, 0.5, middle, real, depth + 1)
+        events += folds
+        for event in self._sharpen(segment, crossings):
+            events.append(event)
+            singular += event.kind == "branch-point"
+        if a.sign * b.sign < 0.0 and (singular + len(met)) % 2 == 0:
+            root = self._determinant(segment)
+            if root is not None and not _near(root.position, met + [e.position for e in folds]):
+                events.append(self._located(root, "branch-point", 0))
+        return events + self._borders(segment, real)
+
+    def _kind(self, name: str) -> str:
+        if name == "minus":
+            return self.engine.problem.flip_kind
+        return "hopf" if self.kind == "flow" else "neimark-sacker"
+
+    def _multiplier(self, name: str, k: int) -> Callable[[Solved], float]:
+        return lambda point: crossing(self.engine.spectrum(point.row), self.kind, name, k)
+
+    def _located(self, root: Root, kind: str, index: int, note: str = "") -> Located:
+        return Located(root.position, kind, index, root.point, (np.nan, np.nan), root.error, note)
+
+    def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
+        ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
+        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * (self.engine.upper - self.engine.lower):
+            return []
+        root = locate(segment, lambda point: float(point.tangent[-1]))
+        if root is None or not root.continuous:
+            return []
+        return [] if _near(root.position, met, 0.02) else [self._located(root, "fold", 0)]
+
+    def _sharpen(self, segment: Segment, crossings: list[Located]) -> list[Located]:
+        """Branch points again, through interpolation; those at one and the same place from the mean of their tests."""
+        result = [e for e in crossings if e.kind != "branch-point"]
+        points = [e for e in crossings if e.kind == "branch-point"]
+        while points:
+            group = [e for e in points if abs(e.position - points[0].position) <= 1e-6]
+            points = [e for e in points if e not in group]
+            tests = [self._multiplier("plus", e.index) for e in group]
+            others = [abs(e.position - group[0].position) for e in points]
+            root = locate_singular(
+                segment,
+                lambda point, tests=tests: sum(test(point) for test in tests) / len(tests),
+                group[0].position,
+                width=min([0.2, *(0.4 * gap for gap in others)]),
+            )
+            for event in group:
+                result.append(event if root is None else self._located(root, event.kind, event.index))
+        return result
+
+    def _determinant(self, segment: Segment) -> Root | None:
+        test = DeterminantTest(self.engine, segment.border)
+        rough = locate(segment, lambda point: point.sign, tolerance=1e-3)
+        if rough is None:
+            return None
+        return locate_singular(segment, test, rough.position) or rough
+
+    def _meetings(self, segment: Segment) -> list[Located]:
+        events = []
+        for index, test in enumerate(self.symmetries):
+            ends = test.part(np.array([segment.a.u, segment.b.u]))
+            sizes = np.abs(ends).max(axis=1)
+            if not (ends[0] @ ends[1] < 0.0 and sizes.min() > 1e-6):
+                continue
+            scale = float(np.sqrt(ends[0] @ ends[0]))
+
+            def along(point: Solved, test: SymmetryTest = test, row: np.ndarray = ends[0] / scale) -> float:
+                return float(row @ test.part(point.u[None, :])[0])
+
+            first, last = along(segment.a), along(segment.b)
+            rough = first / (first - last)
+            root = locate_singular(segment, along, rough) or locate(segment, along)
+            if root is not None:
+                root = locate_singular(segment, along, root.position) or root
+                events.append(self._located(root, "meets", index))
+        return events
+
+    def _borders(self, segment: Segment, real: bool) -> list[Located]:
+        engine = self.engine
+        a, b = engine.margins(segment.a.row), engine.margins(segment.b.row)
+        if not len(a):
+            return []
+        events = []
+        if real:
+            crossing_ones = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
+            if len(crossing_ones):
+
+                def margin(point: Solved) -> float:
+                    return min(float(engine.margins(point.row)[crossing_ones].min()), 1.0)
+
+                root = locate(segment, margin, fallback_zero=True)
+                if root is not None:
+                    j = int(crossing_ones[np.argmin(engine.margins(root.point.row)[crossing_ones])])
+                    events.append(self._located(root, engine.problem.margin_kind(j), j, "border"))
+        elif (a < MARGIN).any() and not (b < MARGIN).any():
+            j = int(np.argmin(a))
+            root = locate(segment, lambda point: min(float(engine.margins(point.row).min()), 1.0))
+            if root is not None:
+                j = int(np.argmin(engine.margins(root.point.row)))
+                events.append(self._located(root, engine.problem.margin_kind(j), j, "border"))
+        return events
+
+    def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
+        """Zeros of the user functions on one segment."""
+        events = []
+        for index, (name, ends) in enumerate(values.items()):
+            if not changes(np.asarray(ends))[0]:
+                continue
+            f = self.users[name]
+            root = locate(segment, lambda point, f=f: float(f(point.u[None, :], np.array([point.p]))[0]))
+            if root is not None and root.continuous:
+                events.append(self._located(root, "user", index, name))
+        return events
+
+    def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
+        """The special points of a segment from its two parts."""
+        parts = (Segment(self.engine, segment.a, middle), Segment(self.engine, middle, segment.b))
+        first, second = (self.examine(part, real, depth) for part in parts)
+        return [e._replace(position=s * e.position) for e in first] + [
+            e._replace(position=s + (1.0 - s) * e.position) for e in second
+        ]
+
+
+def changes(values: np.ndarray) -> np.ndarray:
+    """Whether the sign changes between neighbours; an exact zero counts as positive."""
+    positive = values >= 0.0
+    return positive[:-1] != positive[1:]
+
+
+def _near(position: float, others: list[float], distance: float = SAME) -> bool:
+    return any(abs(position - other) <= distance for other in others)
