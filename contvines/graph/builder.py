@@ -80,6 +80,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
+    if not real and pending.kind == "border":
+        return  # an algebraic solution beyond the border that no machine follows: nothing was crossed
     if not real and not run.virtual:
         if pending.point is not None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
