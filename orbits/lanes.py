@@ -32,8 +32,8 @@ def lanes_size(length: int) -> int:
 @njit(**LANE_OPTIONS)
 def _pack(F, A, D, Q, m, pack):
     """Copy block s m + b to place b of lane s: A, D, Q, -F as twelve rows."""
-    for s in range(LANES):
-        for b in range(m):
+    for b in range(m):
+        for s in range(LANES):
             i = s * m + b
             at = b * PACK + s
             pack[at] = A[i, 0, 0]
@@ -286,9 +286,11 @@ def expand(length, scratch, found, twist, solution):
             i = 2 * s * m
             solution[r, i] = found[r, 2 * s]
             solution[r, i + 1] = found[r, 2 * s + 1]
-            for b in range(1, m):
-                solution[r, i + 2 * b] = keep[b * KEEP + 32 * r + s]
-                solution[r, i + 2 * b + 1] = keep[b * KEEP + 32 * r + 16 + s]
+        for b in range(1, m):
+            for s in range(LANES):
+                i = 2 * (s * m + b)
+                solution[r, i] = keep[b * KEEP + 32 * r + s]
+                solution[r, i + 1] = keep[b * KEEP + 32 * r + 16 + s]
         for j in range(2 * LANES, 2 * nodes + 1):
             solution[r, 2 * LANES * m + j - 2 * LANES] = found[r, j]
 

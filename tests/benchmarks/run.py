@@ -119,10 +119,10 @@ def continuation(rounds, lengths=LENGTHS):
 
 
 def growth(rounds, lengths=GROWTH):
-    """Seconds per point of the compiled loop against l, and the exponents: of all lengths, and from 32 on."""
+    """Seconds per point of the compiled loop against l (forty points), and the exponents: of all lengths, from 32 on."""
     seconds = []
     for l in lengths:
-        core = Core(l, max(12, min(600, 60_000 // l)))
+        core = Core(l, 41)
         seconds.append(interleaved({"loop": lambda core=core: core.run() - 1}, rounds)["loop"])
     logs = np.log(lengths), np.log(seconds)
     late = np.array(lengths) >= 32
