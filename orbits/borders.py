@@ -19,7 +19,8 @@ from orbits.rewriting import Edit, applied, edits_at
 from orbits.words import Word
 
 NEAR = 1e-7  # margins this small vanish together
-SIZES = (2e-3, 2e-4, 2e-5)  # of what grows beyond the border
+SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))  # of what grows beyond the border: ways to try
+REAL = -1e-9  # smallest margin of a real orbit
 FOLLOWED = 1e-6  # largest replay error of a seed
 GROWING = 1e-4  # least growth of a margin with the distance from the border
 
@@ -73,7 +74,7 @@ def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
 
 
 def _followed(orbit: Orbit) -> bool:
-    return orbit.margin >= -1e-9 and orbit.replay() < FOLLOWED
+    return orbit.margin >= REAL and orbit.replay() < FOLLOWED
 
 
 def _simplest(
@@ -127,7 +128,7 @@ def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iter
         )
         wider = problem.sibling(orbit.word, orbit.periods, False)
         what = "the period doubles at the border"
-    for change in edits_at(orbit, index):
+    for change in edits_at(orbit, index, problem.length):
         found = _grow(wider, orbit, p, [change])
         if found is None:
             continue
@@ -244,10 +245,10 @@ def _proposals(
     orbit = problem.orbit(u, p)
     values = _row(problem, u, p)
     together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
-    for first in edits_at(orbit, index):
+    for first in edits_at(orbit, index, problem.length):
         chosen = [first]
         for j in together:
-            for change in edits_at(orbit, j):
+            for change in edits_at(orbit, j, problem.length):
                 if change.note == first.note and not any(_overlap(change, other) for other in chosen):
                     chosen.append(change)
                     break
@@ -280,29 +281,45 @@ def _grow(
         other = problem.sibling(word, problem.periods, problem.symmetric)
     except ValueError:
         return None
-    n = problem.model.node
     guess = np.ascontiguousarray(nodes, dtype=float).ravel()
-    size = other.dimension
-    kernels, work = assemble(problem.model), other.workspace()
-    step, tangent = np.empty(size + 1), np.empty(size + 1)
     if edits[0].grows == "margin":
         return _beside(other, guess, p)
+    for sizes in SIZES:
+        found = _climb(other, guess, first, edits[0], p, sizes)
+        if found is not None and found[0].orbit(found[1], found[2]).margin >= REAL:
+            return found
+    return None
+
+
+def _climb(
+    other: OrbitProblem, guess: np.ndarray, first: int, change: Edit, p: float, sizes: tuple[float, ...]
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """Solve with what grows beyond the border held at each of the sizes in turn; the last that converges."""
+    n, size = other.model.node, other.dimension
+    kernels, work = assemble(other.model), other.workspace()
+    step, tangent = np.empty(size + 1), np.empty(size + 1)
     best = None
     u, q = guess.copy(), p
-    for wanted in SIZES:
+    for wanted in sizes:
         border = np.zeros(size + 1)
-        if edits[0].grows == "gap":
+        if change.grows == "gap":
             border[first * n], border[(first + 1) * n] = -1.0, 1.0
-            if edits[0].start == edits[0].stop:  # the later event stays: friction gives way there
+            if change.start == change.stop:  # the later event stays: friction gives way there
                 u[first * n] = u[(first + 1) * n] - wanted
             else:
                 u[(first + 1) * n] = u[first * n] + wanted
         else:
-            sign = 1.0 if edits[0].events[0] == "L" else -1.0
+            sign = 1.0 if change.events[0] == "L" else -1.0
+            cavity = float(other.orbit(u, q).events.v_rate[first])
             border[first * n + 1] = sign
             if n == 4:
                 border[first * n + 3] = -sign
-            speed = sign * (u[first * n + 1] - other.orbit(u, q).events.v_rate[first])
+            else:
+                values = other.values(q)
+                border[first * n] = sign * values[0] * values[5] * np.sin(u[first * n])
+                change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
+                border[size] = -sign * change_with / NEAR
+            speed = sign * (u[first * n + 1] - cavity)
             u[first * n + 1] += sign * (wanted - speed)
         trial = u.copy()
         residual, _, q_new = kernels.newton(other.data, trial, q, work, border, step, tangent, 1e-12, 40)

@@ -21,7 +21,8 @@ from orbits.orbit import Orbit
 from orbits.sampling import flight, lengths, slowest
 from orbits.words import Word
 
-SHORT = 1e-4  # phase between a turn and the stick after it that is about to vanish
+SHORT = 1e-4  # phase of a stick, or between a turn and the stick after it, that is about to vanish
+NO_SPEED = 1e-7  # an impact slower than this vanishes
 FIRST = 2e-3  # size of what grows from nothing: radians of phase, or speed
 
 
@@ -50,7 +51,7 @@ class Edit:
     note: str
 
 
-def edits_at(orbit: Orbit, index: int) -> list[Edit]:
+def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
     """The edits that margin `index` may ask for at the border orbit, the likeliest first.
 
     Parameters
@@ -59,6 +60,8 @@ def edits_at(orbit: Orbit, index: int) -> list[Edit]:
         The border orbit, over its whole cycle.
     index : int
         Index of the vanishing margin, four per node.
+    unit : int, optional
+        Number of events after which the cycle repeats, or mirrors, itself; default: all.
     """
     place, column = divmod(index, PER_NODE)
     word, n = orbit.word, len(orbit.word)
@@ -68,6 +71,10 @@ def edits_at(orbit: Orbit, index: int) -> list[Edit]:
     if word.frictionless:
         return _frictionless(orbit, place, column)
     if column == FLIGHT and after != 0:
+        following = (place + 1) % (unit or n)
+        if word.events[following] == "s" and following + 1 < n:
+            if orbit.nodes[following + 1, 0] - orbit.nodes[following, 0] < SHORT:
+                return _stick(orbit, following)  # the flight comes to rest where a stick is about to vanish
         ahead, state = slowest(orbit, place)
         late = np.array([node[0] + ahead, state[0], *state[2:]])[: node.size]
         early = late.copy()
@@ -153,6 +160,11 @@ def _wall(orbit: Orbit, place: int) -> list[Edit]:
 
 
 def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
+    if column == FLIGHT:  # it touches the wall just where it begins or ends if an impact there vanishes
+        places = (place, (place + 1) % len(orbit.word))
+        soft = [k for k in places if abs(orbit.events.rate_post[k]) < NO_SPEED]
+        if soft:
+            place, column = soft[0], EVENT
     if column == EVENT:
         return [Edit(place, place + 1, (), (), orbit.nodes[:0], "margin", "an impact vanishes")]
     if column != FLIGHT:

@@ -162,6 +162,8 @@ def _motion(
     )
     if run.status == EVENTS_FULL:
         return np.inf
+    if nodes[:, 0].min() < nodes[0, 0] or nodes[:, 0].max() > nodes[0, 0] + TWO_PI * periods:
+        return np.inf  # time does not run forward through these nodes
     places = np.where(codes == 0, 1.0, np.where(codes == 1, -1.0, nodes[:, 1]))
     seen = run.sample(np.append(nodes[:, 0], nodes[0, 0] + TWO_PI * periods))
     return float(np.abs(seen.w - np.append(places, places[0])).max())
