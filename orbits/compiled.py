@@ -106,6 +106,7 @@ def specialise(function: Callable, name: str, **known: Any) -> Any:
 def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
     files = [
         kernels.__file__,
+        *getattr(kernels, "SOURCES", ()),
         compiling.__file__,
         cyclic.__file__,
         lanes.__file__,

@@ -298,7 +298,7 @@ def linearise(data, u, p, work):
                 elif ip == EXCITATION:
                     q += force * rate * omega * c1
                 Q[i, 0] = q
-            else:
+            elif event < 2 or mode == 0:
                 F[i, 0] = Q1r - Q2r
                 A[i, 0, 0] = Q1r_psi0 - Q2r_psi0
                 A[i, 0, 1] = Q1r_y - Q2r_y
@@ -306,6 +306,22 @@ def linearise(data, u, p, work):
                 A[i, 0, 3] = Q1r_vr - Q2r_vr
                 D[i, 0, 0] = Q1r_psi1 - Q2r_psi1
                 Q[i, 0] = dQ1r - dQ2r
+            else:
+                # from rest to rest: the mean of w'' over the flight, w'/d, so that no flight of no duration solves it
+                half = 0.5 * (psi1 - psi0)
+                middle = 0.5 * (psi1 + psi0)
+                short = math.sin(0.5 * beta * d)
+                loss = math.expm1(-alpha * d) * math.cos(beta * d) - 2.0 * short * short - alpha * S  # T22 - 1
+                swing = 2.0 * omega * math.sin(half) * (X * math.sin(middle) + Y * math.cos(middle))
+                by_d = 1.0 / d
+                mean = (T21 * z + loss * zr - swing) * by_d - mode * pull
+                F[i, 0] = mean
+                A[i, 0, 0] = (Q1r_psi0 - Q2r_psi0 + mean * by_omega) * by_d
+                A[i, 0, 1] = (Q1r_y - Q2r_y) * by_d
+                A[i, 0, 2] = (Q1r_v - Q2r_v) * by_d
+                A[i, 0, 3] = loss * part * by_d
+                D[i, 0, 0] = (Q1r_psi1 - Q2r_psi1 - mean * by_omega) * by_d
+                Q[i, 0] = (dQ1r - dQ2r - mean * dd) * by_d
         size = max(max(abs(F[i, 0]), abs(F[i, 1])), max(abs(F[i, 2]), abs(F[i, 3])))
         if not size <= largest:
             largest = size

@@ -53,7 +53,8 @@ def residual(params, start, mode, arrival, after, x0, x1):
     elif arrival == U:
         rows = [sum(force[j] * end[j] for j in range(7)) - after * (1 + eps) * mu * g, w - x1[1]]
     else:
-        rows = [w_rate, w - x1[1]]
+        from_rest = start >= 2 and mode  # then the map is the mean of w'' over the flight
+        rows = [w_rate / ((x1[0] - psi) / Omega) if from_rest else w_rate, w - x1[1]]
     return [*rows, v - x1[2], v_rate - x1[3]]
 
 
