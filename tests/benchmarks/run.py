@@ -108,7 +108,9 @@ def continuation(rounds, lengths=LENGTHS):
     auto = Auto()
     for l in lengths:
         points = max(40, min(600, 100_000 // l))
-        api_step = case.STEP / 10 if l < 16 else case.STEP / 4 if l < 64 else case.STEP
+        api_step = (
+            case.STEP / 10 if l < 64 else case.STEP
+        )  # long branches, so that what is done once counts little
         for name, seconds in interleaved(competitors(l, points, api_step, l <= 128), rounds).items():
             table.setdefault(name, {})[l] = seconds
         if auto.available:
