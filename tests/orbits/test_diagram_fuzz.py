@@ -94,6 +94,8 @@ def crossed(graph, depth):
         branch = graph[point.branch]
         if point.kind not in BORDERS or not branch.real or any(s.point == point.label for s in graph.switches):
             continue
+        if np.abs(point.multipliers).max(initial=0.0) > 1e8:  # too unstable to be solved for beside the border
+            continue
         outward = replace(point, tangent=-point.tangent if point.index == 0 else point.tangent)
         seeds = point.problem.beyond(outward)
         assert seeds, point
