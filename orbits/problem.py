@@ -152,16 +152,17 @@ class OrbitProblem:
     # ------------------------------------------------------------------ symmetries and larger problems
     @cached_property
     def symmetries(self) -> tuple[Symmetry, ...]:
-        """The mirror image of a full word with mirror halves; the shift of a doubled word by its half."""
+        """Images of a solution of the full word: the mirror some places on, and a doubled word's shift by its half."""
         if self.symmetric:
             return ()
         found = []
-        if self.word.mirror_symmetric_halves and self.periods % 2 == 1:
-            half = self.sibling(self.word, self.periods, symmetric=True)
+        places = self._mirror_places()
+        if places:
+            half = self.sibling(self.word.head(2 * places), 2 * self.periods * places // self.length, symmetric=True)
             found.append(
                 Symmetry(
                     "symmetry-breaking",
-                    lambda u: self._rotated(u, -1.0),
+                    lambda u: self._rotated(u, places, -1.0),
                     lambda u: (half, half.reduce(self.expand(u))),
                 )
             )
@@ -170,20 +171,30 @@ class OrbitProblem:
             found.append(
                 Symmetry(
                     "period-doubling",
-                    lambda u: self._rotated(u, 1.0),
+                    lambda u: self._rotated(u, self.length // 2, 1.0),
                     lambda u: (root, root.reduce(self.expand(u))),
                 )
             )
         return tuple(found)
 
-    def _rotated(self, u: np.ndarray, sign: float) -> np.ndarray:
-        """Nodes half the cycle on, at the same phase again, mirrored for sign = -1."""
-        half = self.length // 2
-        turn = np.pi * self.periods
+    def _mirror_places(self) -> int:
+        """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
+        mirror, n = self.word.mirror(), self.length
+        for places in range(1, n // 2 + 1):
+            if n % (2 * places) or (2 * places * self.periods) % n or (2 * places * self.periods // n) % 2 == 0:
+                continue
+            if self.word.rotate(places) == mirror:
+                return places
+        return 0
+
+    def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
+        """Nodes some places on, at the same phase again, mirrored for sign = -1."""
+        whole = 2.0 * np.pi * self.periods
+        turn = whole * places / self.length
         nodes = self.expand(u)
-        image = np.roll(nodes, -half, axis=0) * np.r_[1.0, np.full(self.model.node - 1, sign)]
-        image[: self.length - half, 0] -= turn
-        image[self.length - half :, 0] += turn
+        image = np.roll(nodes, -places, axis=0) * np.r_[1.0, np.full(self.model.node - 1, sign)]
+        image[: self.length - places, 0] -= turn
+        image[self.length - places :, 0] += whole - turn
         return image.ravel()
 
     def sibling(
@@ -242,6 +253,11 @@ class OrbitProblem:
     def measure_names(self) -> tuple[str, ...]:
         """Measures that this machine's orbits have."""
         return measuring.names(self.model)
+
+    @property
+    def default_measure(self) -> str:
+        """The measure that a diagram shows when none is asked for."""
+        return self.model.default_measure
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""

@@ -80,6 +80,11 @@ class StuckProblem:
         """Measures: as for all orbits of the machine."""
         return measuring.names(self.model)
 
+    @property
+    def default_measure(self) -> str:
+        """The measure that a diagram shows when none is asked for."""
+        return self.model.default_measure
+
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once; velocities at impacts are not a number."""
         u, p = np.atleast_2d(u), np.atleast_1d(p)

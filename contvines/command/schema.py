@@ -52,7 +52,7 @@ class StartSection(Section):
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
 
     word: str
-    periods: Annotated[int, Field(ge=1)]
+    periods: Annotated[int, Field(ge=1)] = 1
     guess: list[list[float]] | None = None
 
 

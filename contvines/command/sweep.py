@@ -14,7 +14,7 @@ COLUMNS = ("value", "direction", "attractor", "word", "periods", "impacts")
 
 def sweep(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="The study; its [sweep] section is optional.")
+        Path, typer.Argument(metavar="STUDY.toml", help="The study; a section \\[sweep] is optional.")
     ],
     down: Annotated[bool, typer.Option("--down", help="From the interval's upper end to the lower.")] = False,
     output: Annotated[
@@ -23,7 +23,7 @@ def sweep(
     ] = None,
     plot: Annotated[
         Path | None,
-        typer.Option("--plot", metavar="FILE.png", help="Draw the attractors: B at every impact."),
+        typer.Option("--plot", metavar="FILE.png", help="Draw the attractors: B at every impact, or largest |q1|."),
     ] = None,
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
@@ -62,8 +62,12 @@ def sweep(
         from contvines.plots.style import save_figure
         from contvines.plots.sweep import plot_sweep
 
-        points = [(row.value, b) for row in rows for b in _impacts(row)]
-        save_figure(plot_sweep(points, read.parameter, graph), plot)
+        peaks = bool(rows) and "max_abs_q1" in rows[0].measures  # the coupled machine: what a frequency response shows
+        if peaks:
+            points = [(row.value, row.measures["max_abs_q1"]) for row in rows]
+        else:
+            points = [(row.value, b) for row in rows for b in _impacts(row)]
+        save_figure(plot_sweep(points, read.parameter, graph, "max_abs_q1" if peaks else "B"), plot)
         say(f"drawn in {plot}", quiet)
 
 
@@ -86,7 +90,8 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any
         writer.writerow([*COLUMNS, *names])
 
         def keep(row: Any) -> None:
-            first = [repr(row.value), row.direction, row.attractor, row.word, row.periods, row.impacts]
+            kind = "periodic" if row.attractor == "sliding" else row.attractor
+            first = [repr(row.value), row.direction, kind, row.word, row.periods, row.impacts]
             writer.writerow(first + [repr(float(row.measures[n])) for n in names])
             file.flush()
             rows.append(row)

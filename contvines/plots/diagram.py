@@ -28,7 +28,7 @@ def plot_diagram(
     Parameters
     ----------
     graph : Graph
-    x, y : names of measures; the continuation parameter, and "B" or the first measure there is, by default.
+    x, y : names of measures; the continuation parameter, and the problem's `default_measure` or first measure, by default.
     axes : drawn on; a new figure without.
     labels : write the labels of branches and special points.
     ends : mark the ends of the interval, too.
@@ -110,8 +110,9 @@ def default_measure(graph: "Graph") -> str:
     """The measure on the y axis when none is named."""
     for branch in graph.branches.values():
         names = list(getattr(branch.problem, "measure_names", ()) or ())
-        if "B" in names:
-            return "B"
+        wanted = getattr(branch.problem, "default_measure", None)
+        if wanted in names:
+            return str(wanted)
         if names:
             return next((n for n in names if n not in ("norm", graph.parameter)), names[0])
     return "norm"

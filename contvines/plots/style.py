@@ -52,6 +52,7 @@ SYMBOLS = {
     "B_pre": "velocity before impact $B^-$",
     "B_mean": "mean velocity at impacts $B$",
     "max_abs_w": r"largest $|w|$",
+    "max_abs_q1": r"largest $|q_1|$ in units of $b$",
     "impact_speed": "fastest impact $|w'_-|$",
     "frequency": r"frequency $\Omega$",
     "restitution": "restitution $r$",

@@ -13,14 +13,17 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
 
 
-def plot_sweep(points: list[tuple[float, float]], parameter: str, graph: "Graph | None" = None) -> "Figure":
-    """Draw the impacts of a sweep's attractors.
+def plot_sweep(
+    points: list[tuple[float, float]], parameter: str, graph: "Graph | None" = None, measure: str = "B"
+) -> "Figure":
+    """Draw the attractors of a sweep.
 
     Parameters
     ----------
-    points : (parameter value, B at an impact), as many as there are impacts.
+    points : (parameter value, measure), for B as many as there are impacts.
     parameter : name of the parameter.
-    graph : branches drawn beneath; they show the same B at their first impact.
+    graph : branches drawn beneath, with the same measure (B at their first impact).
+    measure : name of the measure.
     """
     values = np.array(points, float).reshape(-1, 2)
     with styled():
@@ -32,16 +35,16 @@ def plot_sweep(points: list[tuple[float, float]], parameter: str, graph: "Graph 
             marker=".",
             markersize=2.4,
             color="0.45",
-            label="simulated: B at every impact",
+            label="simulated: B at every impact" if measure == "B" else "simulated",
             zorder=2,
         )[0]
         if graph is not None:
-            plot_diagram(graph, x=parameter, y="B", axes=axes)
+            plot_diagram(graph, x=parameter, y=measure, axes=axes)
         legend = axes.get_legend()
         handles = [*(legend.legend_handles if legend else []), dots]
         axes.legend(
             handles=handles, labels=[str(h.get_label()) for h in handles], loc="best", handlelength=2.6
         )
         axes.set_xlabel(axis_label(parameter))
-        axes.set_ylabel("$B$ at the impacts")
+        axes.set_ylabel("$B$ at the impacts" if measure == "B" else axis_label(measure))
     return figure

@@ -39,6 +39,7 @@ class Model:
     parameter_names: ClassVar[tuple[str, ...]]
     limits: ClassVar[Mapping[str, tuple[str, Any]]]
     default_parameter: ClassVar[str]
+    default_measure: ClassVar[str] = "B"
 
     @property
     def kernels(self) -> ModuleType:

@@ -73,6 +73,7 @@ class Coupled(Model):
 
     name: ClassVar[str] = "coupled"
     node: ClassVar[int] = 4
+    default_measure: ClassVar[str] = "max_abs_q1"
     default_parameter: ClassVar[str] = "frequency"
     parameter_names: ClassVar[tuple[str, ...]] = (
         "forcing",
