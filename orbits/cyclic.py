@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from orbits.kernel import OPTIONS, kernel
-from orbits.lanes import LANES, SHORTEST, condense, expand, lanes_size, short_cycle
+from orbits.lanes import SHORTEST, call, lanes_size, links, reflect, short_cycle
 from orbits.periodic_schur import scratch_size
 
 TINY = 1e-300
@@ -36,28 +36,37 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         ``(L n,)``; then those of `orbits.lanes`, and ``(L + 1,)`` twice.
     """
     n = node
+    long = length if n == 2 else 0
+    F, A, D, Q = (
+        np.zeros((length, n)),
+        np.zeros((length, n, n)),
+        np.zeros((length, n, n)),
+        np.zeros((length, n)),
+    )
+    solution, lanes, short = np.zeros((2, length * n + 1)), np.zeros(lanes_size(long)), short_cycle(long)
+    listed = (F, A, D, Q, lanes, *short, solution)
     return (
-        np.zeros((length, n)),
-        np.zeros((length, n, n)),
-        np.zeros((length, n, n)),
-        np.zeros((length, n)),
+        F,
+        A,
+        D,
+        Q,
         np.zeros(parameters),
         np.zeros((length + 1, 8)),
         np.zeros((length, n, 3 * n + 2)),
         np.zeros((2 * n, 3 * n + 2)),
         np.zeros((n, n + 2)),
-        np.zeros((2, length * n + 1)),
+        solution,
         np.zeros(4 * n + 2),
         np.zeros(scratch_size(length, n)),
         np.zeros(n),
         np.zeros(n),
         np.zeros(n + 1, np.int64),
         np.zeros(length * n),
-        np.zeros(lanes_size(length) if n == 2 else 0),
-        *short_cycle(length if n == 2 else 0),
-        np.zeros(2 * (4 * LANES + 1)),
+        lanes,
+        *short,
         np.zeros(length + 1),
         np.zeros(length + 1),
+        links(listed if n == 2 else (np.zeros(0),)),
     )
 
 
@@ -149,10 +158,9 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def eliminate(F, A, D, Q, twist, stored, panel, small, order, solution):
-        """Particular and null solution of J x + F_p p = -F, one node after the other; returns a sign."""
+    def forward_any(F, A, D, Q, stored, panel):
+        """Eliminate the inner nodes one after the other; panel[:n] keeps V x_L + U x_0 + w p = r; returns a sign."""
         length = F.shape[0]
-        size = length * n
         sign = 1.0
         # the condensed equation  panel[:n]:  V x_i + U x_0 + w p = r
         for i in range(n):
@@ -179,6 +187,98 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                     panel[i, at_first + c] = panel[n + i, at_first + c]
                 panel[i, at_p] = panel[n + i, at_p]
                 panel[i, at_rhs] = panel[n + i, at_rhs]
+        return sign
+
+    @kernel
+    def forward_two(F, A, D, Q, stored, panel):
+        """The same for two unknowns per node, in registers."""
+        a00, a01, u00, u01, w0, r0 = D[0, 0, 0], D[0, 0, 1], A[0, 0, 0], A[0, 0, 1], Q[0, 0], -F[0, 0]
+        a10, a11, u10, u11, w1, r1 = D[0, 1, 0], D[0, 1, 1], A[0, 1, 0], A[0, 1, 1], Q[0, 1], -F[0, 1]
+        sign = 1.0
+        for i in range(1, F.shape[0]):
+            top, bottom = stored[i, 0], stored[i, 1]
+            (
+                top[0],
+                top[1],
+                top[2],
+                top[3],
+                top[4],
+                top[5],
+                top[6],
+                top[7],
+                bottom[1],
+                bottom[2],
+                bottom[3],
+                bottom[4],
+                bottom[5],
+                bottom[6],
+                bottom[7],
+                a00,
+                a01,
+                u00,
+                u01,
+                w0,
+                r0,
+                a10,
+                a11,
+                u10,
+                u11,
+                w1,
+                r1,
+            ) = reflect(
+                a00,
+                a01,
+                u00,
+                u01,
+                w0,
+                r0,
+                a10,
+                a11,
+                u10,
+                u11,
+                w1,
+                r1,
+                A[i, 0, 0],
+                A[i, 0, 1],
+                A[i, 1, 0],
+                A[i, 1, 1],
+                D[i, 0, 0],
+                D[i, 0, 1],
+                D[i, 1, 0],
+                D[i, 1, 1],
+                Q[i, 0],
+                Q[i, 1],
+                -F[i, 0],
+                -F[i, 1],
+            )
+            if top[0] * bottom[1] < 0.0:
+                sign = -sign
+        panel[0, 0], panel[0, 1], panel[0, 2], panel[0, 3], panel[0, 6], panel[0, 7] = (
+            a00,
+            a01,
+            u00,
+            u01,
+            w0,
+            r0,
+        )
+        panel[1, 0], panel[1, 1], panel[1, 2], panel[1, 3], panel[1, 6], panel[1, 7] = (
+            a10,
+            a11,
+            u10,
+            u11,
+            w1,
+            r1,
+        )
+        return sign
+
+    forward = forward_two if n == 2 else forward_any
+
+    @kernel
+    def eliminate(F, A, D, Q, twist, stored, panel, small, order, solution):
+        """Particular and null solution of J x + F_p p = -F, one node after the other; returns a sign."""
+        length = F.shape[0]
+        size = length * n
+        sign = forward(F, A, D, Q, stored, panel)
         for i in range(n):
             for c in range(n):
                 small[i, c] = panel[i, at_first + c] + (panel[i, c] if c == 0 else twist * panel[i, c])
@@ -213,15 +313,16 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def eliminate_lanes(F, A, D, Q, twist, stored, panel, small, order, solution, scratch, short, found):
+    def eliminate_lanes(F, A, D, Q, twist, stored, panel, small, order, solution, short, found, listed):
         """The same with sixteen segments side by side, where the cycle is long enough."""
-        if F.shape[0] < SHORTEST:
+        length = F.shape[0]
+        if length < SHORTEST:
             return eliminate(F, A, D, Q, twist, stored, panel, small, order, solution)
-        nodes, sign = condense(F, A, D, Q, scratch, short)
+        address = listed.ctypes.data
+        sign = call(listed[0], length, twist, address)
         F_, A_, D_, Q_ = short
-        small_found = found[: 2 * (2 * nodes + 1)].reshape((2, 2 * nodes + 1))
-        sign *= eliminate(F_[:nodes], A_, D_, Q_, twist, stored, panel, small, order, small_found)
-        expand(F.shape[0], scratch, small_found, twist, solution)
+        sign *= eliminate(F_, A_, D_, Q_, twist, stored, panel, small, order, found)
+        call(listed[1], length, twist, address)
         return sign
 
     @kernel
@@ -244,9 +345,9 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         stored, panel, small, solution, order = work[6], work[7], work[8], work[9], work[14]
         size = solution.shape[1] - 1
         if n == 2:
-            scratch, short, found = work[16], (work[17], work[18], work[19], work[20]), work[21]
+            short = (work[17], work[18], work[19], work[20])
             sign = eliminate_lanes(
-                F, A, D, Q, data[4], stored, panel, small, order, solution, scratch, short, found
+                F, A, D, Q, data[4], stored, panel, small, order, solution, short, work[21], work[24]
             )
         else:
             sign = eliminate(F, A, D, Q, data[4], stored, panel, small, order, solution)

@@ -10,15 +10,18 @@ are flat, the lane is their last index, and each place is a slice (indices are t
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import carray, cfunc, njit, types
+from numba.extending import intrinsic
 
 from orbits.kernel import OPTIONS, kernel
 
 LANES = 16
-SHORTEST = 32  # cycles shorter than this are eliminated one node after the other
+SHORTEST = 48  # cycles shorter than this are eliminated one node after the other
 PACK, KEEP, STATE, ENDS = 12 * LANES, 16 * LANES, 13 * LANES, 14 * LANES
 NEVER_ZERO = 1e-290
 LANE_OPTIONS: dict[str, Any] = {**OPTIONS, "forceinline": True, "fastmath": {"contract", "nsz", "arcp"}}
@@ -51,6 +54,140 @@ def _pack(F, A, D, Q, m, pack):
 
 
 @njit(**LANE_OPTIONS)
+def reflect(
+    a00,
+    a01,
+    u00,
+    u01,
+    w0,
+    r0,
+    a10,
+    a11,
+    u10,
+    u11,
+    w1,
+    r1,
+    b00,
+    b01,
+    b10,
+    b11,
+    d00,
+    d01,
+    d10,
+    d11,
+    q0,
+    q1,
+    f0,
+    f1,
+):
+    """Two Householder reflections that clear the first two columns of the lower rows of
+
+        a00 a01  u00 u01   0   0   w0 r0
+        a10 a11  u10 u11   0   0   w1 r1
+        b00 b01   0   0   d00 d01  q0 f0
+        b10 b11   0   0   d10 d11  q1 f1
+
+    Returns the upper rows, without the zero (fifteen numbers), then the lower rows (twelve).
+    """
+    # first reflection, on the column (a00, a10, b00, b10)
+    n = -math.copysign(math.sqrt(a00 * a00 + a10 * a10 + b00 * b00 + b10 * b10 + NEVER_ZERO), a00)
+    v = a00 - n
+    t = 1.0 / (n * v)
+    k = (v * a01 + a10 * a11 + b00 * b01 + b10 * b11) * t
+    a01 += k * v
+    a11 += k * a10
+    b01 += k * b00
+    b11 += k * b10
+    k = (v * u00 + a10 * u10) * t
+    u00 += k * v
+    u10 += k * a10
+    g00 = k * b00
+    g10 = k * b10
+    k = (v * u01 + a10 * u11) * t
+    u01 += k * v
+    u11 += k * a10
+    g01 = k * b00
+    g11 = k * b10
+    k = (b00 * d00 + b10 * d10) * t
+    e00 = k * v
+    e10 = k * a10
+    d00 += k * b00
+    d10 += k * b10
+    k = (b00 * d01 + b10 * d11) * t
+    e01 = k * v
+    e11 = k * a10
+    d01 += k * b00
+    d11 += k * b10
+    k = (v * w0 + a10 * w1 + b00 * q0 + b10 * q1) * t
+    w0 += k * v
+    w1 += k * a10
+    q0 += k * b00
+    q1 += k * b10
+    k = (v * r0 + a10 * r1 + b00 * f0 + b10 * f1) * t
+    r0 += k * v
+    r1 += k * a10
+    f0 += k * b00
+    f1 += k * b10
+    # second reflection, on the column (a11, b01, b11)
+    n2 = -math.copysign(math.sqrt(a11 * a11 + b01 * b01 + b11 * b11 + NEVER_ZERO), a11)
+    v = a11 - n2
+    t = 1.0 / (n2 * v)
+    k = (v * u10 + b01 * g00 + b11 * g10) * t
+    u10 += k * v
+    g00 += k * b01
+    g10 += k * b11
+    k = (v * u11 + b01 * g01 + b11 * g11) * t
+    u11 += k * v
+    g01 += k * b01
+    g11 += k * b11
+    k = (v * e10 + b01 * d00 + b11 * d10) * t
+    e10 += k * v
+    d00 += k * b01
+    d10 += k * b11
+    k = (v * e11 + b01 * d01 + b11 * d11) * t
+    e11 += k * v
+    d01 += k * b01
+    d11 += k * b11
+    k = (v * w1 + b01 * q0 + b11 * q1) * t
+    w1 += k * v
+    q0 += k * b01
+    q1 += k * b11
+    k = (v * r1 + b01 * f0 + b11 * f1) * t
+    r1 += k * v
+    f0 += k * b01
+    f1 += k * b11
+    return (
+        n,
+        a01,
+        u00,
+        u01,
+        e00,
+        e01,
+        w0,
+        r0,
+        n2,
+        u10,
+        u11,
+        e10,
+        e11,
+        w1,
+        r1,
+        d00,
+        d01,
+        g00,
+        g01,
+        q0,
+        f0,
+        d10,
+        d11,
+        g10,
+        g11,
+        q1,
+        f1,
+    )
+
+
+@njit(**LANE_OPTIONS)
 def _forward(m, pack, keep, state):
     """Eliminate the inner nodes of every segment.
 
@@ -75,108 +212,60 @@ def _forward(m, pack, keep, state):
         block = pack[b * PACK : (b + 1) * PACK]
         kept = keep[b * KEEP : (b + 1) * KEEP]
         for s in range(LANES):
-            a00, a01, u00, u01 = state[s], state[s + 16], state[s + 32], state[s + 48]
-            w0, r0 = state[s + 64], state[s + 80]
-            a10, a11, u10, u11 = state[s + 96], state[s + 112], state[s + 128], state[s + 144]
-            w1, r1 = state[s + 160], state[s + 176]
-            b00, b01, b10, b11 = block[s], block[s + 16], block[s + 32], block[s + 48]
-            d00, d01, d10, d11 = block[s + 64], block[s + 80], block[s + 96], block[s + 112]
-            q0, q1, f0, f1 = block[s + 128], block[s + 144], block[s + 160], block[s + 176]
-            # first reflection, on the column (a00, a10, b00, b10)
-            n = -math.copysign(math.sqrt(a00 * a00 + a10 * a10 + b00 * b00 + b10 * b10 + NEVER_ZERO), a00)
-            v = a00 - n
-            t = 1.0 / (n * v)
-            k = (v * a01 + a10 * a11 + b00 * b01 + b10 * b11) * t
-            a01 += k * v
-            a11 += k * a10
-            b01 += k * b00
-            b11 += k * b10
-            k = (v * u00 + a10 * u10) * t
-            u00 += k * v
-            u10 += k * a10
-            g00 = k * b00
-            g10 = k * b10
-            k = (v * u01 + a10 * u11) * t
-            u01 += k * v
-            u11 += k * a10
-            g01 = k * b00
-            g11 = k * b10
-            k = (b00 * d00 + b10 * d10) * t
-            e00 = k * v
-            e10 = k * a10
-            d00 += k * b00
-            d10 += k * b10
-            k = (b00 * d01 + b10 * d11) * t
-            e01 = k * v
-            e11 = k * a10
-            d01 += k * b00
-            d11 += k * b10
-            k = (v * w0 + a10 * w1 + b00 * q0 + b10 * q1) * t
-            w0 += k * v
-            w1 += k * a10
-            q0 += k * b00
-            q1 += k * b10
-            k = (v * r0 + a10 * r1 + b00 * f0 + b10 * f1) * t
-            r0 += k * v
-            r1 += k * a10
-            f0 += k * b00
-            f1 += k * b10
-            kept[s] = n
-            kept[s + 16] = a01
-            kept[s + 32] = u00
-            kept[s + 48] = u01
-            kept[s + 64] = e00
-            kept[s + 80] = e01
-            kept[s + 96] = w0
-            kept[s + 112] = r0
-            # second reflection, on the column (a11, b01, b11)
-            n2 = -math.copysign(math.sqrt(a11 * a11 + b01 * b01 + b11 * b11 + NEVER_ZERO), a11)
-            v = a11 - n2
-            t = 1.0 / (n2 * v)
-            k = (v * u10 + b01 * g00 + b11 * g10) * t
-            u10 += k * v
-            g00 += k * b01
-            g10 += k * b11
-            k = (v * u11 + b01 * g01 + b11 * g11) * t
-            u11 += k * v
-            g01 += k * b01
-            g11 += k * b11
-            k = (v * e10 + b01 * d00 + b11 * d10) * t
-            e10 += k * v
-            d00 += k * b01
-            d10 += k * b11
-            k = (v * e11 + b01 * d01 + b11 * d11) * t
-            e11 += k * v
-            d01 += k * b01
-            d11 += k * b11
-            k = (v * w1 + b01 * q0 + b11 * q1) * t
-            w1 += k * v
-            q0 += k * b01
-            q1 += k * b11
-            k = (v * r1 + b01 * f0 + b11 * f1) * t
-            r1 += k * v
-            f0 += k * b01
-            f1 += k * b11
-            kept[s + 128] = n2
-            kept[s + 144] = u10
-            kept[s + 160] = u11
-            kept[s + 176] = e10
-            kept[s + 192] = e11
-            kept[s + 208] = w1
-            kept[s + 224] = r1
-            state[s] = d00
-            state[s + 16] = d01
-            state[s + 32] = g00
-            state[s + 48] = g01
-            state[s + 64] = q0
-            state[s + 80] = f0
-            state[s + 96] = d10
-            state[s + 112] = d11
-            state[s + 128] = g10
-            state[s + 144] = g11
-            state[s + 160] = q1
-            state[s + 176] = f1
-            state[s + 192] *= math.copysign(1.0, n * n2)
+            row = reflect(
+                state[s],
+                state[s + 16],
+                state[s + 32],
+                state[s + 48],
+                state[s + 64],
+                state[s + 80],
+                state[s + 96],
+                state[s + 112],
+                state[s + 128],
+                state[s + 144],
+                state[s + 160],
+                state[s + 176],
+                block[s],
+                block[s + 16],
+                block[s + 32],
+                block[s + 48],
+                block[s + 64],
+                block[s + 80],
+                block[s + 96],
+                block[s + 112],
+                block[s + 128],
+                block[s + 144],
+                block[s + 160],
+                block[s + 176],
+            )
+            kept[s + 0] = row[0]
+            kept[s + 16] = row[1]
+            kept[s + 32] = row[2]
+            kept[s + 48] = row[3]
+            kept[s + 64] = row[4]
+            kept[s + 80] = row[5]
+            kept[s + 96] = row[6]
+            kept[s + 112] = row[7]
+            kept[s + 128] = row[8]
+            kept[s + 144] = row[9]
+            kept[s + 160] = row[10]
+            kept[s + 176] = row[11]
+            kept[s + 192] = row[12]
+            kept[s + 208] = row[13]
+            kept[s + 224] = row[14]
+            state[s + 0] = row[15]
+            state[s + 16] = row[16]
+            state[s + 32] = row[17]
+            state[s + 48] = row[18]
+            state[s + 64] = row[19]
+            state[s + 80] = row[20]
+            state[s + 96] = row[21]
+            state[s + 112] = row[22]
+            state[s + 128] = row[23]
+            state[s + 144] = row[24]
+            state[s + 160] = row[25]
+            state[s + 176] = row[26]
+            state[s + 192] *= math.copysign(1.0, row[0] * row[8])
 
 
 @njit(**LANE_OPTIONS)
@@ -205,9 +294,7 @@ def _backward(m, keep, ends, p, null):
             w0 = kept[s + 96]
             a01 = kept[s + 16]
             by = 1.0 / kept[s]
-            first = (
-                kept[s + 112] - w0 * p - u00 * x0 - u01 * x1 - e00 * n0 - e01 * n1 - a01 * second
-            ) * by
+            first = (kept[s + 112] - w0 * p - u00 * x0 - u01 * x1 - e00 * n0 - e01 * n1 - a01 * second) * by
             one = (-w0 * null - u00 * y0 - u01 * y1 - e00 * z0 - e01 * z1 - a01 * other) * by
             ends[s + 64] = first
             ends[s + 80] = second
@@ -227,8 +314,6 @@ def condense(F, A, D, Q, scratch, short):
 
     Returns
     -------
-    nodes : int
-        Length of the shorter cycle.
     sign : float
         Sign of the determinant of what was eliminated.
     """
@@ -260,7 +345,7 @@ def condense(F, A, D, Q, scratch, short):
             Q_[nodes, r] = Q[i, r]
             F_[nodes, r] = F[i, r]
         nodes += 1
-    return nodes, sign
+    return sign
 
 
 @kernel
@@ -296,6 +381,81 @@ def expand(length, scratch, found, twist, solution):
 
 
 def short_cycle(length: int) -> tuple[np.ndarray, ...]:
-    """Arrays (F, A, D, Q) of the shorter cycle."""
-    nodes = 2 * LANES if length >= SHORTEST else 0
-    return np.zeros((nodes, 2)), np.zeros((nodes, 2, 2)), np.zeros((nodes, 2, 2)), np.zeros((nodes, 2))
+    """Arrays of the shorter cycle: F, A, D, Q, and its two solutions."""
+    nodes = LANES + length % LANES if length >= SHORTEST else 0
+    square = (nodes, 2, 2)
+    return (
+        np.zeros((nodes, 2)),
+        np.zeros(square),
+        np.zeros(square),
+        np.zeros((nodes, 2)),
+        np.zeros((2, 2 * nodes + 1)),
+    )
+
+
+# ------------------------------------------------------------------ called by address
+# Short words never need this code, so it is compiled apart from the kernels, when the first long cycle asks for it,
+# and called by its address. The arrays of a workspace do not move: their addresses are listed once.
+FUNCTIONS, ARRAYS = 2, 11
+
+
+@intrinsic
+def _pointer(typingctx: Any, address: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
+
+    return types.voidptr(types.int64), generate
+
+
+@intrinsic
+def call(typingctx: Any, address: Any, length: Any, twist: Any, links: Any) -> Any:
+    """Call the function at `address` with (length, twist, address of the list of addresses)."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        whole, number = ir.IntType(64), ir.DoubleType()
+        kind = ir.FunctionType(number, [whole, number, whole])
+        return builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
+
+    return types.float64(types.int64, types.int64, types.float64, types.int64), generate
+
+
+def _condense(length, twist, links):
+    at = carray(_pointer(links), FUNCTIONS + ARRAYS, np.int64)
+    nodes = LANES + length % LANES
+    F = carray(_pointer(at[2]), (length, 2), np.float64)
+    A = carray(_pointer(at[3]), (length, 2, 2), np.float64)
+    D = carray(_pointer(at[4]), (length, 2, 2), np.float64)
+    Q = carray(_pointer(at[5]), (length, 2), np.float64)
+    scratch = carray(_pointer(at[6]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
+    short_F = carray(_pointer(at[7]), (nodes, 2), np.float64)
+    short_A = carray(_pointer(at[8]), (nodes, 2, 2), np.float64)
+    short_D = carray(_pointer(at[9]), (nodes, 2, 2), np.float64)
+    short_Q = carray(_pointer(at[10]), (nodes, 2), np.float64)
+    return condense(F, A, D, Q, scratch, (short_F, short_A, short_D, short_Q))
+
+
+def _expand(length, twist, links):
+    at = carray(_pointer(links), FUNCTIONS + ARRAYS, np.int64)
+    nodes = LANES + length % LANES
+    scratch = carray(_pointer(at[6]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
+    found = carray(_pointer(at[11]), (2, 2 * nodes + 1), np.float64)
+    solution = carray(_pointer(at[12]), (2, 2 * length + 1), np.float64)
+    expand(length, scratch, found, twist, solution)
+    return 0.0
+
+
+@cache
+def _functions() -> tuple[Any, Any]:
+    compile_ = cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)
+    return compile_(_condense), compile_(_expand)
+
+
+def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Addresses of the two functions and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution.
+
+    Zeros where the cycle is too short to need them.
+    """
+    if len(arrays[0]) < SHORTEST:
+        return np.zeros(FUNCTIONS + ARRAYS, np.int64)
+    functions = [function.address for function in _functions()]
+    return np.array(functions + [array.ctypes.data for array in arrays], np.int64)

@@ -34,7 +34,7 @@ from orbits.small_eigenvalues import eigenvalues
 
 __all__ = ["multipliers", "multipliers_of_two", "periodic_multipliers", "scratch_size"]
 
-CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted
+CERTIFIED = 1e-9  # bound on the relative error up to which the product is trusted (errors are some 1/50 of it)
 EXCESS = (
     50.0  # also trusted: a bound that exceeds the effect of rounding the factors themselves by less than this
 )
