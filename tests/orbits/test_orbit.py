@@ -57,13 +57,12 @@ def test_closed_form_solves_the_maps(machine, above):
 @given(machines)
 def test_half_multiplier_is_one_at_the_fold_and_minus_one_at_the_breaking(machine):
     R, H = numbers(machine)
-    assume(R * H < 1.2)
+    assume(R * H < 1.2 and machine.restitution < 0.98)  # elastic impacts make these multipliers multiple
     for beta, wanted in ((fold_beta(R, H), 1.0), (symmetry_breaking_beta(R, H), -1.0)):
         square = float(symmetric_square(beta, R, H))
         orbit = machine.symmetric_orbit(np.sqrt(square) * (1 + 1e-15), stable=True)
-        # rounding shows as its square root in a double multiplier: at the fold, and at any r near 1
-        double = wanted > 0 or machine.restitution > 0.99
-        assert np.abs(orbit.half_multipliers - wanted).min() < (2e-6 if double else 1e-9)
+        # at the fold a multiplier is 1 + O(sqrt(rounding))
+        assert np.abs(orbit.half_multipliers - wanted).min() < (2e-6 if wanted > 0 else 1e-9)
 
 
 @settings(max_examples=40, deadline=None)
