@@ -34,17 +34,18 @@ from orbits.small_eigenvalues import eigenvalues
 
 __all__ = ["multipliers", "multipliers_of_two", "periodic_multipliers", "scratch_size"]
 
-CERTIFIED = 1e-9  # bound on the relative error up to which the product is trusted (errors are some 1/50 of it)
+CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted
 EXCESS = (
     50.0  # also trusted: a bound that exceeds the effect of rounding the factors themselves by less than this
 )
 PASSABLE = 1e-7
-CERTAIN, UNCERTAIN, UNDEFINED = 1, 0, -1
+CERTAIN, UNCERTAIN, BROKEN, UNDEFINED = 1, 0, 2, -1
 
 
 @kernel
 def _fast_two(A, D, twist, re, im, scratch):
-    """Multipliers of 2 x 2 factors from the scaled product: CERTAIN; UNCERTAIN: the error bound is too large."""
+    """Multipliers of 2 x 2 factors from the scaled product: CERTAIN; UNCERTAIN: the error bound is too large;
+    BROKEN: the product vanished or left the range of numbers; UNDEFINED: a D_i is singular."""
     length = A.shape[0]
     p00, p01, p10, p11 = 1.0, 0.0, 0.0, 1.0
     norm = 1.0
@@ -72,7 +73,7 @@ def _fast_two(A, D, twist, re, im, scratch):
         norm = abs(p00) + abs(p01) + abs(p10) + abs(p11)
         if not SMALL < norm < LARGE:
             if norm == 0.0 or not norm < math.inf:
-                return UNCERTAIN
+                return BROKEN
             shift = math.frexp(norm)[1]
             factor = math.ldexp(1.0, -shift)
             p00, p01, p10, p11 = p00 * factor, p01 * factor, p10 * factor, p11 * factor
@@ -85,6 +86,7 @@ def _fast_two(A, D, twist, re, im, scratch):
     trace = p00 + twist * p11
     half = 0.5 * trace
     det *= twist
+    scratch[9 * length], scratch[9 * length + 1] = det, det_power
     lift = det_power - 2 * power
     if det == 0.0 or lift < -900:
         relative = 0.0
@@ -146,6 +148,46 @@ def _fast_two(A, D, twist, re, im, scratch):
         im[0] = scaled(math.sqrt(-disc), power)
         im[1] = -im[0]
     return CERTAIN
+
+
+@kernel
+def _dominant_two(length, twist, re, im, scratch):
+    """Two multipliers of different size: the larger one by carrying its eigenvector round the cycle until it settles.
+
+    Takes the factors and the determinant from what `_fast_two` left in `scratch`. Rounding is not amplified: the
+    direction of fastest growth attracts. UNCERTAIN where the two are too close for that.
+    """
+    x, y = 0.8, 0.6
+    before = 2.0
+    for sweep in range(40):
+        x0, y0 = x, y
+        value, power = 1.0, 0
+        for i in range(length):
+            k = 9 * i
+            x, y = scratch[k] * x + scratch[k + 1] * y, scratch[k + 2] * x + scratch[k + 3] * y
+            size = math.sqrt(x * x + y * y)
+            if not 0.0 < size < math.inf:
+                return UNCERTAIN
+            by = 1.0 / size
+            x *= by
+            y *= by
+            value *= size
+            if not SMALL < value < LARGE:
+                shift = math.frexp(value)[1]
+                value *= math.ldexp(1.0, -shift)
+                power += shift
+        y *= twist
+        turned = abs(x * y0 - y * x0)
+        if turned <= 1e-15 or (turned <= 1e-13 and turned >= 0.5 * before):
+            value = math.copysign(value, x * x0 + y * y0)
+            det = scratch[9 * length]
+            re[0], re[1] = scaled(value, power), scaled(det / value, int(scratch[9 * length + 1]) - power)
+            im[0] = im[1] = 0.0
+            return CERTAIN if abs(re[1]) < abs(re[0]) else UNCERTAIN
+        if sweep > 3 and turned > 0.5 * before:
+            return UNCERTAIN
+        before = turned
+    return UNCERTAIN
 
 
 @ctypes.CFUNCTYPE(
@@ -311,7 +353,10 @@ def _otherwise(found, A, D, twist, re, im, scratch):
 @kernel
 def multipliers_of_two(A, D, twist, re, im, scratch):
     """`multipliers` for nodes of two unknowns."""
-    return _otherwise(_fast_two(A, D, twist, re, im, scratch), A, D, twist, re, im, scratch)
+    found = _fast_two(A, D, twist, re, im, scratch)
+    if found == UNCERTAIN:
+        found = _dominant_two(A.shape[0], twist, re, im, scratch)
+    return _otherwise(found, A, D, twist, re, im, scratch)
 
 
 @kernel

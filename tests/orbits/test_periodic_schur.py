@@ -206,3 +206,18 @@ def test_small_eigenvalues(n):
     assert eigenvalues(np.diag(np.arange(n) + 1.0), re, im) and sorted(re) == list(range(1, n + 1))
     assert eigenvalues(np.roll(np.eye(n), 1, axis=0), re, im)
     np.testing.assert_allclose(np.abs(re + 1j * im), 1.0, atol=1e-14)
+
+
+def test_multipliers_of_very_different_size_where_the_product_is_useless():
+    """Strong growth against strong decay in turning directions: the bound fails, the larger multiplier is still exact."""
+    draw = np.random.default_rng(8)
+    for length in (12, 33, 200):
+        A = draw.normal(size=(length, 2, 2))
+        A[::4] = np.einsum("ij,kjl->kil", np.diag([300.0, 0.01]), A[::4])
+        A[1::4] = np.einsum("kij,jl->kil", A[1::4], np.diag([0.01, 300.0]))
+        for twist in (1.0, -1.0):
+            expected = exact(A, None, twist)
+            for method in (multipliers, periodic_multipliers):
+                found = compute(method, A, None, twist)
+                assert abs(mpmath.mpc(found[0]) / expected[0] - 1) < 1e-8
+                assert method is periodic_multipliers or abs(mpmath.mpc(found[1]) / expected[1] - 1) < 1e-8
