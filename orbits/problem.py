@@ -37,6 +37,18 @@ class Embedding(NamedTuple):
     kind: str
 
 
+class Seed(NamedTuple):
+    """Where the branch on the other side begins; `tangent` leads away from the border."""
+
+    problem: OrbitProblem
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray | None
+    kind: str
+    note: str
+    persistence: bool
+
+
 class OrbitProblem:
     """Periodic orbits with a given word, against one parameter of their machine.
 
@@ -158,7 +170,9 @@ class OrbitProblem:
         found = []
         places = self._mirror_places()
         if places:
-            half = self.sibling(self.word.head(2 * places), 2 * self.periods * places // self.length, symmetric=True)
+            half = self.sibling(
+                self.word.head(2 * places), 2 * self.periods * places // self.length, symmetric=True
+            )
             found.append(
                 Symmetry(
                     "symmetry-breaking",
@@ -181,7 +195,11 @@ class OrbitProblem:
         """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
         mirror, n = self.word.mirror(), self.length
         for places in range(1, n // 2 + 1):
-            if n % (2 * places) or (2 * places * self.periods) % n or (2 * places * self.periods // n) % 2 == 0:
+            if (
+                n % (2 * places)
+                or (2 * places * self.periods) % n
+                or (2 * places * self.periods // n) % 2 == 0
+            ):
                 continue
             if self.word.rotate(places) == mirror:
                 return places

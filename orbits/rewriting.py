@@ -72,9 +72,9 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
         return _frictionless(orbit, place, column)
     if column == FLIGHT and after != 0:
         following = (place + 1) % (unit or n)
-        if word.events[following] == "s" and following + 1 < n:
-            if orbit.nodes[following + 1, 0] - orbit.nodes[following, 0] < SHORT:
-                return _stick(orbit, following)  # the flight comes to rest where a stick is about to vanish
+        held = following + 1 < n and word.events[following] == "s"
+        if held and orbit.nodes[following + 1, 0] - orbit.nodes[following, 0] < SHORT:
+            return _stick(orbit, following)  # the flight comes to rest where a stick is about to vanish
         ahead, state = slowest(orbit, place)
         late = np.array([node[0] + ahead, state[0], *state[2:]])[: node.size]
         early = late.copy()

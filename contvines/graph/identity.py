@@ -44,7 +44,7 @@ class Register:
         for branch, engine in self.by_key.get(key, []):
             if real is not None and branch.real != real:
                 continue
-            if _passes(branch, engine, key, vector, p):
+            if _passes(branch, engine, key, vector, p) or _ends_at(branch, engine, key, vector, p):
                 return branch
         return None
 
@@ -64,6 +64,18 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
         here, near = engine.problem.canonical(found.u, p)
         if here == key and same_vector(near, vector):
             return True
+    return False
+
+
+def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> bool:
+    """Whether the solution is an end point of the branch, where the parameter is not passed."""
+    if branch.closed:
+        return False
+    for i in (0, -1):
+        if abs(branch.values[i] - p) <= SAME * (1.0 + abs(p)):
+            here, near = engine.problem.canonical(branch.points[i], float(branch.values[i]))
+            if here == key and same_vector(near, vector, 1e-5):
+                return True
     return False
 
 
