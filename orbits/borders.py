@@ -13,8 +13,9 @@ import numpy as np
 
 from orbits.compiled import assemble
 from orbits.growing import REAL, grown, margins_of, proposals, turned
+from orbits.handing import Seed
 from orbits.orbit import Orbit
-from orbits.problem import OrbitProblem, Seed
+from orbits.problem import OrbitProblem
 from orbits.reading import read_alike
 from orbits.resting import FOLLOWED, to_rest
 from orbits.rewriting import edits_at

@@ -8,45 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from orbits import measures as measuring
 from orbits.compiled import assemble
 from orbits.cyclic import workspace
+from orbits.handing import Embedding, Symmetry
 from orbits.models.base import Model
 from orbits.monitors import PER_NODE, border_kind
 from orbits.words import Word
-
-
-class Symmetry(NamedTuple):
-    """An image of a solution that solves the same problem; `root` reduces a solution that is its own image."""
-
-    kind: str
-    apply: Any
-    root: Any
-
-
-class Embedding(NamedTuple):
-    """A solution seen in a larger problem, in which it is a branch point."""
-
-    problem: Any
-    u: np.ndarray
-    tangent: np.ndarray
-    kind: str
-
-
-class Seed(NamedTuple):
-    """Where the branch on the other side begins; `tangent` leads away from the border."""
-
-    problem: OrbitProblem
-    u: np.ndarray
-    p: float
-    tangent: np.ndarray | None
-    kind: str
-    note: str
-    persistence: bool
 
 
 class OrbitProblem:

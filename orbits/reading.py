@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from orbits.handing import Seed
 from orbits.orbit import Orbit
-from orbits.problem import OrbitProblem, Seed
+from orbits.problem import OrbitProblem
 
 
 def read_alike(seed: Seed, before: Orbit) -> Seed:

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from orbits.problem import OrbitProblem, Seed
+from orbits.handing import Seed
+from orbits.problem import OrbitProblem
 
 FOLLOWED = 1e-6  # largest replay error of a seed
 
