@@ -27,7 +27,9 @@ def library(source="continuation.c", flags=PLAIN):
     if compiler is None or sys.platform == "win32":
         return None
     path = Path(__file__).with_name(source)
-    digest = hashlib.blake2b(path.read_bytes() + " ".join((*flags, "linked apart")).encode(), digest_size=8).hexdigest()
+    digest = hashlib.blake2b(
+        path.read_bytes() + " ".join((*flags, "linked apart")).encode(), digest_size=8
+    ).hexdigest()
     target = Path(tempfile.gettempdir()) / f"contvines-benchmark-{os.getuid()}-{digest}.so"
     if not target.exists():
         partial = target.with_suffix(f".{os.getpid()}")

@@ -64,7 +64,7 @@ def interleaved(competitors, rounds, least=4e-3):
     return {name: statistics.median(found) for name, found in times.items()}
 
 
-def competitors(l, points, api_step, slow):
+def competitors(l, points, step, slow):
     """name -> callable that makes points and says how many."""
     count = points + 1
     found = {}
@@ -74,11 +74,11 @@ def competitors(l, points, api_step, slow):
             ("C floor, vectorised sines", FORWARD, VECTOR),
             ("C floor, orthogonal", ORTHOGONAL, PLAIN),
         ):
-            floor = Floor(l, eliminate, flags, count)
+            floor = Floor(l, eliminate, flags, count, step)
             found[name] = lambda floor=floor: floor.run() - 1
-    core = Core(l, count)
+    core = Core(l, count, step)
     found["contvines, compiled loop"] = lambda: core.run() - 1
-    api = PublicAPI(l, api_step)
+    api = PublicAPI(l, step)
     found["contvines, public API"] = api.run
     few = max(3, min(30, 4000 // l))
     found["scipy.sparse script"] = lambda: len(scripts.sparse(l, few)[0]) - 1
@@ -107,11 +107,10 @@ def continuation(rounds, lengths=LENGTHS):
     table = {}
     auto = Auto()
     for l in lengths:
-        points = max(40, min(600, 100_000 // l))
-        api_step = (
-            case.STEP / 10 if l < 64 else case.STEP
-        )  # long branches, so that what is done once counts little
-        for name, seconds in interleaved(competitors(l, points, api_step, l <= 128), rounds).items():
+        # long branches, so that what is done once per branch counts little; everybody takes the same steps
+        step = case.STEP / 10 if l < 64 else case.STEP
+        points = max(40, min(6000, 200_000 // l))
+        for name, seconds in interleaved(competitors(l, points, step, l <= 128), rounds).items():
             table.setdefault(name, {})[l] = seconds
         if auto.available:
             seconds = by_auto(auto, l, 3)
@@ -157,8 +156,11 @@ def start_up(repeats=3):
         def timed(*arguments):
             command = [sys.executable, "-c", "from contvines.command.cli import main; main()", *arguments]
             begin = time.perf_counter()
-            subprocess.run(command, cwd=directory, env=environment, check=True, capture_output=True)
-            return time.perf_counter() - begin
+            done = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True)
+            seconds = time.perf_counter() - begin
+            if done.returncode:
+                raise SystemExit(f"contvines {' '.join(arguments)} failed: {done.stderr.strip()}")
+            return seconds
 
         def job(i):
             return timed(
