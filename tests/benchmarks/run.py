@@ -78,8 +78,6 @@ def competitors(l, points, step, slow):
             found[name] = lambda floor=floor: floor.run() - 1
     core = Core(l, count, step)
     found["contvines, compiled loop"] = lambda: core.run() - 1
-    api = PublicAPI(l, step)
-    found["contvines, public API"] = api.run
     few = max(3, min(30, 4000 // l))
     found["scipy.sparse script"] = lambda: len(scripts.sparse(l, few)[0]) - 1
     if slow:
@@ -102,6 +100,17 @@ def by_auto(auto, l, rounds):
     return statistics.median(found)
 
 
+def by_api(l, step, rounds):
+    """Seconds per point of the public API (long branches less short ones), and seconds per branch."""
+    long, short = PublicAPI(l, step), PublicAPI(l, 4.0 * step)
+    points = long.run(), short.run()
+    times = interleaved(
+        {"long": lambda: long.run() / points[0], "short": lambda: short.run() / points[1]}, rounds
+    )
+    each = (times["long"] - times["short"]) / (points[0] - points[1])
+    return each, times["short"] - each * points[1]
+
+
 def continuation(rounds, lengths=LENGTHS):
     """Microseconds per point and ratios, as {name: {l: seconds}}."""
     table = {}
@@ -112,6 +121,9 @@ def continuation(rounds, lengths=LENGTHS):
         points = max(40, min(6000, 200_000 // l))
         for name, seconds in interleaved(competitors(l, points, step, l <= 128), rounds).items():
             table.setdefault(name, {})[l] = seconds
+        each, once = by_api(l, step, rounds)
+        table.setdefault("contvines, public API", {})[l] = each
+        table.setdefault("  the same, once per branch", {})[l] = once
         if auto.available:
             seconds = by_auto(auto, l, 3)
             if seconds is not None:
@@ -211,7 +223,7 @@ def main(arguments=None):
                 seconds = table[name].get(of[column])
                 return number(seconds and seconds / table[base][of[column]])
 
-            show(f"times the {base}", table, columns, ratio)
+            show(f"times the {base}", [name for name in table if name[0] != " "], columns, ratio)
 
     seconds, slopes = growth(rounds, (2, 8, 32, 128) if options.quick else GROWTH)
     show(
