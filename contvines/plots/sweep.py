@@ -33,10 +33,10 @@ def plot_sweep(
             values[:, 1],
             linestyle="none",
             marker=".",
-            markersize=2.4,
-            color="0.45",
+            markersize=2.4 if measure == "B" else 3.0,
+            color="0.45" if measure == "B" else "black",
             label="simulated: B at every impact" if measure == "B" else "simulated",
-            zorder=2,
+            zorder=2 if measure == "B" else 3.5,
         )[0]
         if graph is not None:
             plot_diagram(graph, x=parameter, y=measure, axes=axes)

@@ -276,7 +276,7 @@ def margins(data, u, p, work, out):
             else:
                 flight = -1.0
         elif a > 0.0:
-            if ratio < 1.0:
+            if ratio < 1.0 and (event != 2 or -mode * peak * s0 > a):  # else the turn's own margin says it
                 # mode +: Psi = pi + reversal (cos < 0);  mode -: Psi = reversal (cos > 0)
                 base = np.pi + reversal if mode > 0 else reversal
                 last = base + two_pi * np.floor((psi1 - base) / two_pi)

@@ -139,7 +139,8 @@ def margins(data, u, p, work, out):
                 bound = square * math.hypot(P2, Q2) + (alpha * alpha + beta * beta) * math.hypot(A2, B2)
                 if bound > 0.0:
                     tau = min(abs(P3 * s0 + Q3 * c0 + A3) / bound, 0.5 * d)
-            flight = _slowest(mode, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, strength, tau, d)
+            if event != 2 or mode * push > a:  # else the turn's own margin says it
+                flight = _slowest(mode, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, strength, tau, d)
         else:
             tau = 0.0
             while True:
