@@ -17,7 +17,8 @@ import numpy as np
 from numba import njit
 
 from orbits.kernel import OPTIONS, kernel
-from orbits.lanes import SHORTEST, call, lanes_size, links, reflect, short_cycle
+from orbits.lane_links import call, links
+from orbits.lanes import SHORTEST, lanes_size, reflect, short_cycle
 from orbits.periodic_schur import scratch_size
 
 TINY = 1e-300

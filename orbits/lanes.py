@@ -10,13 +10,10 @@ are flat, the lane is their last index, and each place is a slice (indices are t
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import carray, cfunc, njit, types
-from numba.extending import intrinsic
+from numba import njit
 
 from orbits.kernel import OPTIONS, kernel
 
@@ -391,71 +388,3 @@ def short_cycle(length: int) -> tuple[np.ndarray, ...]:
         np.zeros((nodes, 2)),
         np.zeros((2, 2 * nodes + 1)),
     )
-
-
-# ------------------------------------------------------------------ called by address
-# Short words never need this code, so it is compiled apart from the kernels, when the first long cycle asks for it,
-# and called by its address. The arrays of a workspace do not move: their addresses are listed once.
-FUNCTIONS, ARRAYS = 2, 11
-
-
-@intrinsic
-def _pointer(typingctx: Any, address: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
-
-    return types.voidptr(types.int64), generate
-
-
-@intrinsic
-def call(typingctx: Any, address: Any, length: Any, twist: Any, links: Any) -> Any:
-    """Call the function at `address` with (length, twist, address of the list of addresses)."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        whole, number = ir.IntType(64), ir.DoubleType()
-        kind = ir.FunctionType(number, [whole, number, whole])
-        return builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
-
-    return types.float64(types.int64, types.int64, types.float64, types.int64), generate
-
-
-def _condense(length, twist, links):
-    at = carray(_pointer(links), FUNCTIONS + ARRAYS, np.int64)
-    nodes = LANES + length % LANES
-    F = carray(_pointer(at[2]), (length, 2), np.float64)
-    A = carray(_pointer(at[3]), (length, 2, 2), np.float64)
-    D = carray(_pointer(at[4]), (length, 2, 2), np.float64)
-    Q = carray(_pointer(at[5]), (length, 2), np.float64)
-    scratch = carray(_pointer(at[6]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
-    short_F = carray(_pointer(at[7]), (nodes, 2), np.float64)
-    short_A = carray(_pointer(at[8]), (nodes, 2, 2), np.float64)
-    short_D = carray(_pointer(at[9]), (nodes, 2, 2), np.float64)
-    short_Q = carray(_pointer(at[10]), (nodes, 2), np.float64)
-    return condense(F, A, D, Q, scratch, (short_F, short_A, short_D, short_Q))
-
-
-def _expand(length, twist, links):
-    at = carray(_pointer(links), FUNCTIONS + ARRAYS, np.int64)
-    nodes = LANES + length % LANES
-    scratch = carray(_pointer(at[6]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
-    found = carray(_pointer(at[11]), (2, 2 * nodes + 1), np.float64)
-    solution = carray(_pointer(at[12]), (2, 2 * length + 1), np.float64)
-    expand(length, scratch, found, twist, solution)
-    return 0.0
-
-
-@cache
-def _functions() -> tuple[Any, Any]:
-    compile_ = cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)
-    return compile_(_condense), compile_(_expand)
-
-
-def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Addresses of the two functions and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution.
-
-    Zeros where the cycle is too short to need them.
-    """
-    if len(arrays[0]) < SHORTEST:
-        return np.zeros(FUNCTIONS + ARRAYS, np.int64)
-    functions = [function.address for function in _functions()]
-    return np.array(functions + [array.ctypes.data for array in arrays], np.int64)
