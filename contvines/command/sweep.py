@@ -23,7 +23,9 @@ def sweep(
     ] = None,
     plot: Annotated[
         Path | None,
-        typer.Option("--plot", metavar="FILE.png", help="Draw the attractors: B at every impact, or largest |q1|."),
+        typer.Option(
+            "--plot", metavar="FILE.png", help="Draw the attractors: B at every impact, or largest |q1|."
+        ),
     ] = None,
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
@@ -62,7 +64,9 @@ def sweep(
         from contvines.plots.style import save_figure
         from contvines.plots.sweep import plot_sweep
 
-        peaks = bool(rows) and "max_abs_q1" in rows[0].measures  # the coupled machine: what a frequency response shows
+        peaks = (
+            bool(rows) and "max_abs_q1" in rows[0].measures
+        )  # the coupled machine: what a frequency response shows
         if peaks:
             points = [(row.value, row.measures["max_abs_q1"]) for row in rows]
         else:

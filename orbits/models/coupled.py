@@ -95,7 +95,13 @@ class Coupled(Model):
         "gravity": NOT_NEGATIVE,
         "excitation": ("from 0 (truncated) to 1 (exact)", lambda value: 0.0 <= value <= 1.0),
     }
-    own_measures: ClassVar[tuple[str, ...]] = ("max_abs_q1", "amplitude", "v_phase", "input_work", "damping_loss")
+    own_measures: ClassVar[tuple[str, ...]] = (
+        "max_abs_q1",
+        "amplitude",
+        "v_phase",
+        "input_work",
+        "damping_loss",
+    )
 
     def __post_init__(self) -> None:
         for name in self.parameter_names:
@@ -231,7 +237,9 @@ class Coupled(Model):
         events = "".join(word.events)
         if events in ("LR", "RL"):
             for nodes in coupled_orbits.symmetric_nodes(params):
-                yield nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
+                yield (
+                    nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
+                )
         elif events == "tt":
             nodes = coupled_orbits.sliding_nodes(params, int(word.modes[0]))
             if nodes is not None:

@@ -139,7 +139,9 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
     tau, slope : float
         The zero and the wave's derivative there.
     """
-    bound = Omega * Omega * math.hypot(P, Q) + (alpha * alpha + beta * beta) * math.exp(-alpha * start) * math.hypot(A, B)
+    bound = Omega * Omega * math.hypot(P, Q) + (alpha * alpha + beta * beta) * math.exp(
+        -alpha * start
+    ) * math.hypot(A, B)
     scale = abs(constant) + abs(P) + abs(Q) + abs(A) + abs(B)
     tiny = 4e-16 * scale
     tau = start
@@ -233,7 +235,15 @@ def decompose(psi, w, rate, v, v_rate, eps, omega, X, Y, offset):
 @njit(error_model="numpy")
 def leg(state, params):
     """A state's closed form: h, h', z, z' at the start, alpha, beta, q2' and q2'' (q2' is of no use while stuck)."""
-    G, omega, lam, eps, mu, g, chi = params[0], params[1], params[2], params[3], params[5], params[6], params[7]
+    G, omega, lam, eps, mu, g, chi = (
+        params[0],
+        params[1],
+        params[2],
+        params[3],
+        params[5],
+        params[6],
+        params[7],
+    )
     s = state[3]
     drag = eps * lam
     mass = 1.0 if s != 0.0 else 1.0 + eps

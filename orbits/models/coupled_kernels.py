@@ -311,7 +311,9 @@ def linearise(data, u, p, work):
                 half = 0.5 * (psi1 - psi0)
                 middle = 0.5 * (psi1 + psi0)
                 short = math.sin(0.5 * beta * d)
-                loss = math.expm1(-alpha * d) * math.cos(beta * d) - 2.0 * short * short - alpha * S  # T22 - 1
+                loss = (
+                    math.expm1(-alpha * d) * math.cos(beta * d) - 2.0 * short * short - alpha * S
+                )  # T22 - 1
                 swing = 2.0 * omega * math.sin(half) * (X * math.sin(middle) + Y * math.cos(middle))
                 by_d = 1.0 / d
                 mean = (T21 * z + loss * zr - swing) * by_d - mode * pull

@@ -50,7 +50,9 @@ def _along(states, params, length, out):
             for j in range(_NODES.size):
                 tau = (2 * piece + 1 + _NODES[j]) * half
                 way, _speed, _h2, _z2, _h3, _z3 = ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-                v = states[i, 6] + (way + eps * (q2_rate + 0.5 * sp * tau) * tau if moving else (1.0 + eps) * way)
+                v = states[i, 6] + (
+                    way + eps * (q2_rate + 0.5 * sp * tau) * tau if moving else (1.0 + eps) * way
+                )
                 Psi = states[i, 0] + omega * tau
                 sine += _WEIGHTS[j] * v * math.sin(Psi)
                 cosine += _WEIGHTS[j] * v * math.cos(Psi)

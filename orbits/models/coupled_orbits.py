@@ -76,7 +76,10 @@ def _quadratic(params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
     h = -z[:, 0] + np.array([1.0 - half.offset + 0.25 * pull * T**2, -0.5 * T])
     # h' (1 + r) = r (z'(T) - beta + mu g T) - z'(0) + beta
     h_rate = (r * (z_end[:, 1] + np.array([pull * T, -1.0])) - z[:, 1] + np.array([0.0, 1.0])) / (1.0 + r)
-    polynomial = np.polynomial.polynomial.polymul(h, h) + np.polynomial.polynomial.polymul(h_rate, h_rate) / half.omega**2
+    polynomial = (
+        np.polynomial.polynomial.polymul(h, h)
+        + np.polynomial.polynomial.polymul(h_rate, h_rate) / half.omega**2
+    )
     polynomial[0] -= half.X**2 + half.Y**2
     return h, h_rate, polynomial, half
 
@@ -211,7 +214,13 @@ def stuck_state(params: np.ndarray, phase: float = 0.0, w: float = 0.0) -> dict[
     omega, eps = float(params[1]), float(params[3])
     q1 = X * math.sin(phase) + Y * math.cos(phase)
     rate = omega * (X * math.cos(phase) - Y * math.sin(phase))
-    return {"phase": phase, "w": w, "w_rate": 0.0, "v": (1.0 + eps) * q1 - eps * w, "v_rate": (1.0 + eps) * rate}
+    return {
+        "phase": phase,
+        "w": w,
+        "w_rate": 0.0,
+        "v": (1.0 + eps) * q1 - eps * w,
+        "v_rate": (1.0 + eps) * rate,
+    }
 
 
 def stuck_frequencies(params: np.ndarray) -> np.ndarray:

@@ -68,7 +68,9 @@ class Scales:
         if self.base_amplitude is not None:
             _not_negative("base_amplitude", self.base_amplitude, "m")
         if self.stiffness is None and self.natural_frequency is None:
-            raise ParameterError("neither stiffness nor natural_frequency is given: give one of them, in N/m or Hz")
+            raise ParameterError(
+                "neither stiffness nor natural_frequency is given: give one of them, in N/m or Hz"
+            )
         if self.stiffness is not None:
             _number("stiffness", self.stiffness)
             if not self.stiffness > 0.0:
@@ -124,7 +126,10 @@ class Scales:
         return _not_negative("base_amplitude", base_amplitude, "m") / (self.half_width * self.mass_ratio)
 
     def machine(
-        self, hertz: float | None = None, base_amplitude: float | None = None, excitation: str | float = "exact"
+        self,
+        hertz: float | None = None,
+        base_amplitude: float | None = None,
+        excitation: str | float = "exact",
     ) -> Coupled:
         """The dimensionless machine.
 
@@ -199,7 +204,10 @@ class Scales:
             If too little is given, or too much that contradicts.
         """
         _positive("oscillator_mass", oscillator_mass, "kg")
-        for name, value, unit in (("half_width", half_width, "m"), ("natural_frequency", natural_frequency, "Hz")):
+        for name, value, unit in (
+            ("half_width", half_width, "m"),
+            ("natural_frequency", natural_frequency, "Hz"),
+        ):
             if value is not None:
                 _positive(name, value, unit)
         if half_width is None or natural_frequency is None:
@@ -231,7 +239,9 @@ class Scales:
             friction=machine.friction,
             restitution=machine.restitution,
             gravity=gravity,
-            base_amplitude=None if machine.forcing is None else machine.forcing * half_width * machine.mass_ratio,
+            base_amplitude=None
+            if machine.forcing is None
+            else machine.forcing * half_width * machine.mass_ratio,
         )
 
 
@@ -251,5 +261,7 @@ def _positive(name: str, value: object, unit: str) -> float:
 def _not_negative(name: str, value: object, unit: str) -> float:
     number = _number(name, value)
     if number < 0.0:
-        raise ParameterError(f"{name} = {number:g}{' ' + unit if unit else ''} is out of range; give a number 0 or above")
+        raise ParameterError(
+            f"{name} = {number:g}{' ' + unit if unit else ''} is out of range; give a number 0 or above"
+        )
     return number

@@ -249,7 +249,9 @@ def advance(state, params, until, codes, modes, rows):
             if tau >= renew:
                 u3 = H3 + Z3
                 u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
-                M = math.sqrt(u3 * u3 + u4 * u4 / kappa) + square * omega * force * _HORIZON / math.sqrt(kappa)
+                M = math.sqrt(u3 * u3 + u4 * u4 / kappa) + square * omega * force * _HORIZON / math.sqrt(
+                    kappa
+                )
                 renew = tau + _HORIZON
             if y <= tiny:
                 if tau > 0.0:
@@ -259,7 +261,9 @@ def advance(state, params, until, codes, modes, rows):
                 jerk = s * (H3 + Z3)
                 u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
                 u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
-                M4 = math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON / math.sqrt(kappa)
+                M4 = math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON / math.sqrt(
+                    kappa
+                )
                 step = max(y_rate / M if M > 0.0 else 0.0, 1.5 * jerk / M4 if M4 > 0.0 else 0.0)
                 if M == 0.0 and M4 == 0.0:  # neither friction nor forcing: nothing moves
                     tau = left
@@ -302,7 +306,9 @@ def advance(state, params, until, codes, modes, rows):
                     gain = s * (way - (q2_rate + 0.5 * sp * tau) * tau)
                     y = Y0 + s * speed - pull * tau
                     y_rate = s * (H2 + Z2) - pull
-                    if (change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau) or hi - lo <= 2.3e-16 * hi:
+                    if (
+                        change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau
+                    ) or hi - lo <= 2.3e-16 * hi:
                         # one Newton step more, from values at hand
                         step = (gain - target) / y if y > 0.0 else 0.0
                         if abs(step) < change:

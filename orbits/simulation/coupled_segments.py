@@ -55,7 +55,15 @@ def works(states, params, ahead, out):
     slid. The integrands are sums of exponentials; the 16-point Gauss rule on pieces of at most a quarter turn is exact to
     roundoff for frequencies of order one.
     """
-    G, omega, lam, eps, mu, g, chi = params[0], params[1], params[2], params[3], params[5], params[6], params[7]
+    G, omega, lam, eps, mu, g, chi = (
+        params[0],
+        params[1],
+        params[2],
+        params[3],
+        params[5],
+        params[6],
+        params[7],
+    )
     drag = eps * lam
     for i in range(states.shape[0]):
         h0, h1, z0, z1, alpha, beta, q2_rate, sp = _leg(states[i], params)

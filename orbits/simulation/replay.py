@@ -238,9 +238,7 @@ def _is_on(
     near: float,
 ) -> bool:
     """Whether the motion from a state goes through the orbit's nodes."""
-    seen, after, rows, _ = collect(
-        engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3
-    )
+    seen, after, rows, _ = collect(engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3)
     found = nodes_of(engine, params, seen, after, rows)
     n = len(codes)
     for k in range(max(0, len(seen) - n + 1)):

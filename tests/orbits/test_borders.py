@@ -47,7 +47,9 @@ def test_symmetry_breaks_at_a_border(pitchfork):
     assert sorted(below.text) == sorted("LRs")
     assert sorted(above.text) == sorted("LsRs")
     # no branch twice, and the symmetric orbits are followed as such
-    descriptions = [(b.description["word"], b.description["symmetric"], b.range) for b in graph.branches.values()]
+    descriptions = [
+        (b.description["word"], b.description["symmetric"], b.range) for b in graph.branches.values()
+    ]
     assert len(set(descriptions)) == len(descriptions)
     assert any(word == "LR" and symmetric for word, symmetric, _ in descriptions)
 
@@ -55,7 +57,9 @@ def test_symmetry_breaks_at_a_border(pitchfork):
 def test_the_same_border_from_the_symmetric_side(pitchfork):
     """Started on the symmetric orbits, the diagram finds the asymmetric ones at the border as well."""
     machine, graph = pitchfork
-    closing = next(p for p in graph.special.values() if len(switches(graph, p)) == 2 and p.kind != "symmetry-breaking")
+    closing = next(
+        p for p in graph.special.values() if len(switches(graph, p)) == 2 and p.kind != "symmetry-breaking"
+    )
     other = cv.diagram(machine.symmetric_orbit(amplitude=0.85), over="amplitude", within=(0.8, 2.0), depth=1)
     graze = at(other, closing.value, "velocity-graze")
     assert graze.value == pytest.approx(closing.value, abs=1e-10)
@@ -159,8 +163,13 @@ def test_friction_that_vanishes_joins_the_frictionless_orbits(amplitude):
         machine = Absorber(restitution=0.7, friction=friction, gravity=0.3)
         near = find_attractor(machine, found.state, amplitude=amplitude)
         assert near.impacts == found.impacts
-        speeds = [np.sort(np.abs(o.orbit.events.B_post[[c in "LR" for c in o.orbit.word.events]])) for o in (found, near)]
+        speeds = [
+            np.sort(np.abs(o.orbit.events.B_post[[c in "LR" for c in o.orbit.word.events]]))
+            for o in (found, near)
+        ]
         gaps.append(float(np.abs(speeds[0] - speeds[1]).max()))
-        assert np.poly(near.orbit.multipliers) == pytest.approx(np.poly(found.orbit.multipliers), abs=30 * friction)
+        assert np.poly(near.orbit.multipliers) == pytest.approx(
+            np.poly(found.orbit.multipliers), abs=30 * friction
+        )
     assert gaps[2] < 2e-5
     assert gaps[0] > gaps[1] > gaps[2]

@@ -91,7 +91,14 @@ CASES = {
     "sliding": ({"frequency": 0.975}, {}),
     "stick-slip": ({"frequency": 0.94, "excitation": "truncated"}, {"q1": 0.05}),
     "turns, sticks and slips": (
-        {"forcing": 3.0, "frequency": 0.98, "damping": 0.7, "mass_ratio": 0.3, "gravity": 0.29, "restitution": 0.95},
+        {
+            "forcing": 3.0,
+            "frequency": 0.98,
+            "damping": 0.7,
+            "mass_ratio": 0.3,
+            "gravity": 0.29,
+            "restitution": 0.95,
+        },
         {"w": -0.2, "w_rate": 0.4, "v": 0.6, "v_rate": -0.3},
     ),
     "undamped": (
@@ -111,7 +118,12 @@ def test_simulated_events_are_those_of_the_integration(case):
     state = run.start
     eps = machine.mass_ratio
     w, rate, v, v_rate = state[1], state[2], state[6], state[7]
-    y = [(v + eps * w) / (1 + eps), (v_rate + eps * rate) / (1 + eps), (v - w) / (1 + eps), (v_rate - rate) / (1 + eps)]
+    y = [
+        (v + eps * w) / (1 + eps),
+        (v_rate + eps * rate) / (1 + eps),
+        (v - w) / (1 + eps),
+        (v_rate - rate) / (1 + eps),
+    ]
     expected = integrate(params, 0.0, np.array(y), int(state[3]), count)
     assert run.letters == "".join(row[0] for row in expected)
     found = np.column_stack([run.phases, run.rows[:, [2, 3, 5, 6]]])
@@ -166,7 +178,11 @@ def critical(spectrum, kind):
 
 @pytest.mark.parametrize(
     ("kind", "near", "published"),
-    [("symmetry-breaking", 0.9856, 0.98565), ("symmetry-breaking", 1.0038, 1.00378), ("neimark-sacker", 1.0254, 1.02541)],
+    [
+        ("symmetry-breaking", 0.9856, 0.98565),
+        ("symmetry-breaking", 1.0038, 1.00378),
+        ("neimark-sacker", 1.0254, 1.02541),
+    ],
 )
 def test_bifurcations_of_the_symmetric_response(kind, near, published):
     orbit = MACHINE.symmetric_orbit(frequency=near)
@@ -192,10 +208,17 @@ def test_bifurcations_of_the_symmetric_response(kind, near, published):
     assert brentq(compiled, near - 1e-4, near + 1e-4, xtol=1e-14) == pytest.approx(expected, abs=2e-9)
 
 
-@pytest.mark.parametrize(("inside", "outside", "published"), [(0.9719, 0.9716, 0.97172), (1.0279, 1.0282, 1.02804)])
+@pytest.mark.parametrize(
+    ("inside", "outside", "published"), [(0.9719, 0.9716, 0.97172), (1.0279, 1.0282, 1.02804)]
+)
 def test_folds_of_the_symmetric_response(inside, outside, published):
     """Where the closed form's discriminant vanishes the integrated half map has a multiplier +1."""
-    fold = brentq(lambda Omega: symmetric_discriminant(MACHINE.vector({"frequency": Omega})), inside, outside, xtol=1e-15)
+    fold = brentq(
+        lambda Omega: symmetric_discriminant(MACHINE.vector({"frequency": Omega})),
+        inside,
+        outside,
+        xtol=1e-15,
+    )
     assert fold == pytest.approx(published, abs=6e-6)
     # the multiplier passes +1 linearly in the velocity B, between the two orbits that meet in the fold
     Omega = fold + 1e-5 * np.sign(inside - fold)
@@ -262,7 +285,9 @@ def test_period_doubling_behind_the_borders():
         """From just after an impact on the left to the next one: (Psi, B, v, v') -> same, through R, t, t."""
         _G, Omega, _lam, eps, r, _mu, _g, _chi = params
         psi, B, v, v_rate = x
-        y = np.array([(v + eps) / (1 + eps), v_rate - eps * B / (1 + eps), (v - 1) / (1 + eps), B / (1 + eps)])
+        y = np.array(
+            [(v + eps) / (1 + eps), v_rate - eps * B / (1 + eps), (v - 1) / (1 + eps), B / (1 + eps)]
+        )
         rows = integrate(params, psi / Omega, y, -1, 4)
         assert "".join(row[0] for row in rows) == "RttL"
         _letter, phase, _w, before, v, v_rate = rows[-1]

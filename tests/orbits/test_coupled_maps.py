@@ -11,7 +11,16 @@ from orbits.models.coupled_kernels import linearise, margins
 
 L, R, T, S, U = range(5)
 # arriving event and the modes: every kind of segment
-SEGMENTS = [(L, -1, R, 1), (R, 1, L, -1), (L, -1, T, 1), (T, 1, L, -1), (S, 0, U, 1), (U, 1, S, 0), (S, 0, U, -1), (U, -1, R, 1)]
+SEGMENTS = [
+    (L, -1, R, 1),
+    (R, 1, L, -1),
+    (L, -1, T, 1),
+    (T, 1, L, -1),
+    (S, 0, U, 1),
+    (U, 1, S, 0),
+    (S, 0, U, -1),
+    (U, -1, R, 1),
+]
 PARAMETERS = [
     [2.47, 0.98, 1.0, 0.006, 0.76, 0.5, 0.211, 1.0],
     [1.3, 1.21, 0.7, 0.16, 0.5, 0.35, 0.4, 0.4],
@@ -93,7 +102,9 @@ def test_maps_and_all_their_derivatives(segment):
 
 def test_half_and_whole_words_agree():
     """A symmetric orbit closes on its half word with twist -1 and on the whole word with twist +1."""
-    machine = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47
+    )
     orbit = machine.symmetric_orbit(frequency=0.99)
     u = orbit.nodes.ravel()
     codes, modes = orbit.word.codes, orbit.word.mode_codes
@@ -109,12 +120,16 @@ def test_half_and_whole_words_agree():
 
 
 def test_what_cannot_be_evaluated_is_infinite():
-    machine = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.0, forcing=2.47)
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.0, forcing=2.47
+    )
     params = machine.vector({"frequency": 0.9})
     events, modes = np.array([L, R], np.int8), np.array([-1, 1], np.int8)
     u = np.array([0.3, 1.0, 0.1, 0.2, 3.4, -1.0, -0.1, -0.2])
     work = workspace(2, 4, 8)
-    assert linearise((events, modes, params, 1, 1.0, 2 * np.pi, 0), u, 1.0, work) == np.inf  # undamped resonance
+    assert (
+        linearise((events, modes, params, 1, 1.0, 2 * np.pi, 0), u, 1.0, work) == np.inf
+    )  # undamped resonance
     assert linearise((events, modes, params, 2, 1.0, 2 * np.pi, 0), u, 400.0, work) == np.inf  # overdamped
 
 
@@ -123,7 +138,11 @@ def test_first_zero_finds_every_zero():
     generator = np.random.default_rng(3)
     for _ in range(200):
         constant, P, Q, A, B = generator.normal(size=5)
-        Omega, beta, alpha, phase = *generator.uniform(0.4, 2.5, 2), generator.uniform(0.0, 0.3), generator.uniform(0, 6)
+        Omega, beta, alpha, phase = (
+            *generator.uniform(0.4, 2.5, 2),
+            generator.uniform(0.0, 0.3),
+            generator.uniform(0, 6),
+        )
         if generator.random() < 0.5:
             beta = Omega * (1.0 + 0.01 * generator.normal())
         wave_of = (constant, P, Q, A, B, Omega, alpha, beta, phase)

@@ -81,8 +81,8 @@ def test_stuck_response_is_the_textbook_oscillator():
     mass = 1.006
     ratio = 0.93 * np.sqrt(mass)
     zeta = 0.5 * 3.0 * 0.006 / np.sqrt(mass)
-    expected = 0.5 * 0.006 * np.sqrt(
-        (1 + (2 * zeta * ratio) ** 2) / ((1 - ratio**2) ** 2 + (2 * zeta * ratio) ** 2)
+    expected = (
+        0.5 * 0.006 * np.sqrt((1 + (2 * zeta * ratio) ** 2) / ((1 - ratio**2) ** 2 + (2 * zeta * ratio) ** 2))
     )
     found = machine.stuck_response()
     assert found.amplitude == pytest.approx(expected, rel=1e-13)
@@ -146,7 +146,9 @@ def test_the_mirror_image_is_the_same_orbit():
     orbit = MACHINE.orbit("LRtR", frequency=1.0)
     image = orbit.mirror()
     assert image.residual < 1e-11
-    np.testing.assert_allclose(np.sort(np.abs(image.multipliers)), np.sort(np.abs(orbit.multipliers)), rtol=1e-8)
+    np.testing.assert_allclose(
+        np.sort(np.abs(image.multipliers)), np.sort(np.abs(orbit.multipliers)), rtol=1e-8
+    )
     assert image.measure("max_abs_q1") == pytest.approx(orbit.measure("max_abs_q1"), rel=1e-12)
 
 
@@ -174,7 +176,9 @@ def test_work_of_the_base_is_that_of_the_force():
 
 
 def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():
-    flow = SlowFlow(forcing=2.47, damping=1.0, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    flow = SlowFlow(
+        forcing=2.47, damping=1.0, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006
+    )
     for state in equilibria(flow, -2.58):
         orbit = MACHINE.orbit_near(state)
         assert orbit.params[1] == pytest.approx(1.0 - 2.58 * 0.006)

@@ -49,7 +49,11 @@ def start(seed):
     )
     amplitude = rng.uniform(0.1, 2.0)
     found = find_attractor(
-        machine, {"w_rate": 1.0, "phase": rng.uniform(0.0, 6.28)}, amplitude=amplitude, max_period=4, patience=1
+        machine,
+        {"w_rate": 1.0, "phase": rng.uniform(0.0, 6.28)},
+        amplitude=amplitude,
+        max_period=4,
+        patience=1,
     )
     options = {
         "within": (max(0.05, amplitude - 0.4), amplitude + 0.4),
@@ -92,9 +96,15 @@ def crossed(graph, depth):
     """At the borders of real branches the motion goes on: a switch, or one more would pass the depth."""
     for point in graph.special.values():
         branch = graph[point.branch]
-        if point.kind not in BORDERS or not branch.real or any(s.point == point.label for s in graph.switches):
+        if (
+            point.kind not in BORDERS
+            or not branch.real
+            or any(s.point == point.label for s in graph.switches)
+        ):
             continue
-        if np.abs(point.multipliers).max(initial=0.0) > 1e8:  # too unstable to be solved for beside the border
+        if (
+            np.abs(point.multipliers).max(initial=0.0) > 1e8
+        ):  # too unstable to be solved for beside the border
             continue
         outward = replace(point, tangent=-point.tangent if point.index == 0 else point.tangent)
         seeds = point.problem.beyond(outward)

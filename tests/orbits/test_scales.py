@@ -8,7 +8,13 @@ from orbits import Absorber, Coupled
 from orbits.models.base import ParameterError
 from orbits.models.scales import Scales
 
-RIG = {"oscillator_mass": 3.0, "absorber_mass": 0.018, "half_width": 0.02, "natural_frequency": 7.666, "damping": 0.78}
+RIG = {
+    "oscillator_mass": 3.0,
+    "absorber_mass": 0.018,
+    "half_width": 0.02,
+    "natural_frequency": 7.666,
+    "damping": 0.78,
+}
 
 
 def test_the_published_machine():
@@ -32,7 +38,9 @@ def test_back_to_si():
     assert again.natural_frequency == pytest.approx(7.666, rel=1e-12)
     assert again.damping == pytest.approx(0.78, rel=1e-12)
     assert again.base_amplitude == pytest.approx(3e-4, rel=1e-12)
-    assert Scales.of(scales.machine(), oscillator_mass=3.0, natural_frequency=7.666).half_width == pytest.approx(0.02)
+    assert Scales.of(
+        scales.machine(), oscillator_mass=3.0, natural_frequency=7.666
+    ).half_width == pytest.approx(0.02)
     assert scales.hertz(scales.frequency(7.5)) == pytest.approx(7.5)
     assert scales.metres(0.5) == pytest.approx(0.01)
     assert scales.metres_per_second(1.0) * scales.seconds(1.0) == pytest.approx(0.02)
@@ -44,7 +52,10 @@ def test_back_to_si():
     ("changes", "words"),
     [
         ({"oscillator_mass": 0.0}, ["oscillator_mass = 0 kg", "above 0"]),
-        ({"natural_frequency": None, "stiffness": 0.0}, ["stiffness = 0 N/m", "natural frequency", "above 0"]),
+        (
+            {"natural_frequency": None, "stiffness": 0.0},
+            ["stiffness = 0 N/m", "natural frequency", "above 0"],
+        ),
         ({"natural_frequency": None}, ["neither stiffness nor natural_frequency", "give one"]),
         ({"stiffness": 1000.0}, ["contradicts stiffness = 1000 N/m", "leave one of them out"]),
         ({"natural_frequency": -1.0}, ["natural_frequency = -1 Hz", "above 0"]),

@@ -10,7 +10,10 @@ from orbits.trigonometry import PI_A, PI_B, PI_C, sines_cosines
 def test_three_pieces_make_pi():
     with mpmath.workdps(50):
         assert abs(mpmath.mpf(PI_A) + mpmath.mpf(PI_B) + mpmath.mpf(PI_C) - mpmath.pi) < 1e-32
-    for piece, bits in ((PI_A, 27), (PI_B, 56)):  # short enough for exact products with whole numbers up to 2^24
+    for piece, bits in (
+        (PI_A, 27),
+        (PI_B, 56),
+    ):  # short enough for exact products with whole numbers up to 2^24
         assert (piece * 2.0**bits).is_integer() and piece * 2.0**bits < 2.0**29
 
 

@@ -15,7 +15,9 @@ from orbits.simulation import find_attractor, simulate
 from orbits.start import polish
 
 LARGE = bool(os.environ.get("CONTVINES_LARGE"))
-BLOCKS = 60 if LARGE else 12  # of ten machines each: about 70 in 100 have a periodic attractor that makes events
+BLOCKS = (
+    60 if LARGE else 12
+)  # of ten machines each: about 70 in 100 have a periodic attractor that makes events
 TRACED = 600 if LARGE else 100
 
 
@@ -37,7 +39,12 @@ def attractor_of(seed, max_period=4):
     """The simulated attractor if it is periodic, makes events and has at most 8 impacts; else None."""
     machine, amplitude, start = draw(seed)
     found = find_attractor(machine, start, amplitude=amplitude, max_period=max_period)
-    if found.kind not in ("periodic", "sliding") or found.word is None or not len(found.codes) or found.impacts > 8:
+    if (
+        found.kind not in ("periodic", "sliding")
+        or found.word is None
+        or not len(found.codes)
+        or found.impacts > 8
+    ):
         return None
     return found
 
@@ -66,7 +73,9 @@ def test_every_simulated_attractor_solves_its_word(block):
             trivial = int(np.argmin(np.abs(simulated - 1.0)))
             assert simulated[trivial] == pytest.approx(1.0, abs=1e-6)
             simulated = np.delete(simulated, trivial)
-        if np.all(np.abs(solved.multipliers) < 0.999):  # nearer to a bifurcation the simulation has not settled
+        if np.all(
+            np.abs(solved.multipliers) < 0.999
+        ):  # nearer to a bifurcation the simulation has not settled
             assert distance(solved.nodes.copy(), found.orbit.nodes) < 1e-9, (seed, found.text)
         assert np.poly(simulated) == pytest.approx(np.poly(solved.multipliers), abs=1e-6), (seed, found.text)
         assert solved.stable, (seed, found.text)
@@ -89,7 +98,9 @@ def comes_back(orbit):
     for size, near in ((1e-6, 1e-7), (1e-8, 1e-9)):
         start = {
             "phase": float(events.phase[place]) % (2.0 * np.pi),
-            "w": float(events.w[place]) * (1.0 - size) if orbit.impacts == 0 else float(np.clip(events.w[place], -1, 1)),
+            "w": float(events.w[place]) * (1.0 - size)
+            if orbit.impacts == 0
+            else float(np.clip(events.w[place], -1, 1)),
             "w_rate": float(events.rate_post[place]) * (1.0 + size),
         }
         run = simulate(orbit.model, start, periods=(cycles + 2) * orbit.periods, amplitude=amplitude)
@@ -143,7 +154,9 @@ def test_the_tests_would_notice():
     graph = cv.diagram(
         absorber.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 0.92), depth=1, virtual=True
     )
-    ghosts = [b for b in graph.branches.values() if not b.real and b.description["word"] == "LR" and b.stable.any()]
+    ghosts = [
+        b for b in graph.branches.values() if not b.real and b.description["word"] == "LR" and b.stable.any()
+    ]
     assert ghosts
     for branch in ghosts:
         ghost = branch.orbit(int(np.flatnonzero(branch.stable)[-1]))

@@ -148,13 +148,21 @@ def test_window_of_three_impacts_by_simulation(three):
     points = points_of(three)
     beside = points["fold"].value + 1e-5
     orbit = min((three["B1"].orbit(int(i)) for i in np.flatnonzero(three["B1"].stable)), key=_amplitude)
-    start = {"phase": orbit.events.phase[0] % 6.283185307179586, "w": orbit.events.w[0], "w_rate": orbit.events.rate_post[0]}
+    start = {
+        "phase": orbit.events.phase[0] % 6.283185307179586,
+        "w": orbit.events.w[0],
+        "w_rate": orbit.events.rate_post[0],
+    }
     inside = find_attractor(ABSORBER, start, amplitude=beside, transient=3000)
     assert (inside.impacts, inside.periods) == (3, 1)
-    outside = find_attractor(ABSORBER, start, amplitude=points["fold"].value - 1e-5, transient=3000, patience=1)
+    outside = find_attractor(
+        ABSORBER, start, amplitude=points["fold"].value - 1e-5, transient=3000, patience=1
+    )
     assert (outside.impacts, outside.periods) != (3, 1)
     below, above = (
-        find_attractor(ABSORBER, {"w_rate": 0.2}, amplitude=points["period-doubling"].value + side, transient=5000)
+        find_attractor(
+            ABSORBER, {"w_rate": 0.2}, amplitude=points["period-doubling"].value + side, transient=5000
+        )
         for side in (-1e-3, 1e-3)
     )
     assert (below.impacts, below.periods) == (3, 1)
@@ -187,7 +195,10 @@ def test_window_of_four_impacts_by_brute_force(four):
     assert abs(fold_by_brute_force(branch, points["fold"]) - points["fold"].value) < 1e-12
     graze = graze_by_brute_force(points["velocity-graze"])
     assert abs(graze - points["velocity-graze"].value) < 1e-12
-    beside = [fixed_point(branch, mpf(points["symmetry-breaking"].value) + side) for side in (mpf("-1e-9"), mpf("1e-9"))]
+    beside = [
+        fixed_point(branch, mpf(points["symmetry-breaking"].value) + side)
+        for side in (mpf("-1e-9"), mpf("1e-9"))
+    ]
     below, above = (max(z.real for z in eigenvalues(m.derivative(x, w))) for m, w, x in beside)
     # of the full period the critical multiplier is the square of the half map's -1: it passes +1 upwards
     assert below < 1.0 < above

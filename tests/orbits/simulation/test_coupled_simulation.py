@@ -30,7 +30,10 @@ def numbers(low, high):
 def test_no_wall_is_passed_no_energy_lost(start, **parameters):
     """|w| <= 1, alternating signs at the walls, time runs forward, and the energy balances, over up to 2000 events."""
     # close to an undamped resonance the response cancels against the free oscillation, and digits with it
-    resonant = min(abs(parameters["frequency"] - 1.0), abs(parameters["frequency"] ** 2 * (1 + parameters["mass_ratio"]) - 1))
+    resonant = min(
+        abs(parameters["frequency"] - 1.0),
+        abs(parameters["frequency"] ** 2 * (1 + parameters["mass_ratio"]) - 1),
+    )
     assume(parameters["damping"] > 0.01 or resonant > 1e-3)
     machine = Coupled(**parameters)
     first = dict(zip(("w", "w_rate", "v", "v_rate"), start))
@@ -100,7 +103,9 @@ def test_complete_chatter_is_recognised():
 
 
 def test_frictionless_flights_may_reverse():
-    machine = MACHINE.changed(friction=0.0, mass_ratio=0.05, frequency=1.025, restitution=0.923, forcing=2.886)
+    machine = MACHINE.changed(
+        friction=0.0, mass_ratio=0.05, frequency=1.025, restitution=0.923, forcing=2.886
+    )
     run = simulate(machine, {"w": 0.3, "v": 0.5}, events=300)
     assert set(run.letters) == {"L", "R"}
     assert "LL" in run.letters or "RR" in run.letters
