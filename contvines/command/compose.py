@@ -58,6 +58,9 @@ def first_orbit(study: "Study") -> Any:
     ValueError
         If the word cannot be, or no orbit with it is found; the sentence names the study.
     """
+    from orbits.simulation.ahead import compile_ahead
+
+    compile_ahead(study.name)
     try:
         return machine(study).orbit(study.word, study.periods, guess=study.guess, **loose(study))
     except ValueError as error:
