@@ -1,0 +1,308 @@
+"""The exact frequency response at G = 2.47 against integration of the equations of motion.
+
+Machine: r = 0.76, mu = 0.5, g = 0.211, eps = 0.006, damping 1. The integration (scipy's DOP853 over flights of given
+length, so that no event is interpolated; Newton's method with differences of fourth order) takes its equations of motion
+from `tests/orbits/test_coupled_against_ode.py`, which knows nothing of the package; see there for a second way, by
+return maps with events, to the symmetry breakings, the Neimark-Sacker point and the folds.
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigvals
+
+import contvines as cv
+from orbits.simulation import simulate
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "orbits"))
+from test_coupled_against_ode import MACHINE, TIGHT, right_side
+
+WITHIN = (0.94, 1.07)
+BORDERS = ("velocity-graze", "wall-graze", "stick")
+# what the integration below gives; the compiled maps agree to 1e-11
+FOLDS = (0.9717226436161, 1.0280413226418)
+BREAKINGS = (0.9856523298452, 1.0037775486975)
+NEIMARK_SACKER = (1.0254097153168, 1.0280328051003)  # on the fast and on the slow side of the fold
+VELOCITY_GRAZES = (0.9939465060952, 0.9986022947078)
+WALL_GRAZES = (0.9934295505152, 1.0063834057387)
+
+
+# ---------------------------------------------------------------------- integration
+def fly(params, psi, duration, y):
+    """(q1, q1', q2, q2') after a flight with w' < 0; friction keeps its sign."""
+    begin = psi / params[1]
+    return solve_ivp(right_side(params, -1), (begin, begin + duration), y, **TIGHT).y[:, -1]
+
+
+def after_left(params, x):
+    """(q1, q1', q2, q2') just after the impact on the left wall with (Psi, B, v, v')."""
+    eps, (_psi, B, v, v_rate) = params[3], x
+    return [(v + eps) / (1 + eps), v_rate - eps * B / (1 + eps), (v - 1) / (1 + eps), B / (1 + eps)]
+
+
+def half(z, Omega, machine=MACHINE):
+    """From the impact on the left with z[:4] to that on the right, whose mirror image is z[4:]: four residuals."""
+    params = machine.vector({"frequency": Omega})
+    eps, r, there = params[3], params[4], z[4:]
+    q1, p1, q2, p2 = fly(params, z[0], (there[0] + np.pi - z[0]) / Omega, after_left(params, z[:4]))
+    v, v_rate = q1 + eps * q2, p1 + eps * p2
+    return np.array([q1 - q2 + 1.0, -(v_rate + r * (p1 - p2)) - there[1], -v - there[2], -v_rate - there[3]])
+
+
+def jacobian(f, z, h=5e-4):
+    columns = []
+    for unit in h * np.eye(len(z)):
+        columns.append((8 * (f(z + unit) - f(z - unit)) - (f(z + 2 * unit) - f(z - 2 * unit))) / (12 * h))
+    return np.array(columns).T
+
+
+def newton(f, z):
+    z = np.array(z, dtype=float)
+    for _ in range(12):
+        step = np.linalg.solve(jacobian(f, z), f(z))
+        z = z - step
+        if np.abs(step).max() < 1e-12:
+            return z
+    raise AssertionError("Newton's method does not converge")
+
+
+def spectrum(Omega, guess, machine=MACHINE):
+    """The symmetric orbit near a guess and the multipliers of its half map."""
+    x = newton(lambda x: half(np.r_[x, x], Omega, machine), guess)
+    J = jacobian(lambda z: half(z, Omega, machine), np.r_[x, x])
+    return x, eigvals(-J[:, :4], J[:, 4:])
+
+
+def secant(f, a, b):
+    fa, fb = f(a), f(b)
+    for _ in range(8):
+        a, b, fa = b, b - fb * (b - a) / (fb - fa), fb
+        if abs(b - a) < 1e-12:
+            return b
+        fb = f(b)
+    raise AssertionError("the secant rule does not converge")
+
+
+def minus_one(multipliers):
+    return float(multipliers.real.min()) + 1.0
+
+
+def on_circle(multipliers):
+    return float(np.abs(multipliers[np.abs(multipliers.imag) > 1e-3]).max()) - 1.0
+
+
+@pytest.mark.parametrize(
+    ("value", "condition", "fast"),
+    [
+        *((value, minus_one, True) for value in BREAKINGS),
+        *((value, on_circle, fast) for value, fast in zip(NEIMARK_SACKER, (True, False))),
+    ],
+)
+def test_integrated_multipliers(value, condition, fast):
+    guess = np.array(MACHINE.symmetric_orbit(fast=fast, frequency=value).nodes[0])
+
+    def at(Omega):
+        nonlocal guess
+        guess, multipliers = spectrum(Omega, guess)
+        return condition(multipliers)
+
+    near = 1e-6 if value > 1.028 else 1e-5  # the slow side begins at the fold, 1.02804
+    assert secant(at, value - near, value + near) == pytest.approx(value, abs=2e-11)
+
+
+def integrated_fold(machine, value, inward):
+    """The extremum of the frequency over the velocity B, from five integrated orbits through the fold."""
+    near = [
+        np.array(machine.symmetric_orbit(fast=fast, frequency=value + inward).nodes[0])
+        for fast in (True, False)
+    ]
+    middle = 0.5 * (near[0] + near[1])
+    rest, found = np.r_[middle[[0, 2, 3]], value], []
+    for B in middle[1] + 2e-3 * np.arange(-2, 3):
+        rest = newton(
+            lambda q, B=B: half(np.tile([q[0], B, q[1], q[2]], 2), q[3], machine),
+            rest,
+        )
+        found.append(rest[3])
+    curve = np.polyfit(np.arange(-2, 3), found, 4)
+    tops = np.roots(np.polyder(curve))
+    return np.polyval(curve, tops[np.argmin(np.abs(tops))].real)
+
+
+@pytest.mark.parametrize(("value", "inward"), [(FOLDS[0], 1e-6), (FOLDS[1], -1e-6)])
+def test_integrated_folds(value, inward):
+    assert integrated_fold(MACHINE, value, inward) == pytest.approx(value, abs=2e-11)
+
+
+@pytest.mark.parametrize("value", VELOCITY_GRAZES)
+def test_integrated_velocity_grazes(value):
+    """The frequency at which w' and w'' vanish together inside the flight of the symmetric orbit."""
+
+    def grazing(z):
+        x, duration, Omega = z[:4], z[4], z[5]
+        params = MACHINE.vector({"frequency": Omega})
+        y = fly(params, x[0], duration, after_left(params, x))
+        rates = right_side(params, -1)(x[0] / Omega + duration, y)
+        return np.r_[half(np.r_[x, x], Omega), y[1] - y[3], rates[1] - rates[3]]
+
+    x = np.array(MACHINE.symmetric_orbit(frequency=value).nodes[0])
+    params = MACHINE.vector({"frequency": value})
+    instants = np.linspace(0.3, 2.8, 51)
+    rates = []
+    for instant in instants:
+        y = fly(params, x[0], instant, after_left(params, x))
+        rates.append(y[1] - y[3])
+    z = newton(grazing, np.r_[x, instants[np.argmax(rates)], value + 2e-6])
+    assert z[5] == pytest.approx(value, abs=2e-11)
+    assert 0.3 < z[4] < 2.8
+
+
+@pytest.mark.parametrize("value", WALL_GRAZES)
+def test_integrated_wall_grazes(value):
+    """The frequency at which the sliding motion, which knows no impact, just reaches the walls."""
+
+    def touching(z):
+        psi, v, v_rate, Omega = z
+        params = MACHINE.vector({"frequency": Omega})
+        eps = params[3]
+        rate = v_rate / (1 + eps)
+        q1, p1, q2, p2 = fly(
+            params, psi, np.pi / Omega, [(v + eps) / (1 + eps), rate, (v - 1) / (1 + eps), rate]
+        )
+        return np.array([p1 - p2, q1 - q2 + 1.0, q1 + eps * q2 + v, p1 + eps * p2 + v_rate])
+
+    nodes = MACHINE.sliding_orbit(frequency=value).nodes
+    turn = nodes[np.argmax(nodes[:, 1])]
+    z = newton(touching, np.r_[turn[[0, 2, 3]], value + 2e-6])
+    assert z[3] == pytest.approx(value, abs=2e-11)
+
+
+# ---------------------------------------------------------------------- the closed branch
+def around(pieces):
+    """The pieces put end to end, as (branch, forward); checks that they form one smooth closed curve."""
+    left, chain = list(pieces), []
+    here = None
+    while left:
+        for branch in left if here is not None else left[:1]:
+            for forward in (True, False):
+                points, values = branch.points, branch.values
+                along = branch.tangents if forward else -branch.tangents
+                order = slice(None) if forward else slice(None, None, -1)
+                begin = (points[order][0], values[order][0], along[order][0])
+                if here is None or joined(here, begin):
+                    break
+            else:
+                continue
+            break
+        else:
+            raise AssertionError(f"nothing goes on from frequency = {here[1]}")
+        chain.append((branch, forward))
+        left.remove(branch)
+        here = (points[order][-1], values[order][-1], along[order][-1])
+    first, forward = chain[0]
+    assert forward and joined(here, (first.points[0], first.values[0], first.tangents[0]))
+    return chain
+
+
+def joined(one, other):
+    """Whether a piece that begins with `other` goes smoothly on from the end `one`."""
+    gap = one[0] - other[0]
+    gap[::4] -= 2.0 * np.pi * np.round(gap[::4] / (2.0 * np.pi))
+    return (
+        max(np.abs(gap).max(), abs(one[1] - other[1])) < 1e-9
+        and np.abs(one[2] - other[2]).max() < 1e-6 * np.abs(one[2]).max()
+    )
+
+
+def test_the_symmetric_response_is_one_closed_curve():
+    """Real from graze to graze, virtual in between; folds, breakings, Neimark-Sacker points and borders as integrated."""
+    graph = cv.diagram(
+        MACHINE.orbit("LR", frequency=1.01), over="frequency", within=WITHIN, depth=0, virtual=True
+    )
+    pieces = [b for b in graph if b.description["word"] == "LR" and b.description["symmetric"]]
+    chain = around(pieces)
+    assert [branch.real for branch, _ in chain] == [True, False, True, False]
+    real = sorted((branch for branch, _ in chain if branch.real), key=lambda b: b.range)
+    virtual = sorted((branch for branch, _ in chain if not branch.real), key=lambda b: b.range)
+    below, above = real
+    assert below.range == pytest.approx((FOLDS[0], VELOCITY_GRAZES[0]), abs=1e-11)
+    assert above.range == pytest.approx((VELOCITY_GRAZES[1], FOLDS[1]), abs=1e-11)
+    for branch, i in ((below, 0), (above, 1)):
+        assert sorted(branch.values[[0, -1]]) == pytest.approx(
+            sorted((VELOCITY_GRAZES[i], WALL_GRAZES[i])), abs=1e-11
+        )
+    assert virtual[0].range == pytest.approx(WALL_GRAZES, abs=1e-11)
+    assert virtual[1].range == pytest.approx(VELOCITY_GRAZES, abs=1e-11)
+
+    def values(kind):
+        labels = {branch.label for branch, _ in chain}
+        return sorted(p.value for p in graph.of_kind(kind) if p.branch in labels)
+
+    assert values("fold") == pytest.approx(FOLDS, abs=1e-11)
+    assert values("symmetry-breaking") == pytest.approx(BREAKINGS, abs=1e-11)
+    assert values("neimark-sacker") == pytest.approx(NEIMARK_SACKER, abs=1e-10)
+    assert below.stable_intervals() == [pytest.approx((FOLDS[0], BREAKINGS[0]), abs=1e-11)]
+    assert above.stable_intervals() == [pytest.approx((BREAKINGS[1], NEIMARK_SACKER[0]), abs=1e-10)]
+    for point in (
+        p for p in graph.special.values() if p.kind in BORDERS and p.branch in (below.label, above.label)
+    ):
+        assert point.replay < 1e-6
+
+
+def test_a_weakly_forced_response_is_an_isola():
+    """G = 1: real all the way round, recognised as closed, with two folds, drawn closed."""
+    machine = MACHINE.changed(forcing=1.0)
+    graph = cv.diagram(machine.symmetric_orbit(frequency=1.0), over="frequency", within=WITHIN, depth=0)
+    (branch,) = graph
+    assert branch.real and branch.closed and branch.margin.min() > 0.0
+    np.testing.assert_allclose(branch.points[0], branch.points[-1] - 2 * np.pi * np.round(
+        (branch.points[-1] - branch.points[0]) / (2 * np.pi)), atol=1e-9)  # fmt: skip
+    folds = graph.of_kind("fold")
+    assert len(folds) == 2 and {p.kind for p in graph.special.values()} == {"fold"}
+    for point, inward in zip(sorted(folds, key=lambda p: p.value), (1e-6, -1e-6)):
+        assert point.value == pytest.approx(integrated_fold(machine, point.value, inward), abs=2e-11)
+    # nowhere stable: a multiplier beyond 1 on either side, as integrated
+    assert not branch.stable.any()
+    for fast in (True, False):
+        orbit = machine.symmetric_orbit(fast=fast, frequency=1.003)
+        _, multipliers = spectrum(1.003, np.array(orbit.nodes[0]), machine)
+        assert np.abs(multipliers).max() > 1.03
+        np.testing.assert_allclose(
+            np.sort(np.abs(multipliers)), np.sort(np.abs(orbit.half_multipliers)), atol=1e-7
+        )
+    matplotlib.use("Agg")
+    lines = [line for line in graph.plot(y="max_abs_q1").axes[0].get_lines() if len(line.get_xdata()) > 1]
+    assert len(lines) == 1
+    drawn = lines[0].get_xydata()
+    np.testing.assert_allclose(drawn[0], drawn[-1], atol=1e-9)
+    assert drawn[:, 0].min() == pytest.approx(branch.range[0], abs=1e-9)
+    assert drawn[:, 0].max() == pytest.approx(branch.range[1], abs=1e-9)
+
+
+# ---------------------------------------------------------------------- free decay
+def test_free_decay_passes_through_impacts_sliding_and_rest():
+    machine = MACHINE.changed(forcing=0.0)
+    run = simulate(machine, {"q1": 1.2, "q2": 0.4}, periods=400)
+    letters = run.letters
+    last_hit = max(letters.rfind("L"), letters.rfind("R"))
+    assert last_hit > 50 and set(letters[last_hit + 1 :]) <= set("tsu")
+    assert letters[-1] == "s" and "at rest" in run.ended
+    eps, r, friction = machine.mass_ratio, machine.restitution, machine.friction * machine.gravity
+    # once at rest friction holds for ever: the cavity's acceleration stays below mu g
+    sample = run.sample(run.phases[-1:] + np.linspace(1e-6, 20 * np.pi, 2000))
+    shaking = (eps * machine.damping * sample.v_rate / (1 + eps) + sample.cavity) / (1 + eps)
+    assert 0.9 * friction < np.abs(shaking).max() < friction and np.abs(sample.w_rate).max() == 0.0
+    # the losses once more from the events alone (energy in units of M b^2 omega_0^2)
+    w = np.append(run.states[:, 1], run.end[1])
+    rubbed = eps * friction * np.abs(np.diff(w)).sum()  # w is monotone between events
+    hits = run.codes < 2
+    struck = 0.5 * eps / (1 + eps) * (1 - r * r) / r**2 * (run.rows[hits, 4] ** 2).sum()
+    balance = run.balance()
+    assert balance.friction == pytest.approx(rubbed, rel=1e-12)
+    assert balance.change == pytest.approx(-(balance.damping + balance.friction + balance.impacts), abs=1e-13)
+    assert balance.excitation == 0.0 and min(balance.damping, balance.friction, balance.impacts) > 0.05
+    assert balance.impacts == pytest.approx(struck, rel=1e-12)
