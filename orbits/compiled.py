@@ -15,10 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from orbits import cyclic, lane_links, lanes, periodic_qr, periodic_schur, small_eigenvalues, trigonometry
+from orbits import cyclic, lane_links, lanes, trigonometry
 from orbits import kernel as compiling
 from orbits.kernel import kernel, stored_kernel
 from orbits.models.base import Model
+from orbits.multipliers import periodic_qr, periodic_schur, small_eigenvalues
 
 # filled in per model by `specialise`
 linearise: Any = None

@@ -19,7 +19,7 @@ from numba import njit
 from orbits.kernel import OPTIONS, kernel
 from orbits.lane_links import call, links
 from orbits.lanes import SHORTEST, lanes_size, reflect, short_cycle
-from orbits.periodic_schur import scratch_size
+from orbits.multipliers.periodic_schur import scratch_size
 
 TINY = 1e-300
 
@@ -33,7 +33,7 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im,
         order, trial)`` with shapes ``(L, n)``,
         ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
-        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
+        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.multipliers.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
         ``(L n,)``; then those of `orbits.lanes`, and ``(L + 1,)`` twice.
     """
     n = node

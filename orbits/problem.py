@@ -223,7 +223,7 @@ class OrbitProblem:
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
-        from orbits.borders import cross
+        from orbits.borders.crossing import cross
 
         return cross(self, point)
 

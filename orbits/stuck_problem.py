@@ -67,7 +67,7 @@ class StuckProblem:
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The stick-slip motion that begins where friction gives way."""
-        from orbits.resting import from_rest
+        from orbits.borders.resting import from_rest
 
         return from_rest(self, point)
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orbits.eigenvectors import eigenvector
-from orbits.periodic_schur import multipliers, periodic_multipliers, scratch_size
-from orbits.small_eigenvalues import eigenvalues
+from orbits.multipliers.eigenvectors import eigenvector
+from orbits.multipliers.periodic_schur import multipliers, periodic_multipliers, scratch_size
+from orbits.multipliers.small_eigenvalues import eigenvalues
 
 BOTH = pytest.mark.parametrize("method", [multipliers, periodic_multipliers])
 

@@ -1,6 +1,6 @@
 """Across a border: the word on the other side, and the orbit with which its branch begins.
 
-The local rules of `orbits.rewriting` propose the word; where they do not, the simulator writes it. A proposal counts only
+The local rules of `orbits.borders.rewriting` propose the word; where they do not, the simulator writes it. A proposal counts only
 if its maps have a real solution next to the border and the simulator, which knows no word, follows it.
 """
 
@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from orbits.borders.growing import REAL, grown, margins_of, proposals, turned
+from orbits.borders.reading import read_alike
+from orbits.borders.resting import FOLLOWED, to_rest
+from orbits.borders.rewriting import edits_at
 from orbits.compiled import assemble
-from orbits.growing import REAL, grown, margins_of, proposals, turned
 from orbits.handing import Seed
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
-from orbits.reading import read_alike
-from orbits.resting import FOLLOWED, to_rest
-from orbits.rewriting import edits_at
 
 
 def cross(problem: OrbitProblem, point: Any) -> list[Seed]:

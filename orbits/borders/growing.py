@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from orbits.borders.rewriting import Edit, applied, edits_at
 from orbits.compiled import assemble
 from orbits.monitors import PER_NODE
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
-from orbits.rewriting import Edit, applied, edits_at
 from orbits.words import Word
 
 REAL = -1e-9  # smallest margin of a real orbit

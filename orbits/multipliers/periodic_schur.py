@@ -8,7 +8,7 @@ sum_j |M_{L-1} .. M_{j+1}| |M_j| |M_{j-1} .. M_0| (entry by entry, so that badly
 that is small, or hardly more than what rounding the factors alone does, sum_j |M_j| |M_{j-1} .. M_0 M_{L-1} ..
 M_{j+1}|, the product is the answer; for 2 x 2 factors the smaller multiplier comes from the product of the
 determinants, so it keeps its relative accuracy however small it is. Otherwise the periodic QR algorithm
-(`orbits.periodic_qr`) works on the factors. Both cost O(L) time and memory, and neither allocates.
+(`orbits.multipliers.periodic_qr`) works on the factors. Both cost O(L) time and memory, and neither allocates.
 """
 
 import ctypes
@@ -19,7 +19,7 @@ from llvmlite.binding import add_symbol
 from numba import types
 
 from orbits.kernel import kernel
-from orbits.periodic_qr import (
+from orbits.multipliers.periodic_qr import (
     LARGE,
     SMALL,
     UNIT_ROUNDOFF,
@@ -30,7 +30,7 @@ from orbits.periodic_qr import (
     scratch_size,
     sort_eigenvalues,
 )
-from orbits.small_eigenvalues import eigenvalues
+from orbits.multipliers.small_eigenvalues import eigenvalues
 
 __all__ = ["multipliers", "multipliers_of_two", "periodic_multipliers", "scratch_size"]
 
