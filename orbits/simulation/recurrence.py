@@ -88,6 +88,9 @@ def settle(
             )
         if status != REST:
             window.record(state, max_period)
+        if window.at_rest and attempt < patience and _will_slip(model, params):
+            length *= 4.0
+            continue  # the oscillator is still growing, or between two beats
         if status == REST or window.at_rest:
             return _attractor(model, engine, params, "stuck", 0, window, state)
         if not len(window.codes):  # without friction a free motion between the walls has no events
@@ -101,6 +104,13 @@ def settle(
         length *= 4.0
     kind = "chatter" if np.any(window.codes == HOLD) else "chaotic"
     return _attractor(model, engine, params, kind, 0, window, state)
+
+
+def _will_slip(model: Any, params: np.ndarray) -> bool:
+    """Whether friction cannot hold the absorber once the oscillator has settled."""
+    from orbits.stuck import StuckOrbit
+
+    return not StuckOrbit.of(model, params).real
 
 
 class _Window:
