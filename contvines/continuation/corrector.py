@@ -13,17 +13,17 @@ HUGE = 1e6  # larger corrections are a divergence
 
 def linearise(data, u, p, work):
     """Placeholder for the problem's kernel."""
-    raise NotImplementedError
+    raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
 def bordered(data, work, border, n, step, tangent):
     """Placeholder for the problem's kernel."""
-    raise NotImplementedError
+    raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
 def inspect(data, u, p, work, row):
     """Placeholder for the problem's kernel."""
-    raise NotImplementedError
+    raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
 def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent):
