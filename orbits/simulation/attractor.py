@@ -44,7 +44,7 @@ class Attractor:
     state : ndarray, shape (S,)
         A state on the attractor, from which a simulation goes on.
     impacts_per_period, impact_speed : float
-        Impacts per forcing period and mean approach speed |w'-|, over the motion looked at.
+        Impacts per forcing period and fastest approach |w'-|, over the motion looked at.
     """
 
     model: Any

@@ -257,5 +257,5 @@ def _attractor(
         symmetric=kind == "stuck" or is_symmetric(codes, modes, nodes, eps),
         state=state.copy(),
         impacts_per_period=0.0 if kind == "stuck" else float(rate),
-        impact_speed=float(hits.mean()) if hits.size and kind != "stuck" else 0.0,
+        impact_speed=float(hits.max()) if hits.size and kind != "stuck" else 0.0,
     )

@@ -51,7 +51,7 @@ class SweepRow:
 def measure_names(model: Any) -> tuple[str, ...]:
     """Measures in a sweep's rows.
 
-    ``max_abs_w``; ``impact_speed``: mean |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
+    ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
     ``max_abs_q1``: largest displacement of the cavity; in the reduced model ``C2``: squared amplitude of its motion.
     """
     own = ("C2",) if "amplitude" in model.parameter_names else ("max_abs_q1",)
