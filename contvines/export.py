@@ -24,21 +24,53 @@ def export(graph: "Graph", to: str, path: str | Path) -> Path:
     Raises
     ------
     ValueError
-        If the format is not known or the place cannot be written.
+        If the format is not known, the place cannot be written, or it holds a file of another kind.
     """
     writers = {"csv": _csv, "json": _json, "graphml": _graphml, "mat": _mat}
     if to not in writers:
         raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
     path = Path(path)
-    if not path.parent.is_dir():
-        raise ValueError(
-            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
-        )
+    check_target(path, to)
     try:
         writers[to](graph, path)
     except OSError as error:
         raise ValueError(f"{path}: cannot be written ({error.strerror}).") from None
     return path
+
+
+def check_target(path: Path, ending: str) -> None:
+    """Refuse a place that cannot be written, or where a graph, a study or another kind of file would be lost.
+
+    Raises
+    ------
+    ValueError
+        With a sentence that names the file and a name that would do.
+    """
+    if path.is_dir():
+        raise ValueError(f"{path}: cannot be written: this is a folder; give the name of a file with -o.")
+    if not path.parent.is_dir():
+        raise ValueError(
+            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
+        )
+    own = path.suffix.lower()
+    other = path.with_suffix(f".{ending}")
+    if own in (".vines", ".toml"):
+        kind = "graphs" if own == ".vines" else "studies"
+        raise ValueError(f"{path}: names in {own} are kept for {kind}; -o {other} would do.")
+    if path.is_file() and (own != f".{ending}" or _is_database(path)):
+        raise ValueError(
+            f"{path}: this file exists and is no .{ending} file, it is left untouched; -o {other} would do."
+            if own != f".{ending}"
+            else f"{path}: this file is a database, it is left untouched; choose another name with -o."
+        )
+
+
+def _is_database(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(16) == b"SQLite format 3\x00"
+    except OSError:
+        return False
 
 
 def json_text(data: Any, *, indent: int | None = 2) -> str:

@@ -132,12 +132,13 @@ def export(
     ] = None,
 ) -> None:
     """Write a result for other programs: csv, json, graphml or mat."""
-    from contvines.command.compose import beside, check_place
+    from contvines.command.compose import beside
+    from contvines.export import check_target
     from contvines.export import export as write
     from contvines.store import load
 
     target = output or beside(file, f".{to.value}")
-    check_place(target)
+    check_target(target, to.value)
     graph = load(file, problems=False)
     if not graph.finished:
         _unfinished(file)

@@ -19,6 +19,15 @@ OutputOption = Annotated[
         "-o", "--output", metavar="FILE.vines", help="Where to keep the graph; by default STUDY.vines here."
     ),
 ]
+TraceOutputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "-o",
+        "--output",
+        metavar="FILE.vines",
+        help="Where to keep the branch; by default STUDY-trace.vines here.",
+    ),
+]
 PlotOption = Annotated[
     Path | None,
     typer.Option("--plot", metavar="FILE.png", help="Draw the bifurcation diagram (png, pdf or svg)."),
@@ -42,7 +51,7 @@ def diagram(
 
 def trace(
     study: StudyArgument,
-    output: OutputOption = None,
+    output: TraceOutputOption = None,
     plot: PlotOption = None,
     quiet: QuietOption = False,
     x: XOption = None,
@@ -105,7 +114,7 @@ def _run(
     from contvines.store import Store
 
     study = checked_study(path)
-    target = output or beside(path, ".vines")
+    target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)
     if target.resolve() == path.resolve():
         raise ValueError(f"{target}: this is the study itself; choose another name with -o.")

@@ -19,7 +19,7 @@ def sweep(
     down: Annotated[bool, typer.Option("--down", help="From the interval's upper end to the lower.")] = False,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE.csv", help="Where to; by default STUDY.csv here."),
+        typer.Option("-o", "--output", metavar="FILE.csv", help="Where to; by default STUDY-sweep.csv here."),
     ] = None,
     plot: Annotated[
         Path | None,
@@ -33,14 +33,15 @@ def sweep(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
     """Simulate over the parameter, carrying the state on; tell the attractor at each value."""
-    from contvines.command.compose import beside, check_place, say
+    from contvines.command.compose import beside, say
     from contvines.command.study import read_study
+    from contvines.export import check_target
 
     read = read_study(study)
-    target = output or beside(study, ".csv")
-    check_place(target)
+    target = output or beside(study, "-sweep.csv")
     if target.resolve() == study.resolve():
         raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
+    check_target(target, "csv")
     graph: Any = None
     if over is not None:
         from contvines.store import load

@@ -206,6 +206,18 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
         (("plot", "g.vines", "--kind", "multipliers", "--branch", "B9"), "B9: there is no such branch"),
         (("export", "g.vines", "--to", "xml"), "xml"),
         (("export", "g.vines", "--to", "csv", "-o", "none/a.csv"), "there is no folder 'none'"),
+        (
+            ("export", "g.vines", "--to", "csv", "-o", "g.vines"),
+            "g.vines: names in .vines are kept for graphs",
+        ),
+        (("export", "g.vines", "--to", "mat", "-o", "keep.toml"), "keep.toml: names in .toml are kept"),
+        (
+            ("export", "g.vines", "--to", "mat", "-o", "notes.txt"),
+            "notes.txt: this file exists and is no .mat",
+        ),
+        (("export", "g.vines", "--to", "csv", "-o", "d.csv"), "d.csv: this file is a database"),
+        (("sweep", EXAMPLE, "-o", "g.vines"), "g.vines: names in .vines are kept for graphs"),
+        (("sweep", EXAMPLE, "-o", "keep.toml"), "-o keep.csv would do"),
         (("switch", "g.vines", "B1"), "B1 is a branch"),
         (("switch", "g.vines", "XX1"), "XX1 is no label of it; its special points are BP1, EP1, VG1"),
         (("sweep", EXAMPLE, "--over", "g.vines", "--plot", "a.png"), "g.vines continues in p"),
@@ -214,6 +226,8 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
 )
 def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path, words, sentence):
     (tmp_path / "notes.txt").write_text("mine, not yours\n" * 20)
+    (tmp_path / "keep.toml").write_text(GOOD)
+    (tmp_path / "d.csv").write_bytes(vines.read_bytes())
     before = {p: p.read_bytes() for p in tmp_path.iterdir()}
     status, out, err = run(*words)
     assert status != 0
@@ -250,7 +264,7 @@ def test_sweep_writes_one_row_per_value(run, tmp_path):
     (tmp_path / "s.toml").write_text(text)
     status, _, err = run("sweep", "s.toml", "--plot", "s.png")
     assert status == 0, err
-    rows = [line.split(",") for line in (tmp_path / "s.csv").read_text().splitlines()]
+    rows = [line.split(",") for line in (tmp_path / "s-sweep.csv").read_text().splitlines()]
     assert rows[0][:6] == ["value", "direction", "attractor", "word", "periods", "impacts"]
     assert [float(r[0]) for r in rows[1:]] == pytest.approx([0.55, 0.60, 0.65, 0.70])
     assert {tuple(r[1:6]) for r in rows[1:]} == {("up", "periodic", "LR", "1", "2")}

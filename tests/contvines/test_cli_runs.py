@@ -94,9 +94,10 @@ def test_orbit_of_a_label_is_the_object_of_the_contract(folder, capsys):
     assert "multipliers:" in capsys.readouterr().out
 
 
-def test_trace_follows_one_branch(folder, capsys):
-    call("trace", folder / "s.toml", "-o", folder / "t.vines")
-    graph = load(folder / "t.vines", problems=False)
+def test_trace_follows_one_branch(folder, capsys, monkeypatch):
+    monkeypatch.chdir(folder)  # where s.vines, the diagram, is: its name is not taken
+    call("trace", folder / "s.toml")
+    graph = load(folder / "s-trace.vines", problems=False)
     assert list(graph.branches) == ["B1"]
     assert not graph.switches
     whole = load(folder / "s.vines", problems=False)
