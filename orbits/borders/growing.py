@@ -21,6 +21,7 @@ SIZES = (
     (2e-6, 2e-7),
     (2e-8,),
 )  # of what grows beyond the border: ways to try
+STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is close
 GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 
@@ -165,4 +166,23 @@ def _beside(
                 margin > GROWING * distance
             ):  # not one that vanishes all along, as at a wall touched without speed
                 return other, u, q, along
+    if np.abs(tangent).max() > STEEP:
+        return _along(other, at_border, p, tangent)
+    return None
+
+
+def _along(
+    other: OrbitProblem, at_border: np.ndarray, p: float, tangent: np.ndarray
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """The same where the new word's branch turns back close to the border: both ways along its tangent."""
+    kernels, work = assemble(other.model), other.workspace()
+    step, scratch = np.empty_like(tangent), np.empty_like(tangent)
+    for distance in (1e-5, 1e-6):
+        for side in (1.0, -1.0):
+            direction = side * tangent / np.linalg.norm(tangent)
+            u = at_border + distance * direction[:-1]
+            guess = p + distance * direction[-1]
+            residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)
+            if residual < 1e-10 and margins_of(other, u, float(q)).min() > GROWING * distance:
+                return other, u, float(q), direction
     return None

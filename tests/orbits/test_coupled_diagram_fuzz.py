@@ -21,6 +21,7 @@ from test_diagram_fuzz import crossed, followed, guard, unique
 __all__ = ["guard"]  # a fixture that stops a diagram that hangs
 
 DRAWN = 260 if os.environ.get("CONTVINES_LARGE") else 24
+TURNING = [436]  # a fold right behind a border
 
 
 def start(seed):
@@ -56,7 +57,7 @@ def start(seed):
     return polish(found.orbit), options
 
 
-@pytest.mark.parametrize("seed", range(DRAWN))
+@pytest.mark.parametrize("seed", [*range(DRAWN), *TURNING])
 def test_diagram(seed):
     orbit, options = start(seed)
     if orbit is None:
