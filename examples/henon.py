@@ -24,4 +24,4 @@ def main():
 if __name__ == "__main__":
     graph = main()
     print(graph)
-    graph.plot(y="u0").savefig("henon.png")
+    graph.plot(y="x0").savefig("henon.png")

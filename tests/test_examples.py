@@ -1,6 +1,7 @@
 """Every example runs, and its numbers are those of the literature."""
 
 import importlib.util
+import runpy
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,13 @@ def values(graph, kind):
 def test_no_example_is_forgotten():
     assert {p.stem for p in EXAMPLES.glob("*.py")} == SCRIPTS
     assert {p.stem for p in EXAMPLES.glob("*.toml")} == STUDIES
+
+
+@pytest.mark.parametrize("name", sorted(SCRIPTS))
+def test_scripts_run_as_a_user_runs_them(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+    assert "branches in" in capsys.readouterr().out
 
 
 def test_pitchfork_and_its_perturbed_twin():

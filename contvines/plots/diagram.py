@@ -90,32 +90,65 @@ def plot_diagram(
         axes.margins(0.04)
         axes.set_xlabel(axis_label(x))
         axes.set_ylabel(axis_label(y))
-        _legend(axes, states, used)
+        _legend(axes, states, used, undrawn(graph, x, y))
         if labels:
             settle(figure, freeze=own)
+            taken = _hold_legend(axes)
             spots, names = merge_labels(axes, [(px, py) for _, px, py in special], [t for t, _, _ in special])
             middles = _middles(graph, x, y, tint, axes) if len(graph.branches) > 1 else []
             anchors = [*spots, *((px, py) for _, px, py, _ in middles)]
             colors = ["black"] * len(spots) + [color for *_, color in middles]
             if anchors:
-                clutter = np.vstack([*obstacles, *_boxes(axes)])
                 texts = [*names, *(text for text, *_ in middles)]
-                place_labels(axes, anchors, texts, clutter, colors=colors, optional=len(middles))
+                place_labels(
+                    axes,
+                    anchors,
+                    texts,
+                    np.vstack(obstacles),
+                    colors=colors,
+                    optional=len(middles),
+                    taken=taken,
+                )
         if not graph.finished:
             axes.set_title("unfinished", color="0.4")
     return figure
 
 
 def default_measure(graph: "Graph") -> str:
-    """The measure on the y axis when none is named."""
+    """The measure on the y axis when none is named: one that is a number on some branch, at least.
+
+    Motions without impacts have no velocity B there; where none of the graph has, the largest |w| is shown.
+    """
     for branch in graph.branches.values():
         names = list(getattr(branch.problem, "measure_names", ()) or ())
+        if not names:
+            continue
         wanted = getattr(branch.problem, "default_measure", None)
-        if wanted in names:
-            return str(wanted)
-        if names:
-            return next((n for n in names if n not in ("norm", graph.parameter)), names[0])
+        others = [n for n in names if n not in ("norm", graph.parameter)]
+        choice = [n for n in (wanted, "max_abs_w", *others) if n in names]
+        return next((str(n) for n in choice if _shown(graph, n)), choice[0] if choice else names[0])
     return "norm"
+
+
+def undrawn(graph: "Graph", x: str, y: str) -> str:
+    """Which branches have no number to draw, as a line of the legend; empty if all have one."""
+    missing = [b for b in graph.branches.values() if len(b) and not _finite(b, x, y)]
+    if not missing:
+        return ""
+    labels = [b.label for b in missing]
+    listed = ", ".join(labels) if len(labels) <= 4 else f"{', '.join(labels[:3])} +{len(labels) - 3}"
+    words = [b.description.get("word") for b in missing]
+    still = all(isinstance(w, str) and not set("LR") & set(w) for w in words)
+    return f"not drawn: {listed} ({'no impacts' if still else f'no {y} there'})"
+
+
+def _shown(graph: "Graph", name: str) -> bool:
+    return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
+
+
+def _finite(branch: Any, x: str, y: str) -> bool:
+    """Whether some point of a branch has both measures."""
+    return bool(np.any(np.isfinite(measured(branch, x)) & np.isfinite(measured(branch, y))))
 
 
 def measured(branch: Any, name: str) -> np.ndarray:
@@ -172,19 +205,18 @@ def _dense(axes: "Axes", xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(at, np.arange(len(xs)), v) for v in (xs, ys)])
 
 
-def _boxes(axes: "Axes") -> list[np.ndarray]:
-    """Points over the legend."""
+def _hold_legend(axes: "Axes") -> list[tuple[float, float, float, float]]:
+    """Keep the legend where it is now, whatever is written later; its box on the page."""
     legend = axes.get_legend()
     if legend is None:
         return []
     box = legend.get_window_extent()
-    grid = np.array(
-        [(u, v) for u in np.linspace(box.x0, box.x1, 30) for v in np.linspace(box.y0, box.y1, 30)]
-    )
-    return [axes.transData.inverted().transform(grid)]
+    (left, low) = axes.transAxes.inverted().transform((box.x0, box.y0))
+    legend.set_loc((float(left), float(low)))
+    return [(box.x0, box.y0, box.x1, box.y1)]
 
 
-def _legend(axes: "Axes", states: dict[str, None], used: dict[str, Any]) -> None:
+def _legend(axes: "Axes", states: dict[str, None], used: dict[str, Any], remark: str) -> None:
     from matplotlib.lines import Line2D
 
     handles = [
@@ -207,5 +239,8 @@ def _legend(axes: "Axes", states: dict[str, None], used: dict[str, Any]) -> None
         )
         for m in used.values()
     ]
+    handles += axes.get_legend_handles_labels()[0]  # what was drawn before on these axes
+    if remark:
+        handles.append(Line2D([], [], linestyle="none", label=remark))
     if handles:
         axes.legend(handles=handles, loc="best", handlelength=2.6)

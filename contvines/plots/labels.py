@@ -19,6 +19,7 @@ def place_labels(
     size: float = 8.5,
     colors: list[str] | None = None,
     optional: int = 0,
+    taken: list[tuple[float, float, float, float]] | None = None,
 ) -> None:
     """Write each text near its anchor where it covers least.
 
@@ -30,6 +31,7 @@ def place_labels(
     size : font size in points.
     colors : one per text.
     optional : how many of the last texts are left out rather than put far from their anchors.
+    taken : boxes on the page (x0, y0, x1, y1) that no text may touch, such as the legend's.
     """
     transform = axes.transData.transform
     figure = axes.get_figure(root=True)
@@ -45,7 +47,7 @@ def place_labels(
             continue
         width, height = (0.62 * size * len(text) + 2) * unit, 1.25 * size * unit
         best = None
-        for radius in (7, 13, 22, 34, 50):
+        for radius in (7, 13, 22, 34, 50, 75, 110):
             for dx, dy in _DIRECTIONS:
                 norm = np.hypot(dx, dy)
                 cx = anchor[0] + dx / norm * radius * unit + 0.5 * dx * width
@@ -62,6 +64,7 @@ def place_labels(
                 met = sum(_overlap(box, other) for other in boxes)
                 others = np.delete(anchors_, i, axis=0)
                 on_marks = _inside(others, box, 4 * unit)
+                met += 4 * sum(_overlap(box, other) for other in taken or ())
                 cost = min(inside.sum(), 40) + 60 * met + 25 * on_marks + 10 * out / unit + 0.25 * radius
                 if best is None or cost < best[0]:
                     best = (cost, cx, cy, box, radius)

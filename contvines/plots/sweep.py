@@ -1,6 +1,6 @@
 """A brute-force sweep as dots, over the continued branches if there are any."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def plot_sweep(
     values = np.array(points, float).reshape(-1, 2)
     with styled():
         figure, axes = new_axes(None)
-        dots: Any = axes.plot(
+        axes.plot(
             values[:, 0],
             values[:, 1],
             linestyle="none",
@@ -37,14 +37,11 @@ def plot_sweep(
             color="0.45" if measure == "B" else "black",
             label="simulated: B at every impact" if measure == "B" else "simulated",
             zorder=2 if measure == "B" else 3.5,
-        )[0]
+        )
         if graph is not None:
             plot_diagram(graph, x=parameter, y=measure, axes=axes)
-        legend = axes.get_legend()
-        handles = [*(legend.legend_handles if legend else []), dots]
-        axes.legend(
-            handles=handles, labels=[str(h.get_label()) for h in handles], loc="best", handlelength=2.6
-        )
+        else:
+            axes.legend(loc="best", handlelength=2.6)
         axes.set_xlabel(axis_label(parameter))
         axes.set_ylabel("$B$ at the impacts" if measure == "B" else axis_label(measure))
     return figure

@@ -64,6 +64,45 @@ def test_labels_do_not_cover_one_another(graph):
         assert not any(one.overlaps(other) for other in boxes[i + 1 :])
 
 
+def impactless(words, values):
+    """The fake graph, its branches with these words and a measure B that is `values` times u on each."""
+
+    class Problem:
+        measure_names, default_measure = ("B", "max_abs_w"), "B"
+
+        def __init__(self, B):
+            self.B = B
+
+        def measures(self, names, u, p):
+            known = {"B": self.B * u[:, 0], "max_abs_w": u[:, 0] + 2}
+            return {name: known[name] for name in names}
+
+    graph = fakes.pitchfork_graph()
+    for branch, word, value in zip(graph.branches.values(), words, values, strict=True):
+        branch.problem, branch.description = Problem(value), {**branch.description, "word": word}
+    return graph
+
+
+def test_branches_without_the_measure_are_named_in_the_legend():
+    axes = plot_diagram(impactless(("LR", "", "tt"), (1.0, np.nan, np.nan))).axes[0]
+    assert "not drawn: B2, B3 (no impacts)" in {t.get_text() for t in axes.get_legend().get_texts()}
+
+
+def test_where_no_branch_has_the_measure_another_is_drawn():
+    axes = plot_diagram(impactless(("ss", "", "tt"), (np.nan,) * 3)).axes[0]
+    assert axes.get_ylabel() == "largest $|w|$"
+    assert not any("not drawn" in t.get_text() for t in axes.get_legend().get_texts())
+
+
+def test_labels_keep_out_of_the_legend(graph):
+    for y in ("norm", "p"):
+        figure = plot_diagram(graph, y=y, ends=True)
+        figure.canvas.draw()
+        legend = figure.axes[0].get_legend().get_window_extent()
+        texts = [t for t in figure.axes[0].texts if t.get_window_extent().overlaps(legend)]
+        assert not texts
+
+
 def test_every_kind_has_a_mark():
     assert set(MARKS) == set(PREFIXES)
 
