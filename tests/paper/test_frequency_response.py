@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigvals
+from scipy.optimize import brentq
 
 import contvines as cv
 from orbits.simulation import simulate
@@ -281,6 +282,26 @@ def test_a_weakly_forced_response_is_an_isola():
     np.testing.assert_allclose(drawn[0], drawn[-1], atol=1e-9)
     assert drawn[:, 0].min() == pytest.approx(branch.range[0], abs=1e-9)
     assert drawn[:, 0].max() == pytest.approx(branch.range[1], abs=1e-9)
+
+
+def test_the_linear_regime_leads_to_all_others():
+    """From the absorber stuck below resonance, by borders alone: stick-slip, sliding, impacts, and the linear regime above."""
+
+    def left_over(omega):  # friction that the linear response with the mass 1 + eps does not need
+        drag = 1j * 0.006 * omega
+        response = 0.006 * 2.47 * abs(1.0 + drag) / abs(1.0 - 1.006 * omega**2 + drag)
+        return 0.5 * 0.211 - omega**2 * response
+
+    slips = brentq(left_over, 0.9, 0.97, xtol=1e-15), brentq(left_over, 1.03, 1.1, xtol=1e-15)
+    graph = cv.diagram(MACHINE.orbit("", frequency=0.93), over="frequency", within=(0.92, 1.09), depth=2)
+    stuck = [branch for branch in graph if branch.description["word"] == ""]
+    assert sorted(branch.range for branch in stuck) == [
+        pytest.approx((0.92, slips[0]), abs=1e-11),
+        pytest.approx((slips[1], 1.09), abs=1e-11),
+    ]
+    words = {branch.description["word"] for branch in graph if branch.real and branch.stable.any()}
+    assert {"", "ss", "tt"} <= words and words & {"LR", "RL"}
+    assert sorted(p.value for p in graph.of_kind("fold"))[:1] == pytest.approx([FOLDS[0]], abs=1e-11)
 
 
 # ---------------------------------------------------------------------- free decay
