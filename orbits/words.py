@@ -73,6 +73,7 @@ class Word:
     @classmethod
     def _from_letters(cls, joined: str, frictionless: bool, text: object) -> Word:
         shown = text if isinstance(text, str) else " ".join(text)  # type: ignore[arg-type]
+        shown = shown if len(shown) <= 60 else f"{shown[:40]}..."
         joined = joined.replace("−", "-")
         if not re.fullmatch(r"(?:[LRt]|[su][+-]?)*", joined):
             bad = re.sub(r"[LRt]|[su][+-]?", "", joined)[:1]

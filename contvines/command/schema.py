@@ -5,8 +5,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 Restitution = Annotated[float, Field(gt=0, le=1)]
-Positive = Annotated[float, Field(gt=0)]
-NonNegative = Annotated[float, Field(ge=0)]
+LARGEST = (
+    1e6  # in the machine's own units, where all numbers are of order one; squares stay far from overflow
+)
+Positive = Annotated[float, Field(ge=1 / LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(ge=0, le=LARGEST)]
 
 
 def _excitation(value: Any) -> Any:
@@ -52,7 +55,7 @@ class StartSection(Section):
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
 
     word: str
-    periods: Annotated[int, Field(ge=1)] = 1
+    periods: Annotated[int, Field(ge=1, le=4096)] = 1
     guess: list[list[float]] | None = None
 
 

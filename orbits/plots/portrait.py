@@ -40,22 +40,34 @@ def portrait(orbit: Orbit, points: int = 1200) -> Figure:
         motion = orbit.sample(points)
         _phase(left, orbit, motion)
         _history(right, orbit, motion)
-        kind = "symmetric" if orbit.symmetric else "asymmetric"
-        state = ("stable" if orbit.stable else "unstable") + (
-            "" if orbit.real else ", virtual: no machine can follow it"
-        )
-        figure.suptitle(
-            f"{orbit.word.text}, {orbit.impacts} impacts in {orbit.periods} forcing period"
-            f"{'s' if orbit.periods > 1 else ''}, {kind}, {state}",
-            fontsize="medium",
-        )
+        figure.suptitle(title(orbit), fontsize="medium")
     return figure
+
+
+def title(orbit: Orbit) -> str:
+    """What the orbit is, in two lines: word, impacts, symmetry and stability; then where it lives."""
+    size = np.abs(orbit.multipliers)
+    if size.size and np.abs(size - 1.0).min() <= 1e-6 and size.max() <= 1.0 + 1e-6:
+        state = "marginal"  # at a fold, a symmetry breaking, ...
+    else:
+        state = "stable" if orbit.stable else "unstable"
+    state += "" if orbit.real else ", virtual: no machine can follow it"
+    shown = ("amplitude", "frequency") if "amplitude" in orbit.parameters else ("frequency", "forcing")
+    here = ", ".join(f"{name} = {orbit.parameters[name]:.6g}" for name in shown)
+    if not len(orbit.word):
+        return f"stuck, the absorber rides with the cavity, {state}\n{here}"
+    many = "impact" if orbit.impacts == 1 else "impacts"
+    periods = "forcing period" if orbit.periods == 1 else "forcing periods"
+    kind = "symmetric" if orbit.symmetric else "asymmetric"
+    word = orbit.word.text if len(orbit.word.text) <= 60 else orbit.word.text[:40] + "..."
+    return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
 
 
 def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     w, rate = motion["w"], motion["w_rate"]
     reach = 1.15 * max(1e-3, float(np.abs(rate).max()))
-    bound = 1.0 if not orbit.word.impact_free or np.abs(w).max() > 0.5 else 1.3 * float(np.abs(w).max())
+    largest = float(np.abs(w).max())
+    bound = 1.0 if not orbit.word.impact_free or largest > 0.5 or largest == 0.0 else 1.3 * largest
     if bound == 1.0:
         for side in (-1.0, 1.0):
             axes.axvspan(side, 1.16 * side, color=WALL, lw=0.0)
@@ -64,6 +76,8 @@ def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     for segment in range(len(orbit.word)):
         here = motion["segment"] == segment
         axes.plot(w[here], rate[here], line, color=ORBIT, lw=1.6, zorder=2)
+    if not len(orbit.word):
+        axes.plot([0.0], [0.0], "o", color=ORBIT, zorder=2)
     table = orbit.events
     for i, letter in enumerate(orbit.word.events):
         if letter in "LR":  # the jump of the velocity
@@ -74,7 +88,7 @@ def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     axes.set(
         xlim=(-1.16 * bound, 1.16 * bound),
         ylim=(-reach, reach),
-        xlabel=r"relative position $w$",
+        xlabel=r"relative position $w = q_1 - q_2$ (left wall at $+1$)",
         ylabel=r"relative velocity $w'$",
     )
 

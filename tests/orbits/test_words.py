@@ -79,3 +79,9 @@ def test_symmetric_halves():
     assert Word.parse("LsRs").mirror_symmetric_halves
     assert not Word.parse("LRtt").mirror_symmetric_halves
     assert not Word.parse("LRLR").mirror_symmetric_halves
+
+
+def test_long_words_are_shortened_in_messages():
+    with pytest.raises(WordError) as caught:
+        Word.parse("LR" * 200 + "L")
+    assert f"word '{'LR' * 20}...' cannot be" in str(caught.value)
