@@ -77,6 +77,17 @@ def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
     return [(name, symbol, f"{value:.5g}", unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
+def table(title: str, lines: list[tuple[str, str, str, str, str]]) -> str:
+    """The lines as text, as wide as they are: nothing is cut in a pipe."""
+    whole = [("quantity", "symbol", "value", "unit", ""), *lines]
+    widths = [max(len(line[i]) for line in whole) for i in range(5)]
+    texts = [
+        "  ".join(c.rjust(w) if i == 2 else c.ljust(w) for i, (c, w) in enumerate(zip(line, widths))).rstrip()
+        for line in whole
+    ]
+    return "\n".join([title, "", texts[0], "-" * max(map(len, texts)), *texts[1:]])
+
+
 def as_json(design: Design) -> dict[str, Any]:
     """Figures in SI units at full precision."""
     found: dict[str, Any] = {
@@ -89,7 +100,7 @@ def as_json(design: Design) -> dict[str, Any]:
 
 
 def draw(design: Design) -> Figure:
-    """Amplitude bounds and working range over friction and over the cavity's half-width; a map of both."""
+    """Amplitude bounds and operating ratio over friction and over the cavity's half-width; a map of both."""
     import numpy as np
 
     from contvines.plots.style import new_figure, styled
@@ -111,22 +122,28 @@ def draw(design: Design) -> Figure:
             axes.fill_between(
                 axis * unit, 1e3 * low, 1e3 * high, color="#dbe6f1", lw=0, label="two symmetric impacts"
             )
-            axes.plot(axis * unit, 1e3 * low, color="#0b3c6f", label=r"$q_{1,\min}$")
-            axes.plot(axis * unit, 1e3 * high, color="#0b3c6f", ls=(0, (5, 2.2)), label=r"$q_{1,\max}$")
+            axes.plot(axis * unit, 1e3 * low, color="#0b3c6f", label=r"activation threshold $q_{1,\min}$")
+            axes.plot(
+                axis * unit, 1e3 * high, color="#0b3c6f", ls=(0, (5, 2.2)), label=r"upper bound $q_{1,\max}$"
+            )
             stick = np.broadcast_to(line.sticking_limit(), axis.shape)
             axes.plot(
                 axis * unit,
                 1e3 * stick,
                 color="#b5121b",
                 ls=(0, (1, 1.6)),
-                label=r"$q_{1,\mathrm{cr}}$ at $f_0$",
+                label=r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$",
             )
-            axes.set(ylabel="oscillator $q_1$ [mm]" if column == 0 else "", ylim=(0, None))
+            room = 1.0 if column == 0 else 1.45  # for the legend
+            axes.set(
+                ylabel="oscillator $q_1$ [mm]" if column == 0 else "",
+                ylim=(0, 1.05e3 * room * max(high.max(), stick.max())),
+            )
             if column == 1:
                 axes.legend(loc="upper left")
             bottom[column].plot(axis * unit, line.operating_ratio, color="#0b3c6f")
             bottom[column].set(
-                xlabel=label, ylabel=r"working range $\xi$" if column == 0 else "", ylim=(1, None)
+                xlabel=label, ylabel=r"operating ratio $\xi$" if column == 0 else "", ylim=(1, None)
             )
             for panel in (axes, bottom[column]):
                 panel.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
@@ -134,9 +151,13 @@ def draw(design: Design) -> Figure:
             (
                 top[2],
                 design.with_(friction=mu[None, :], cavity=b[:, None]).upper_bound * 1e3,
-                r"$q_{1,\max}$ [mm]",
+                r"upper bound $q_{1,\max}$ [mm]",
             ),
-            (bottom[2], design.with_(friction=mu[None, :], cavity=b[:, None]).operating_ratio, r"$\xi$"),
+            (
+                bottom[2],
+                design.with_(friction=mu[None, :], cavity=b[:, None]).operating_ratio,
+                r"operating ratio $\xi$",
+            ),
         )
         for panel, values, title in maps:
             levels = np.geomspace(values.min(), values.max(), 12)
@@ -164,7 +185,7 @@ def design(
     no_plot: bool = typer.Option(False, "--no-plot", help="No picture."),
     json_: bool = typer.Option(False, "--json", help="Print one JSON object in SI units instead of a table."),
 ) -> None:
-    """Design figures in physical units: activation threshold, upper bound, working range, sticking and
+    """Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and
     sliding limits."""
     from contvines.plots.style import check_picture, save_figure
 
@@ -179,25 +200,9 @@ def design(
 
         typer.echo(json.dumps(as_json(figures), indent=2))
     else:
-        from rich.box import SIMPLE_HEAD
-        from rich.console import Console
-        from rich.table import Table
-
-        table = Table(
-            title=f"Design figures of {study.name}", title_justify="left", box=SIMPLE_HEAD, pad_edge=False
-        )
-        for heading, side in (
-            ("quantity", "left"),
-            ("symbol", "left"),
-            ("value", "right"),
-            ("unit", "left"),
-            ("", "left"),
-        ):
-            table.add_column(heading, justify=side, no_wrap=True)  # type: ignore[arg-type]
-        for line in rows(figures):
-            table.add_row(*line)
-        Console().print(table)
+        typer.echo(table(f"Design figures of {study.name}", rows(figures)))
     if plot is not None:
+        from contvines.command.compose import say
+
         save_figure(draw(figures), plot)
-        if not json_:
-            typer.echo(f"Picture: {plot}")
+        say(f"drawn in {plot}")

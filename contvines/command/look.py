@@ -72,10 +72,12 @@ def orbit(
     else:
         typer.echo(_describe(found))
     if plot is not None:
+        from contvines.command.compose import say
         from contvines.plots.portrait import plot_portrait
         from contvines.plots.style import save_figure
 
         save_figure(plot_portrait(found), plot)
+        say(f"drawn in {plot}")
 
 
 def plot(
@@ -199,13 +201,14 @@ def _describe(found: Any) -> str:
         names = list(nodes[0])
         table = [
             names,
-            *[[f"{n[k]:.10g}" if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
+            *[[_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
         ]
         widths = [max(len(row[i]) for row in table) for i in range(len(names))]
         lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths)) for row in table]
     if "multipliers" in about:
         text = ", ".join(
-            f"{re:.10g}" if im == 0 else f"{re:.10g}{im:+.10g}i" for re, im in about["multipliers"]
+            _number(re) if _number(im) == "0" else f"{_number(re)}{im:+.10g}i"
+            for re, im in about["multipliers"]
         )
         lines.append(f"  multipliers: {text or 'none'}")
     if about.get("margins"):
@@ -217,6 +220,11 @@ def _describe(found: Any) -> str:
     if not lines:
         lines = [f"{k}: {v}" for k, v in about.items()]
     return "\n".join(lines)
+
+
+def _number(value: float) -> str:
+    """Ten digits; what is only rounding is 0."""
+    return "0" if abs(value) < 1e-15 else f"{value:.10g}"
 
 
 def _unfinished(file: Path) -> None:

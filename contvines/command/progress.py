@@ -21,7 +21,7 @@ def shown(*, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
 
         def tell(state: Any) -> None:
             text = (
-                f"{state.message}  |  {state.branches} branches, {state.special} special points, "
+                f"{state.message}  |  {state.branches} branch{'' if state.branches == 1 else 'es'}, {state.special} special points, "
                 f"{state.points} points, {state.waiting} waiting"
             )
             progress.update(task, description=text)

@@ -93,7 +93,9 @@ def switch(
             store.checkpoint(graph)
     if not quiet:
         if not new:
-            typer.echo(f"{label}: nothing new leaves here; {file} is as it was.")
+            where = {"end": "nothing leaves an end", "fold": "nothing leaves a fold"}
+            why = where.get(graph.special[label].kind, "nothing new leaves here")
+            typer.echo(f"{label}: {why}; {file} is as it was.")
         for branch in new:
             low, high = branch.range
             typer.echo(

@@ -255,7 +255,11 @@ class Store:
             }
         missing = {"meta", "entry", "array"} - tables
         if verdict != "ok" or missing:
-            why = verdict if verdict != "ok" else f"it lacks the table {sorted(missing)[0]!r}"
+            why = (
+                "its pages do not fit together"
+                if verdict != "ok"
+                else f"it lacks the table {sorted(missing)[0]!r}"
+            )
             raise StoreError(f"{self.path}: this file is damaged ({why}); move it away and run again.")
         _ = self.fingerprint, self.study, self.finished
         for _ in self.entries():
@@ -267,9 +271,9 @@ class Store:
             yield
         except sqlite3.OperationalError as error:
             raise StoreError(f"{self.path}: cannot be used now ({error}).") from None
-        except (sqlite3.DatabaseError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        except (sqlite3.DatabaseError, UnicodeDecodeError, json.JSONDecodeError):
             raise StoreError(
-                f"{self.path}: this file is damaged ({error}); move it away and run again."
+                f"{self.path}: this file is damaged (its content is broken); move it away and run again."
             ) from None
 
     def settle(self) -> None:

@@ -56,5 +56,6 @@ def load(path: str | Path, *, problems: bool = True) -> Any:
     StoreError
         If the file is not ours, is damaged or is newer.
     """
+    check_header(Path(path), reading=True)
     with Store.open(path) as store:
         return store.graph(problems=problems)

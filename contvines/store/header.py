@@ -13,31 +13,34 @@ class StoreError(ValueError):
     """A file that cannot be used; the message says why and what to do. The file is left untouched."""
 
 
-def check_header(path: Path) -> None:
-    """Refuse what is not ours before SQLite touches it."""
+def check_header(path: Path, *, reading: bool = False) -> None:
+    """Refuse what is not ours before SQLite touches it; `reading` if it was to be read, not to be written."""
+    other = (
+        "give one that `contvines diagram` or `trace` has made"
+        if reading
+        else "choose another name with -o, it is left untouched"
+    )
     try:
         with path.open("rb") as file:
             head = file.read(100)
             size = os.fstat(file.fileno()).st_size
     except FileNotFoundError:
         raise StoreError(
-            f"{path}: there is no such file; `contvines diagram STUDY.toml -o {path}` makes one."
+            f"{path}: there is no such file; {other}."
+            if path.suffix != ".vines"
+            else f"{path}: there is no such file; `contvines diagram STUDY.toml -o {path}` makes one."
         ) from None
     except OSError as error:
         raise StoreError(f"{path}: cannot be read ({error.strerror}).") from None
     if len(head) < 100 or not head.startswith(MAGIC):
-        raise StoreError(
-            f"{path}: this is not a .vines file; choose another name with -o, it is left untouched."
-        )
+        raise StoreError(f"{path}: this is not a .vines file; {other}.")
     version, application = struct.unpack(">I", head[60:64])[0], struct.unpack(">I", head[68:72])[0]
     if application != APPLICATION_ID:
-        raise StoreError(
-            f"{path}: this is a database of another program; choose another name with -o, it is left untouched."
-        )
+        raise StoreError(f"{path}: this is a database of another program; {other}.")
     if version > VERSION:
         raise StoreError(
             f"{path}: this file has format {version}, written by a newer contvines; this one knows format {VERSION}: "
-            "update contvines, or choose another name with -o."
+            f"update contvines, or {'give another file' if reading else 'choose another name with -o'}."
         )
     page = struct.unpack(">H", head[16:18])[0] or 512
     page = 65536 if page == 1 else page

@@ -118,7 +118,7 @@ def test_export(run, vines, tmp_path, kind):
 
 def test_orbit_of_a_study_is_solved_not_continued(run, tmp_path):
     status, out, err = run("orbit", EXAMPLE, "--json", "--plot", "o.png")
-    assert (status, err) == (0, "")
+    assert (status, err) == (0, "drawn in o.png\n")
     data = json.loads(out)
     assert {"word", "periods", "parameters", "nodes", "multipliers", "margins", "real"} <= set(data)
     assert (data["word"], data["periods"], data["real"]) == ("LR", 1, True)
@@ -187,7 +187,20 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
     [
         (("diagram", "none.toml"), "none.toml: there is no such file"),
         (("show", "none.vines"), "none.vines: there is no such file"),
-        (("show", "notes.txt"), "notes.txt: this is not a .vines file"),
+        (("show", "notes.txt"), "notes.txt: this is not a .vines file; give one that `contvines diagram`"),
+        (("show", "none.toml"), "none.toml: there is no such file; give one that"),
+        (
+            ("plot", "g.vines", "--kind", "pie"),
+            "contvines: --kind pie: there is no such choice; choose one of d",
+        ),
+        (
+            ("export", "g.vines", "--to=pie"),
+            "contvines: --to pie: there is no such choice; choose one of csv",
+        ),
+        (
+            ("design", EXAMPLE, "--cavity", "x"),
+            "contvines: --cavity x: this is not a number; give one such as",
+        ),
         (("plot", "notes.txt"), "notes.txt: this is not a .vines file"),
         (("orbit", "notes.txt", "B1"), "notes.txt: this is not a .vines file"),
         (("diagram", EXAMPLE, "-o", "notes.txt"), "notes.txt: this is not a .vines file"),

@@ -119,6 +119,17 @@ def test_switch_adds_the_branch_that_leaves_a_point(folder, capsys):
     assert (folder / "w.vines").read_bytes() == before
 
 
+def test_nothing_leaves_a_fold_or_an_end(folder, capsys):
+    for label, what in (("LP1", "a fold"), ("EP1", "an end")):
+        call("switch", folder / "s.vines", label)
+        assert f"{label}: nothing leaves {what}; " in capsys.readouterr().out
+
+
+def test_orbit_says_where_it_is_drawn(folder, capsys):
+    call("orbit", folder / "s.vines", "SB1", "--plot", folder / "sb.png")
+    assert f"drawn in {folder / 'sb.png'}" in capsys.readouterr().err
+
+
 def test_a_saved_graph_can_be_used_like_the_computed_one(folder, tmp_path):
     graph = load(folder / "s.vines")
     assert graph.branches["B1"].problem is not None

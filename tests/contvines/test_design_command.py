@@ -47,6 +47,8 @@ def run(*arguments):
 def test_table_has_units(study):
     result = run(study, "--no-plot")
     assert result.exit_code == 0, result.output
+    assert "activation threshold" in result.output and "..." not in result.output.replace("…", "...")
+    assert "ratio, large amplitude" in result.output and "operating ratio" in result.output
     assert "q1_min" in result.output and "mm" in result.output and "xi" in result.output
 
 
