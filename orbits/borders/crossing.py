@@ -20,6 +20,8 @@ from orbits.handing import Seed
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
 
+CLOSE = 0.05  # largest difference in w, at equal phases, between a border orbit and one that goes on from it
+
 
 def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
     """Seeds of the branches on the other side of a border.
@@ -189,6 +191,23 @@ def _simulated(
             > 0.05
         ):
             continue
+        if _distance(orbit, found) > CLOSE:
+            continue  # an attractor somewhere else: nothing joins it to the border
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
         other = problem.sibling(found.word, found.periods, symmetric, found.params)
         yield other, other.reduce(found.nodes), q, None, "the simulator goes on"
+
+
+def _distance(border: Orbit, found: Orbit) -> float:
+    """Largest difference in w at equal phases, over the period of `found`, a multiple of the border orbit's period."""
+    grid = np.linspace(0.0, 2.0 * np.pi * found.periods, 400 * found.periods, endpoint=False)
+    there = _position(found, grid)
+    shifts = range(border.periods)
+    return min(float(np.abs(_position(border, grid + 2.0 * np.pi * shift) - there).max()) for shift in shifts)
+
+
+def _position(orbit: Orbit, phase: np.ndarray) -> np.ndarray:
+    """w at some phases of the forcing."""
+    path = orbit.sample(800 * orbit.periods)
+    start = path["phase"][0]
+    return np.interp((phase - start) % (2.0 * np.pi * orbit.periods), path["phase"] - start, path["w"])

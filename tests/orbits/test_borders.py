@@ -173,3 +173,20 @@ def test_friction_that_vanishes_joins_the_frictionless_orbits(amplitude):
         )
     assert gaps[2] < 2e-5
     assert gaps[0] > gaps[1] > gaps[2]
+
+
+def test_unrelated_attractor_is_no_switch():
+    """Without friction, LR at amplitude 1 touches the wall; the simulator then falls on an attractor far away."""
+    absorber = Absorber(restitution=0.6, friction=0.0, gravity=0.2, mass_ratio=0.01)
+    seed = absorber.symmetric_orbit(amplitude=0.6)
+    graph = cv.diagram(seed, over="amplitude", within=(0.1, 2.5), depth=1)
+    for switch in graph.switches:
+        if graph.special[switch.point].kind != "wall-graze":
+            continue
+        value = graph.special[switch.point].value
+        pair = []
+        for label in (switch.source, switch.target):
+            branch = graph[label]
+            pair.append(branch.orbit(int(np.argmin(np.abs(branch.values - value)))))
+        assert abs(pair[0].measure("B_post") - pair[1].measure("B_post")) < 0.1, switch
+    assert not [s for s in graph.switches if abs(graph.special[s.point].value - 1.0) < 1e-9]
