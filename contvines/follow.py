@@ -13,7 +13,11 @@ from .continuation.engine import Engine, Solved
 from .continuation.status import Status
 from .continuation.trace import chunks
 from .events.examine import Located
+from .events.segment import Segment
 from .events.watch import Watch
+
+APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
+MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
 
 
 @dataclass
@@ -134,6 +138,73 @@ def follow(
     return join(parts)
 
 
+def filled(engine: Engine, half: Half, origin: int | None = None) -> Half:
+    """The half with a solved point between neighbouring special points, or ends, that have none between them."""
+    special = {i for i, _ in half.events} | {0, len(half) - 1}
+    if origin is not None:
+        special.add(origin)
+    events = dict.fromkeys(i for i, _ in half.events)
+    inserted: list[tuple[int, Solved]] = []
+    for i in sorted(special):
+        if i + 1 not in special or not (i in events or i + 1 in events):
+            continue
+        ends = [Solved(half.points[j], float(half.values[j]), half.tangents[j], half.rows[j], 0.0, 0.0, 0.0)
+                for j in (i, i + 1)]  # fmt: skip
+        segment = Segment(engine, *ends)
+        if not segment.length > APART:
+            continue
+        middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
+        if middle is not None:
+            inserted.append((i + 1, middle))
+    if not inserted:
+        return half
+    where = [i for i, _ in inserted]
+    return Half(
+        np.insert(half.points, where, np.array([p.u for _, p in inserted]), axis=0),
+        np.insert(half.values, where, [p.p for _, p in inserted]),
+        np.insert(half.tangents, where, np.array([p.tangent for _, p in inserted]), axis=0),
+        np.insert(half.rows, where, np.array([p.row for _, p in inserted]), axis=0),
+        [(i + int(np.searchsorted(where, i, side="right")), e) for i, e in half.events],
+        half.status,
+    )
+
+
+def stability(engine: Engine, half: Half, origin: int | None = None) -> np.ndarray:
+    """Which points count as stable.
+
+    A special point is stable when one of its neighbours is. A point with a multiplier on the circle to roundoff, as at the
+    end of an interval or where a multiplier crosses, takes the stability of the nearest point that can tell, up to the next
+    special point.
+    """
+    stable = engine.stable(half.rows)
+    special = np.zeros(len(half), dtype=bool)
+    special[[i for i, _ in half.events]] = True
+    if origin is not None:
+        special[origin] = True
+    if len(half) < 2:
+        return stable
+    telling = ~special & ~engine.marginal(half.rows, MARGINAL)
+    for start, stop in _runs(~special):
+        known = start + np.flatnonzero(telling[start:stop])
+        if not len(known):
+            stable[start:stop] = False  # conservative: nothing is attracted
+            continue
+        here = np.arange(start, stop)
+        after = np.clip(np.searchsorted(known, here), 0, len(known) - 1)
+        before = np.maximum(after - 1, 0)
+        nearer = np.where(np.abs(known[before] - here) < np.abs(known[after] - here), before, after)
+        stable[start:stop] = stable[known[nearer]]
+    before = np.append(False, stable[:-1] & ~special[:-1])
+    after = np.append(stable[1:] & ~special[1:], False)
+    return np.where(special, before | after, stable)
+
+
+def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
+    """Maximal runs of chosen entries, as (start, stop)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2])]
+
+
 def make_branch(
     label: str,
     engine: Engine,
@@ -146,16 +217,6 @@ def make_branch(
 ) -> Branch:
     """A Branch from joined arrays; ``marks`` are left to the caller, ``origin`` is the point at which it was reached."""
     problem = engine.problem
-    stable = engine.stable(half.rows)
-    special = np.zeros(len(half), dtype=bool)
-    special[[i for i, _ in half.events]] = True
-    if origin is not None:
-        special[origin] = True
-    if len(half) > 1:
-        # a special point is stable when one of its neighbours is
-        before = np.append(False, stable[:-1] & ~special[:-1])
-        after = np.append(stable[1:] & ~special[1:], False)
-        stable = np.where(special, before | after, stable)
     return Branch(
         label=label,
         problem=problem,
@@ -164,7 +225,7 @@ def make_branch(
         tangents=np.ascontiguousarray(half.tangents),
         multipliers=engine.multipliers(half.rows),
         margin=engine.smallest_margin(half.rows),
-        stable=stable,
+        stable=stability(engine, half, origin),
         real=real,
         ended=ended,
         closed=closed,

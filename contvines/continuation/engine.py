@@ -17,6 +17,11 @@ TIGHT = 1e-12
 NO_ROW = np.zeros(1)
 
 
+def parameter_unit(within: tuple[float, float], p: float) -> float:
+    """Length of the parameter near p: the interval's, but an interval of silly width does not make neighbours the same."""
+    return min(within[1] - within[0], max(1.0, abs(p)))
+
+
 class Solved(NamedTuple):
     """A point of a branch with everything known about it.
 
@@ -219,3 +224,15 @@ class Engine:
         if self.problem.spectrum == "flow":
             return np.all(spectrum.real < 0.0, axis=-1)
         return np.zeros(rows.shape[:-1], dtype=bool)
+
+    def marginal(self, rows: np.ndarray, tolerance: float) -> np.ndarray:
+        """Whether the outermost multiplier is on the unit circle (the imaginary axis) up to a tolerance."""
+        if self.problem.spectrum == "none" or not self.m:
+            return np.zeros(rows.shape[:-1], dtype=bool)
+        spectrum = self.spectrum(rows)
+        outermost = (
+            spectrum.real.max(axis=-1)
+            if self.problem.spectrum == "flow"
+            else np.abs(spectrum).max(axis=-1) - 1.0
+        )
+        return np.abs(outermost) <= tolerance

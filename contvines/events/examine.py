@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..continuation.engine import Engine, Solved
+from ..continuation.engine import Engine, Solved, parameter_unit
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .locate import Root, locate, locate_singular
 from .segment import Segment
@@ -113,7 +113,9 @@ class Examiner:
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
         ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
-        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * (self.engine.upper - self.engine.lower):
+        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * parameter_unit(
+            self.engine.within, segment.a.p
+        ):
             return []
         root = locate(segment, lambda point: float(point.tangent[-1]))
         if root is None or not root.continuous:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..continuation.chunk import Chunk
-from ..continuation.engine import Solved
+from ..continuation.engine import Solved, parameter_unit
 from .dips import below_zero, lengths_of, suspects
 from .examine import FLAT, MARGIN, Examiner, Located, changes
 from .functions import counts
@@ -41,7 +41,7 @@ class Watch(Examiner):
             return []
         engine = self.engine
         slope = chunk.tangents[:, -1]
-        steep = np.abs(slope) > FLAT * (engine.upper - engine.lower)
+        steep = np.abs(slope) > FLAT * parameter_unit(engine.within, float(chunk.values[0]))
         fold = changes(slope) & (steep[:-1] | steep[1:])
         chunk = replace(chunk, signs=without_zeros(chunk.signs))
         turned = changes(chunk.signs)

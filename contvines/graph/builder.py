@@ -12,7 +12,7 @@ from ..continuation.starts import solve_start
 from ..continuation.status import Status
 from ..events.examine import MARGIN
 from ..events.watch import Watch
-from ..follow import Half, follow, make_branch, single
+from ..follow import Half, filled, follow, make_branch, single
 from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
@@ -98,10 +98,11 @@ def trace_pending(run: Run, pending: Pending) -> None:
     run.serial += 1
     label = run.new_label("B")
     half, ended, closed = both_ways(run, engine, watch, pending, first, real, label)
-    if pending.kind == "rest" and np.ptp(half.values) < 1e-6 * run.unit and len(half) < 4:
+    if pending.kind == "rest" and np.ptp(half.values) < 1e-6 * run.unit(first.p) and len(half) < 4:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return
+    half = filled(engine, half, origin_index(half, pending))
     branch = make_branch(label, engine, half, real, ended, closed, pending.point, origin_index(half, pending))
     run.graph.branches[label] = branch
     run.register.add(branch, engine)
@@ -131,7 +132,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
             if pending.kind == "root" and pending.tangent is None:
                 # off the point where the known branch ends, or it would be taken for that branch
                 step = run.settings.amplitude
-            elif abs(first.tangent[-1]) <= 1e-6 * run.unit or first.sign == 0.0:
+            elif abs(first.tangent[-1]) <= 1e-6 * run.unit(first.p) or first.sign == 0.0:
                 # off a fold or branch point, which would else lie on neither of the two halves
                 step = run.settings.first_step
             if step > 0.0:
@@ -157,7 +158,7 @@ def same_border(run: Run, label: str, known: Branch) -> str:
         if (
             other != label
             and point.kind in BORDERS
-            and abs(point.value - graph[label].value) <= 1e-9 * run.unit
+            and abs(point.value - graph[label].value) <= 1e-9 * run.unit(point.value)
         ):
             run.merge(label, other)
             return other

@@ -80,7 +80,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         if not found:
             run.remark(point.label, "no branch that leaves here was found")
         for departure in found:
-            transcritical = abs(departure.slope) > 0.1 * run.unit * departure.amplitude
+            transcritical = abs(departure.slope) > 0.1 * run.unit(point.value) * departure.amplitude
             if point.criticality is None and not transcritical:
                 point.criticality, point.coefficient = criticality(
                     departure.curvature, speed, flip=name == "minus"

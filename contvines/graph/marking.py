@@ -15,9 +15,11 @@ from .identity import same_form
 from .pending import Pending
 from .run import Run
 
-BACK_AT_BORDER = 1e-6  # a branch seeded beyond a border comes back to it within this part of the interval
+BACK_AT_BORDER = (
+    1e-6  # a branch seeded beyond a border comes back to it within this part of the parameter's unit
+)
 SIDE = "comes back to more symmetric solutions at"
-SAME_VALUE = 1e-8  # special points further apart than this part of the interval are different
+SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
 def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending) -> list[SpecialPoint]:
@@ -127,27 +129,31 @@ def _known(
         return None
     if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
         source = run.graph.special[pending.point]
-        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit:
+        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p):
             return source.label
     if kind in BORDERS and at_end:
         for other in run.queue:
             if other.kind != "border" or other.point is None:
                 continue
-            if abs(run.graph.special[other.point].value - point.p) > BACK_AT_BORDER * run.unit:
+            if abs(run.graph.special[other.point].value - point.p) > BACK_AT_BORDER * run.unit(point.p):
                 continue
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
                 return other.point
     form = None
     for known in run.graph.special.values():
-        if known.kind != kind or abs(known.value - point.p) > SAME_VALUE * run.unit or known.problem is None:
+        if (
+            known.kind != kind
+            or abs(known.value - point.p) > SAME_VALUE * run.unit(point.p)
+            or known.problem is None
+        ):
             continue
         if kind == "user" and known.note != event.note:
             continue
         form = problem.canonical(point.u, point.p) if form is None else form
         if same_form(form, run.form(known)):
             return known.label
-        if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit:
+        if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree
     return None
 

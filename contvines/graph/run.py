@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..continuation.engine import Engine
+from ..continuation.engine import Engine, parameter_unit
 from ..continuation.settings import Settings
 from ..events.examine import Located
 from ..events.watch import Watch
@@ -68,7 +68,6 @@ class Run:
         self.forms: dict[str, tuple[SpecialPoint, Any]] = {}
         self.serial = 0
         self.points = 0
-        self.unit = graph.within[1] - graph.within[0]
 
     def tell(self, message: str, value: float) -> None:
         """Report progress."""
@@ -79,6 +78,10 @@ class Run:
                     message, len(graph.branches), len(graph.special), self.points, value, len(self.queue)
                 )
             )
+
+    def unit(self, p: float) -> float:
+        """What differences of the parameter near p are compared with: see :func:`parameter_unit`."""
+        return parameter_unit(self.graph.within, p)
 
     def engine(self, problem: Any) -> tuple[Engine, Watch]:
         """Engine and watch of a problem, made once."""

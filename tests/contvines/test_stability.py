@@ -1,0 +1,47 @@
+"""Stable intervals: from bifurcation to bifurcation, however narrow, and up to a marginal end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+
+
+@pytest.mark.parametrize("width", [1e-1, 2e-2])
+def test_window_between_two_neighbouring_folds(width):
+    """u' = u^3 / 3 - w^2 u - p: the middle piece is stable, however close its folds are."""
+
+    def field(u, p):
+        return np.array([(u[0] ** 3 / 3.0 - width**2 * u[0]) - p])
+
+    problem = cv.AlgebraicProblem(field, [-1.0], -1.0 / 3.0 + width**2, spectrum="flow")
+    graph = cv.diagram(problem, within=(-2.0, 2.0), settings={"max_step": 0.03})
+    bend = 2.0 * width**3 / 3.0
+    assert len(graph.of_kind("fold")) == 2
+    np.testing.assert_allclose(graph["B1"].stable_intervals(), [(-bend, bend)], atol=1e-12)
+
+
+def test_marginal_end_takes_the_stability_of_its_neighbour():
+    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    seed = absorber.symmetric_orbit(amplitude=0.6)
+    graph = cv.diagram(seed, over="restitution", within=(0.3, 1.0), depth=0)
+    assert graph["B1"].stable_intervals() == [(0.3, 1.0)]
+    assert abs(np.abs(graph["B1"].multipliers[-1]).max() - 1.0) < 1e-9
+
+
+def test_window_between_fold_and_doubling():
+    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    seed = absorber.symmetric_orbit(amplitude=0.55)
+    graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
+    for branch in graph:
+        if branch.description["word"] != "LttRLtLR":
+            continue
+        fold, doubling = (graph.of_kind(kind) for kind in ("fold", "period-doubling"))
+        lower = next(point.value for point in fold if point.branch == branch.label)
+        upper = next(point.value for point in doubling if point.branch == branch.label)
+        assert branch.stable_intervals() == [(lower, upper)]
+        assert branch.orbit(int(np.flatnonzero(branch.stable)[1])).stable
+        return
+    pytest.fail("the word LttRLtLR is missing")
