@@ -33,6 +33,26 @@ def check_interval(within: Any) -> tuple[float, float]:
     return lower, upper
 
 
+def problem_and_start(seed: Any, over: str | None, u: Any = None, p: Any = None) -> tuple[Any, Any, float]:
+    """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``; u and p win where they are given."""
+    if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
+        if over is not None and over != seed.parameter:
+            raise ValueError(f"over = {over!r}, but this problem continues in {seed.parameter!r}")
+        for name, value in (("u", u), ("p", p)):
+            if value is None and not hasattr(seed, f"{name}0"):
+                raise ValueError(
+                    f"{name} = None: a {type(seed).__name__} has no start of its own; give u and p, or an orbit instead"
+                )
+        return seed, seed.u0 if u is None else u, float(seed.p0 if p is None else p)
+    if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
+        raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
+    if over is None:
+        raise ValueError('over = None: name the parameter to continue in, for example over="amplitude"')
+    problem = seed.problem(over)
+    own_u, own_p = seed.seed(problem)
+    return problem, own_u if u is None else u, float(own_p if p is None else p)
+
+
 def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = None) -> Solved:
     """The first point of a branch.
 

@@ -165,21 +165,25 @@ def trace(
     direction: float = 1.0,
     settings: Settings | dict[str, Any] | None = None,
     stop_at_border: bool = False,
+    over: str | None = None,
 ) -> Iterator[Point]:
     """The points of a branch, one by one; the caller's loop decides when to stop.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Problem or orbit
+        A problem, or an object with ``problem(parameter)`` and ``seed(problem) -> (u, p)`` as for ``diagram``.
     within : (float, float)
         Interval of the parameter.
     u, p : optional
-        Start; the problem's ``u0``, ``p0`` if left out.
+        Start; the orbit's own, or the problem's ``u0``, ``p0``, if left out.
     direction : float
         Positive: begin with increasing parameter.
     settings : Settings or dict, optional
     stop_at_border : bool
         End with the first point that has a negative margin.
+    over : str, optional
+        Name of the continuation parameter, for an orbit.
 
     Yields
     ------
@@ -190,11 +194,12 @@ def trace(
     ValueError
         If the interval is no interval, the start is outside of it, or does not converge.
     """
-    from .starts import check_interval, solve_start
+    from .starts import check_interval, problem_and_start, solve_start
 
+    problem, u, p = problem_and_start(problem, over, u, p)
     settings = Settings.of(settings)
     engine = Engine(problem, check_interval(within), settings)
-    start = solve_start(engine, problem.u0 if u is None else u, problem.p0 if p is None else p)
+    start = solve_start(engine, u, p)
     if start.tangent[-1] * direction < 0.0:
         start = start._replace(tangent=-start.tangent, sign=-start.sign)
     first = True

@@ -6,27 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..continuation.settings import Settings
-from ..continuation.starts import check_interval
+from ..continuation.starts import check_interval, problem_and_start
 from ..journal import NullJournal
 from .builder import adopt, begin, work
 from .graph import Graph
 from .leaving import leave
 from .run import Progress, Run
-
-
-def problem_and_start(seed: Any, over: str | None) -> tuple[Any, Any, float]:
-    """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``."""
-    if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
-        if over is not None and over != seed.parameter:
-            raise ValueError(f"over = {over!r}, but this problem continues in {seed.parameter!r}")
-        return seed, seed.u0, float(seed.p0)
-    if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
-        raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
-    if over is None:
-        raise ValueError('over = None: name the parameter to continue in, for example over="amplitude"')
-    problem = seed.problem(over)
-    u, p = seed.seed(problem)
-    return problem, u, float(p)
 
 
 def diagram(

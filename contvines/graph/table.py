@@ -12,7 +12,7 @@ def table(graph: Graph) -> str:
     """Branches, special points and switches, one line each."""
     name = graph.parameter
     lines = [
-        f"{len(graph.branches)} branches in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"
+        f"{_counted(len(graph.branches))} in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"
     ]
     if not graph.finished:
         lines[0] += " (unfinished)"
@@ -32,6 +32,8 @@ def table(graph: Graph) -> str:
         lo, hi = branch.range
         stable = ", ".join(f"{a:.6g}..{b:.6g}" for a, b in branch.stable_intervals()) or "-"
         ended = "; ".join(dict.fromkeys(branch.ended))
+        if branch.ended[0] == branch.ended[1] and branch.ended[0] and not branch.closed:
+            ended += " (both ends)"
         rows.append((branch.label, what, f"{lo:.6g}..{hi:.6g}", stable, str(len(branch)), ended))
     lines += ["", *_columns(rows)]
     if graph.special:
@@ -57,6 +59,10 @@ def table(graph: Graph) -> str:
             )
         lines += ["", *_columns(rows)]
     return "\n".join(lines)
+
+
+def _counted(branches: int) -> str:
+    return "1 branch" if branches == 1 else f"{branches} branches"
 
 
 def _columns(rows: list[tuple[str, ...]]) -> list[str]:

@@ -1,0 +1,50 @@
+"""Tracing from a problem and from an orbit; counting in tables."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+
+
+def test_trace_from_an_orbit():
+    orbit = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
+        amplitude=0.6
+    )
+    points = list(cv.trace(orbit, within=(0.5, 0.7), over="amplitude"))
+    assert points[-1].value == 0.7 and points[-1].status.startswith("reaches the end of the interval")
+    assert points[0].value == 0.6 and all(point.stable for point in points)
+    problem = orbit.problem("amplitude")
+    u, p = orbit.seed(problem)
+    again = list(cv.trace(problem, (0.5, 0.7), u, p))
+    np.testing.assert_array_equal([a.u for a in again], [b.u for b in points])
+
+
+def test_trace_says_what_is_missing():
+    orbit = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
+        amplitude=0.6
+    )
+    with pytest.raises(ValueError, match="name the parameter"):
+        next(cv.trace(orbit, within=(0.5, 0.7)))
+    with pytest.raises(ValueError, match="no start of its own"):
+        next(cv.trace(orbit.problem("amplitude"), within=(0.5, 0.7)))
+    with pytest.raises(TypeError, match="must be an orbit or a problem"):
+        next(cv.trace("LR", within=(0.5, 0.7)))
+
+
+def test_trace_of_a_problem_keeps_its_start():
+    circle = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
+    values = [point.value for point in islice(cv.trace(circle, (-2.0, 2.0)), 5)]
+    assert values[0] == 0.0 and np.all(np.diff(values) > 0.0)
+
+
+def test_one_branch_and_both_ends():
+    parabola = cv.AlgebraicProblem(lambda u, p: u**2 - p, [1.0], 1.0)
+    table = str(cv.diagram(parabola, within=(-2.0, 2.0)))
+    assert table.startswith("1 branch in p within") and "p = 2 (both ends)" in table
+    line = cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0)
+    assert "p = -2; reaches the end of the interval, p = 2" in str(cv.diagram(line, within=(-2.0, 2.0)))
