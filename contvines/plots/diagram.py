@@ -92,6 +92,8 @@ def plot_diagram(
         axes.set_ylabel(axis_label(y))
         _legend(axes, states, used, undrawn(graph, x, y))
         if labels:
+            settle(figure, freeze=False)
+            _clear_legend(axes, obstacles)
             settle(figure, freeze=own)
             taken = _hold_legend(axes)
             spots, names = merge_labels(axes, [(px, py) for _, px, py in special], [t for t, _, _ in special])
@@ -205,6 +207,19 @@ def _dense(axes: "Axes", xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(at, np.arange(len(xs)), v) for v in (xs, ys)])
 
 
+def _clear_legend(axes: "Axes", obstacles: list[np.ndarray]) -> None:
+    """Put a legend beside the axes if it would cover curves or marks inside, and the figure can make room."""
+    legend, figure = axes.get_legend(), axes.get_figure(root=True)
+    if legend is None or figure is None or figure.get_layout_engine() is None:
+        return
+    box = legend.get_window_extent()
+    drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
+    points = axes.transData.transform(np.vstack([*obstacles, *drawn, np.empty((0, 2))]))
+    if any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)]):
+        legend.set_loc("upper left")
+        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+
+
 def _hold_legend(axes: "Axes") -> list[tuple[float, float, float, float]]:
     """Keep the legend where it is now, whatever is written later; its box on the page."""
     legend = axes.get_legend()
@@ -212,6 +227,7 @@ def _hold_legend(axes: "Axes") -> list[tuple[float, float, float, float]]:
         return []
     box = legend.get_window_extent()
     (left, low) = axes.transAxes.inverted().transform((box.x0, box.y0))
+    legend.set_bbox_to_anchor(None)
     legend.set_loc((float(left), float(low)))
     return [(box.x0, box.y0, box.x1, box.y1)]
 

@@ -103,6 +103,17 @@ def test_labels_keep_out_of_the_legend(graph):
         assert not texts
 
 
+def test_a_legend_that_would_cover_curves_stands_beside_them(graph):
+    branch = graph.branches["B1"]  # a zigzag over the whole picture leaves no room
+    branch.points = np.where(np.arange(len(branch)) % 2, 2.0, 0.0)[:, None]
+    figure = plot_diagram(graph)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    legend = axes.get_legend().get_window_extent()
+    assert legend.x0 >= axes.get_window_extent().x1 - 1
+    assert legend.x1 <= figure.bbox.x1
+
+
 def test_every_kind_has_a_mark():
     assert set(MARKS) == set(PREFIXES)
 
