@@ -16,6 +16,17 @@ if TYPE_CHECKING:
 MARKS = {"L": "o", "R": "s", "t": "^", "s": "D", "u": "v"}
 WHAT = {"L": "impact left", "R": "impact right", "t": "turn", "s": "stick", "u": "slip"}
 ORBIT, CAVITY, ABSORBER, WALL = "#0b3c6f", "#6d6d6d", "#b5531c", "#d9d9d9"
+# parameters as in the diagrams
+SYMBOLS = {
+    "amplitude": "$C$",
+    "frequency": r"$\Omega$",
+    "restitution": "$r$",
+    "friction": r"$\mu$",
+    "gravity": r"$\tilde g$",
+    "mass_ratio": r"$\varepsilon$",
+    "forcing": "$G$",
+    "damping": r"$\lambda$",
+}
 
 
 def portrait(orbit: Orbit, points: int = 1200) -> Figure:
@@ -45,15 +56,18 @@ def portrait(orbit: Orbit, points: int = 1200) -> Figure:
 
 
 def title(orbit: Orbit) -> str:
-    """What the orbit is, in two lines: word, impacts, symmetry and stability; then where it lives."""
+    """What the orbit is, in two lines: word, impacts, symmetry and stability; then its parameters."""
     size = np.abs(orbit.multipliers)
     if size.size and np.abs(size - 1.0).min() <= 1e-6 and size.max() <= 1.0 + 1e-6:
         state = "marginal"  # at a fold, a symmetry breaking, ...
     else:
         state = "stable" if orbit.stable else "unstable"
     state += "" if orbit.real else ", virtual: no machine can follow it"
-    shown = ("amplitude", "frequency") if "amplitude" in orbit.parameters else ("frequency", "forcing")
-    here = ", ".join(f"{name} = {orbit.parameters[name]:.6g}" for name in shown)
+    here = ", ".join(
+        f"{SYMBOLS.get(name, name)} = {value:.6g}"
+        for name, value in orbit.parameters.items()
+        if (name, value) != ("excitation", 1.0)
+    )
     if not len(orbit.word):
         return f"stuck, the absorber rides with the cavity, {state}\n{here}"
     many = "impact" if orbit.impacts == 1 else "impacts"

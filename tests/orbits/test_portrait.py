@@ -25,9 +25,9 @@ def drawn(orbit):
 
 def test_title_names_stability_and_parameters():
     figure = drawn(Absorber(**MACHINE).symmetric_orbit(amplitude=0.55))
-    assert figure.get_suptitle() == (
-        "LR, 2 impacts in 1 forcing period, symmetric, stable\namplitude = 0.55, frequency = 1"
-    )
+    first, second = figure.get_suptitle().splitlines()
+    assert first == "LR, 2 impacts in 1 forcing period, symmetric, stable"
+    assert second.startswith("$C$ = 0.55, $r$ = 0.76, ") and r"$\Omega$ = 1" in second
     assert "left wall at $+1$" in figure.axes[0].get_xlabel()
 
 
