@@ -238,6 +238,17 @@ class OrbitProblem:
 
         return canonical(self.word, self.periods, self.expand(u))
 
+    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
+        """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
+
+        At a border one motion has several words, so that `canonical` cannot tell.
+        """
+        from orbits.borders.motion import SAME, distance
+
+        if not isinstance(other, OrbitProblem):
+            return False
+        return distance(self.orbit(u, p), other.orbit(v, p), mirror=True) <= SAME
+
     # ------------------------------------------------------------------ for people
     @property
     def measure_names(self) -> tuple[str, ...]:

@@ -65,6 +65,7 @@ def work(run: Run) -> None:
         graph.message = "interrupted; run the same command again to go on"
         run.journal.checkpoint(graph)
         raise
+    tie_borders(run)
     graph.finished = True
     graph.message = graph.message or "finished"
     run.journal.checkpoint(graph)
@@ -163,6 +164,26 @@ def same_border(run: Run, label: str, known: Branch) -> str:
             run.merge(label, other)
             return other
     return label
+
+
+def tie_borders(run: Run) -> None:
+    """One border that was reached from two branches, and crossed from neither, gets one label; the branches are tied."""
+    graph = run.graph
+    for label in list(graph.special):
+        point = graph.special.get(label)
+        if point is None or point.kind not in BORDERS or not point.real:
+            continue
+        alike = getattr(point.problem, "same_motion", None)
+        for other in list(graph.special.values()):
+            if alike is None or other is point:
+                break  # only those with an earlier label
+            near = abs(other.value - point.value) <= 1e-9 * max(1.0, abs(point.value))
+            if not (near and other.kind in BORDERS and other.real and other.branch != point.branch):
+                continue
+            if other.problem is not None and alike(point.u, point.value, other.problem, other.u):
+                run.merge(label, other.label)
+                run.connect(other.label, other.branch, point.branch)
+                break
 
 
 def both_ways(

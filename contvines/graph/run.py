@@ -118,11 +118,14 @@ class Run:
         for branch in graph.branches.values():
             if any(mark == label for _, mark in branch.marks):
                 branch.marks = tuple((i, into if mark == label else mark) for i, mark in branch.marks)
+                meets = rf"meets {graph.special[into].branch} at {into}"
                 ends = [
-                    re.sub(rf"reaches {label}\b", f"meets {graph.special[into].branch} at {into}", end)
-                    for end in branch.ended
+                    re.sub(rf"\breaches {label} (\(.*?\)) at ", rf"{meets} \1, ", e) for e in branch.ended
                 ]
+                ends = [re.sub(rf"\b{label}\b", into, end) for end in ends]
                 branch.ended = (ends[0], ends[1])
+            if branch.seed == label:
+                branch.seed = into
         for pending in self.queue:
             if pending.point == label:
                 pending.point = into

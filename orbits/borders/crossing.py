@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.growing import REAL, grown, margins_of, proposals, turned
+from orbits.borders.motion import distance
 from orbits.borders.reading import read_alike
 from orbits.borders.resting import FOLLOWED, to_rest
 from orbits.borders.rewriting import edits_at
@@ -191,23 +192,8 @@ def _simulated(
             > 0.05
         ):
             continue
-        if _distance(orbit, found) > CLOSE:
+        if distance(orbit, found) > CLOSE:
             continue  # an attractor somewhere else: nothing joins it to the border
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
         other = problem.sibling(found.word, found.periods, symmetric, found.params)
         yield other, other.reduce(found.nodes), q, None, "the simulator goes on"
-
-
-def _distance(border: Orbit, found: Orbit) -> float:
-    """Largest difference in w at equal phases, over the period of `found`, a multiple of the border orbit's period."""
-    grid = np.linspace(0.0, 2.0 * np.pi * found.periods, 400 * found.periods, endpoint=False)
-    there = _position(found, grid)
-    shifts = range(border.periods)
-    return min(float(np.abs(_position(border, grid + 2.0 * np.pi * shift) - there).max()) for shift in shifts)
-
-
-def _position(orbit: Orbit, phase: np.ndarray) -> np.ndarray:
-    """w at some phases of the forcing."""
-    path = orbit.sample(800 * orbit.periods)
-    start = path["phase"][0]
-    return np.interp((phase - start) % (2.0 * np.pi * orbit.periods), path["phase"] - start, path["w"])

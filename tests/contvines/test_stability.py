@@ -36,7 +36,7 @@ def test_window_between_fold_and_doubling():
     seed = absorber.symmetric_orbit(amplitude=0.55)
     graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
     for branch in graph:
-        if branch.description["word"] != "LttRLtLR":
+        if branch.description["word"] not in ("LttRLtLR", "LtLRLttR"):
             continue
         fold, doubling = (graph.of_kind(kind) for kind in ("fold", "period-doubling"))
         lower = next(point.value for point in fold if point.branch == branch.label)
@@ -45,3 +45,20 @@ def test_window_between_fold_and_doubling():
         assert branch.orbit(int(np.flatnonzero(branch.stable)[1])).stable
         return
     pytest.fail("the word LttRLtLR is missing")
+
+
+def test_one_border_reached_from_two_branches():
+    """At the depth limit neither branch crosses the border at which both end; it still is one point."""
+    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    seed = absorber.symmetric_orbit(amplitude=0.55)
+    graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
+    (point,) = [p for p in graph.special.values() if abs(p.value - 1.14411783723) < 1e-9]
+    (tie,) = [switch for switch in graph.switches if switch.point == point.label]
+    assert {tie.source, tie.target} == {
+        branch.label for branch in graph if any(label == point.label for _, label in branch.marks)
+    }
+    assert (
+        f"meets {tie.source} at {point.label} (wall-graze), amplitude = 1.144117837"
+        in graph[tie.target].ended
+    )
+    assert not any("WG4" in end for branch in graph for end in branch.ended)
