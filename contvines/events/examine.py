@@ -13,6 +13,7 @@ from .locate import Root, locate, locate_singular
 from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
+REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
 MARGIN = -1e-12  # margins below this are negative
@@ -83,6 +84,8 @@ class Examiner:
                     continue
                 if name != "plus":
                     crossings.append(self._located(root, self._kind(name), k))
+                elif abs(test(root.point)) > REACHED:
+                    continue  # two real multipliers met and left the axis; none of them was at the boundary
                 elif not _near(root.position, [e.position for e in folds] + met):
                     crossings.append(self._located(root, "branch-point", k))
         outside = (after - before) @ np.array([1, 1, 2])
