@@ -71,8 +71,18 @@ def null_vectors(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -
         first = max(first, growth)
         if growth < 1.0 / SINGULAR or growth < 1e-9 * first:
             break
-        found.append(engine.unit(image))
+        found.append(_oriented(engine.unit(image)))
     return found[:2]
+
+
+def _oriented(vector: np.ndarray) -> np.ndarray:
+    """The vector or its opposite: the first of its large entries is negative.
+
+    The inverse of a matrix that is singular to roundoff leaves the sign to chance, and with it which of two mirror images a
+    diagram follows.
+    """
+    large = np.abs(vector[:-1]) > 0.3 * np.abs(vector[:-1]).max()
+    return -vector if large.any() and vector[int(np.argmax(large))] > 0.0 else vector
 
 
 def departures(
