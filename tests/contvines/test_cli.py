@@ -157,7 +157,7 @@ BAD_STUDIES = {
     ],
     "periods = 1": [(f"periods = {n}", "whole number from 1 to 4096") for n in (0, 100000)],
     'parameter = "amplitude"': [('parameter = "amplitudo"', "did you mean 'amplitude'")],
-    "depth = 3": [("depth = -3", "depth = -3")],
+    "depth = 4": [("depth = -3", "depth = -3")],
     "[model]": [("[modle]", "did you mean 'model'"), ("[model", "not valid TOML")],
 }
 
