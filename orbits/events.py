@@ -14,7 +14,6 @@ letter  event                                                  next mode
 ======  =====================================================  ==================
 """
 
-LEFT, RIGHT, TURN, STICK, SLIP = 0, 1, 2, 3, 4
 LETTERS = "LRtsu"
 CODES = {letter: code for code, letter in enumerate(LETTERS)}
 MIRRORED = {"L": "R", "R": "L", "t": "t", "s": "s", "u": "u"}

@@ -30,7 +30,6 @@ NATURAL_FREQUENCY = 7.666  # Hz
 STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": MASS_RATIO}
 WEAK = {"restitution": 0.76, "friction": 0.1, "gravity": 0.422, "mass_ratio": MASS_RATIO}
 MIDDLE = {"restitution": 0.76, "friction": 0.3, "gravity": 0.355, "mass_ratio": MASS_RATIO}
-WIDE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.105, "mass_ratio": MASS_RATIO}
 
 BLUE, RED, GREEN, PURPLE, GREY, PALE = "#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#5e5e5e", "#9db8d2"
 DASHED, DOTTED = (0, (5, 2.2)), (0, (1, 1.8))

@@ -17,7 +17,6 @@ import numpy as np
 from orbits.kernel import kernel
 from orbits.trigonometry import sines_cosines
 
-NODE = 2
 AMPLITUDE, RESTITUTION, FRICTION, GRAVITY, MASS_RATIO, FREQUENCY = range(6)
 
 

@@ -37,7 +37,6 @@ from orbits.models.coupled_margins import margins as margins
 SOURCES = (coupled_flow.__file__, coupled_margins.__file__)
 """Files whose compiled functions are part of these kernels: what is kept on disk depends on them too."""
 
-NODE = 4
 FORCING, FREQUENCY, DAMPING, MASS_RATIO, RESTITUTION, FRICTION, GRAVITY, EXCITATION = range(8)
 
 

@@ -11,7 +11,6 @@ from orbits.simulation.contract import Machine
 from orbits.simulation.trajectory import LETTERS
 
 TWO_PI = 2.0 * np.pi
-KINDS = ("periodic", "sliding", "stuck", "chatter", "chaotic")
 
 
 @dataclass(frozen=True, eq=False)

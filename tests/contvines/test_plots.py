@@ -173,3 +173,9 @@ def test_colours_differ_in_grey():
     grey = [np.dot(mpl.colors.to_rgb(c["color"]), [0.299, 0.587, 0.114]) for c in style["axes.prop_cycle"]]
     assert max(grey) < 0.55  # dark enough on white
     assert min(abs(a - b) for a, b in itertools.pairwise(grey)) > 0.05
+
+
+def test_both_packages_draw_in_one_style():
+    root = Path(__file__).parents[2]
+    ours, theirs = root / "contvines/plots/contvines.mplstyle", root / "orbits/plots/house.mplstyle"
+    assert ours.read_text() == theirs.read_text()
