@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits import cyclic, lane_links, lanes, trigonometry
+from orbits import chains, cyclic, lane_links, lanes, trigonometry
 from orbits import kernel as compiling
 from orbits.kernel import kernel, stored_kernel
 from orbits.models.base import Model
@@ -109,6 +109,7 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
         kernels.__file__,
         *getattr(kernels, "SOURCES", ()),
         compiling.__file__,
+        chains.__file__,
         cyclic.__file__,
         lane_links.__file__,
         lanes.__file__,

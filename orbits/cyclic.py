@@ -16,9 +16,10 @@ from types import SimpleNamespace
 import numpy as np
 from numba import njit
 
+from orbits import chains
 from orbits.kernel import OPTIONS, kernel
 from orbits.lane_links import call, links
-from orbits.lanes import SHORTEST, lanes_size, reflect, short_cycle
+from orbits.lanes import SHORTEST, lanes_size, short_cycle
 from orbits.multipliers.periodic_schur import scratch_size
 
 TINY = 1e-300
@@ -159,7 +160,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def forward_any(F, A, D, Q, stored, panel):
+    def forward(F, A, D, Q, stored, panel):
         """Eliminate the inner nodes one after the other; panel[:n] keeps V x_L + U x_0 + w p = r; returns a sign."""
         length = F.shape[0]
         sign = 1.0
@@ -189,90 +190,6 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                 panel[i, at_p] = panel[n + i, at_p]
                 panel[i, at_rhs] = panel[n + i, at_rhs]
         return sign
-
-    @kernel
-    def forward_two(F, A, D, Q, stored, panel):
-        """The same for two unknowns per node, in registers."""
-        a00, a01, u00, u01, w0, r0 = D[0, 0, 0], D[0, 0, 1], A[0, 0, 0], A[0, 0, 1], Q[0, 0], -F[0, 0]
-        a10, a11, u10, u11, w1, r1 = D[0, 1, 0], D[0, 1, 1], A[0, 1, 0], A[0, 1, 1], Q[0, 1], -F[0, 1]
-        sign = 1.0
-        for i in range(1, F.shape[0]):
-            top, bottom = stored[i, 0], stored[i, 1]
-            (
-                top[0],
-                top[1],
-                top[2],
-                top[3],
-                top[4],
-                top[5],
-                top[6],
-                top[7],
-                bottom[1],
-                bottom[2],
-                bottom[3],
-                bottom[4],
-                bottom[5],
-                bottom[6],
-                bottom[7],
-                a00,
-                a01,
-                u00,
-                u01,
-                w0,
-                r0,
-                a10,
-                a11,
-                u10,
-                u11,
-                w1,
-                r1,
-            ) = reflect(
-                a00,
-                a01,
-                u00,
-                u01,
-                w0,
-                r0,
-                a10,
-                a11,
-                u10,
-                u11,
-                w1,
-                r1,
-                A[i, 0, 0],
-                A[i, 0, 1],
-                A[i, 1, 0],
-                A[i, 1, 1],
-                D[i, 0, 0],
-                D[i, 0, 1],
-                D[i, 1, 0],
-                D[i, 1, 1],
-                Q[i, 0],
-                Q[i, 1],
-                -F[i, 0],
-                -F[i, 1],
-            )
-            if top[0] * bottom[1] < 0.0:
-                sign = -sign
-        panel[0, 0], panel[0, 1], panel[0, 2], panel[0, 3], panel[0, 6], panel[0, 7] = (
-            a00,
-            a01,
-            u00,
-            u01,
-            w0,
-            r0,
-        )
-        panel[1, 0], panel[1, 1], panel[1, 2], panel[1, 3], panel[1, 6], panel[1, 7] = (
-            a10,
-            a11,
-            u10,
-            u11,
-            w1,
-            r1,
-        )
-        return sign
-
-    forward = forward_two if n == 2 else forward_any
 
     @kernel
     def eliminate(F, A, D, Q, twist, stored, panel, small, order, solution):
@@ -314,15 +231,26 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
+    def eliminate_two(F, A, D, Q, twist, stored, panel, small, order, solution):
+        """The same for two unknowns per node, two halves side by side."""
+        state, sign = chains.forward(F, A, D, Q, stored)
+        v00, v01, u00, u01, w0, r0, v10, v11, u10, u11, w1, r1 = state
+        small[0, 0], small[0, 1], small[0, 2], small[0, 3] = u00 + v00, u01 + twist * v01, w0, r0
+        small[1, 0], small[1, 1], small[1, 2], small[1, 3] = u10 + v10, u11 + twist * v11, w1, r1
+        sign *= close(small, solution, order)
+        chains.backward(F.shape[0], stored, twist, solution)
+        return sign
+
+    @kernel
     def eliminate_lanes(F, A, D, Q, twist, stored, panel, small, order, solution, short, found, listed):
         """The same with sixteen segments side by side, where the cycle is long enough."""
         length = F.shape[0]
         if length < SHORTEST:
-            return eliminate(F, A, D, Q, twist, stored, panel, small, order, solution)
+            return eliminate_two(F, A, D, Q, twist, stored, panel, small, order, solution)
         address = listed.ctypes.data
         sign = call(listed[0], length, twist, address)
         F_, A_, D_, Q_ = short
-        sign *= eliminate(F_, A_, D_, Q_, twist, stored, panel, small, order, found)
+        sign *= eliminate_two(F_, A_, D_, Q_, twist, stored, panel, small, order, found)
         call(listed[1], length, twist, address)
         return sign
 

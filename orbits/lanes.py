@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from orbits.chains import reflect
 from orbits.kernel import OPTIONS, kernel
 
 LANES = 16
-SHORTEST = 48  # cycles shorter than this are eliminated one node after the other
+SHORTEST = 32  # cycles shorter than this are eliminated one node after the other
 PACK, KEEP, STATE, ENDS = 12 * LANES, 16 * LANES, 13 * LANES, 14 * LANES
-NEVER_ZERO = 1e-290
 LANE_OPTIONS: dict[str, Any] = {**OPTIONS, "forceinline": True, "fastmath": {"contract", "nsz", "arcp"}}
 
 
@@ -48,140 +48,6 @@ def _pack(F, A, D, Q, m, pack):
             pack[at + 144] = Q[i, 1]
             pack[at + 160] = -F[i, 0]
             pack[at + 176] = -F[i, 1]
-
-
-@njit(**LANE_OPTIONS)
-def reflect(
-    a00,
-    a01,
-    u00,
-    u01,
-    w0,
-    r0,
-    a10,
-    a11,
-    u10,
-    u11,
-    w1,
-    r1,
-    b00,
-    b01,
-    b10,
-    b11,
-    d00,
-    d01,
-    d10,
-    d11,
-    q0,
-    q1,
-    f0,
-    f1,
-):
-    """Two Householder reflections that clear the first two columns of the lower rows of
-
-        a00 a01  u00 u01   0   0   w0 r0
-        a10 a11  u10 u11   0   0   w1 r1
-        b00 b01   0   0   d00 d01  q0 f0
-        b10 b11   0   0   d10 d11  q1 f1
-
-    Returns the upper rows, without the zero (fifteen numbers), then the lower rows (twelve).
-    """
-    # first reflection, on the column (a00, a10, b00, b10)
-    n = -math.copysign(math.sqrt(a00 * a00 + a10 * a10 + b00 * b00 + b10 * b10 + NEVER_ZERO), a00)
-    v = a00 - n
-    t = 1.0 / (n * v)
-    k = (v * a01 + a10 * a11 + b00 * b01 + b10 * b11) * t
-    a01 += k * v
-    a11 += k * a10
-    b01 += k * b00
-    b11 += k * b10
-    k = (v * u00 + a10 * u10) * t
-    u00 += k * v
-    u10 += k * a10
-    g00 = k * b00
-    g10 = k * b10
-    k = (v * u01 + a10 * u11) * t
-    u01 += k * v
-    u11 += k * a10
-    g01 = k * b00
-    g11 = k * b10
-    k = (b00 * d00 + b10 * d10) * t
-    e00 = k * v
-    e10 = k * a10
-    d00 += k * b00
-    d10 += k * b10
-    k = (b00 * d01 + b10 * d11) * t
-    e01 = k * v
-    e11 = k * a10
-    d01 += k * b00
-    d11 += k * b10
-    k = (v * w0 + a10 * w1 + b00 * q0 + b10 * q1) * t
-    w0 += k * v
-    w1 += k * a10
-    q0 += k * b00
-    q1 += k * b10
-    k = (v * r0 + a10 * r1 + b00 * f0 + b10 * f1) * t
-    r0 += k * v
-    r1 += k * a10
-    f0 += k * b00
-    f1 += k * b10
-    # second reflection, on the column (a11, b01, b11)
-    n2 = -math.copysign(math.sqrt(a11 * a11 + b01 * b01 + b11 * b11 + NEVER_ZERO), a11)
-    v = a11 - n2
-    t = 1.0 / (n2 * v)
-    k = (v * u10 + b01 * g00 + b11 * g10) * t
-    u10 += k * v
-    g00 += k * b01
-    g10 += k * b11
-    k = (v * u11 + b01 * g01 + b11 * g11) * t
-    u11 += k * v
-    g01 += k * b01
-    g11 += k * b11
-    k = (v * e10 + b01 * d00 + b11 * d10) * t
-    e10 += k * v
-    d00 += k * b01
-    d10 += k * b11
-    k = (v * e11 + b01 * d01 + b11 * d11) * t
-    e11 += k * v
-    d01 += k * b01
-    d11 += k * b11
-    k = (v * w1 + b01 * q0 + b11 * q1) * t
-    w1 += k * v
-    q0 += k * b01
-    q1 += k * b11
-    k = (v * r1 + b01 * f0 + b11 * f1) * t
-    r1 += k * v
-    f0 += k * b01
-    f1 += k * b11
-    return (
-        n,
-        a01,
-        u00,
-        u01,
-        e00,
-        e01,
-        w0,
-        r0,
-        n2,
-        u10,
-        u11,
-        e10,
-        e11,
-        w1,
-        r1,
-        d00,
-        d01,
-        g00,
-        g01,
-        q0,
-        f0,
-        d10,
-        d11,
-        g10,
-        g11,
-        q1,
-        f1,
-    )
 
 
 @njit(**LANE_OPTIONS)
@@ -284,13 +150,13 @@ def _backward(m, keep, ends, p, null):
                 kept[s + 192],
             )
             w1 = kept[s + 208]
-            by = 1.0 / kept[s + 128]
-            second = (kept[s + 224] - w1 * p - u10 * x0 - u11 * x1 - e10 * n0 - e11 * n1) * by
+            by = kept[s + 128]
+            second = (kept[s + 224] - w1 * p - u10 * x0 - u11 * x1 - e11 * n1 - e10 * n0) * by
             other = (-w1 * null - u10 * y0 - u11 * y1 - e10 * z0 - e11 * z1) * by
             u00, u01, e00, e01 = kept[s + 32], kept[s + 48], kept[s + 64], kept[s + 80]
             w0 = kept[s + 96]
             a01 = kept[s + 16]
-            by = 1.0 / kept[s]
+            by = kept[s]
             first = (kept[s + 112] - w0 * p - u00 * x0 - u01 * x1 - e00 * n0 - e01 * n1 - a01 * second) * by
             one = (-w0 * null - u00 * y0 - u01 * y1 - e00 * z0 - e01 * z1 - a01 * other) * by
             ends[s + 64] = first
