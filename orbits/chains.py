@@ -132,6 +132,14 @@ def _further(state: Any, F, A, D, Q, i, stored):
 
 
 @kernel
+def _meet(state: Any, other: Any, stored):
+    """Eliminate the middle node between the condensed blocks of both halves."""
+    d00, d01, b00, b01, q0, f0, d10, d11, b10, b11, q1, f1 = other
+    row = reflect(*state, b00, b01, b10, b11, d00, d01, d10, d11, q0, q1, f0, f1)
+    return _keep(row, stored[0], stored[1])
+
+
+@kernel
 def forward(F, A, D, Q, stored):
     """Eliminate nodes 1 .. L - 1; returns the state (V, U, w, r) of V x_L + U x_0 + w p = r, and a sign.
 
@@ -139,7 +147,7 @@ def forward(F, A, D, Q, stored):
     """
     length = F.shape[0]
     middle = length // 2
-    state: Any = _first(F, A, D, Q, 0)
+    state = _first(F, A, D, Q, 0)
     if length == 1:
         return state, 1.0
     sign = 1.0
@@ -151,10 +159,7 @@ def forward(F, A, D, Q, stored):
     if length % 2 == 1:
         other, two = _further(other, F, A, D, Q, length - 1, stored)
         sign *= two
-    # other = (D, Q, -F and A of the condensed block of the second half)
-    d00, d01, b00, b01, q0, f0, d10, d11, b10, b11, q1, f1 = other
-    row = reflect(*state, b00, b01, b10, b11, d00, d01, d10, d11, q0, q1, f0, f1)
-    state, two = _keep(row, stored[middle, 0], stored[middle, 1])
+    state, two = _meet(state, other, stored[middle])
     return state, sign * two
 
 
