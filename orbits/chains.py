@@ -122,20 +122,26 @@ def _keep(row, top, bottom):
 
 
 @kernel
-def _further(state: Any, F, A, D, Q, i, stored):
+def _further(state, F, A, D, Q, i, stored):
     """Eliminate node i between the state and block i."""
+    a00, a01, u00, u01, w0, r0, a10, a11, u10, u11, w1, r1 = state
     row = reflect(
-        *state, A[i, 0, 0], A[i, 0, 1], A[i, 1, 0], A[i, 1, 1], D[i, 0, 0], D[i, 0, 1], D[i, 1, 0], D[i, 1, 1],
+        a00, a01, u00, u01, w0, r0, a10, a11, u10, u11, w1, r1,
+        A[i, 0, 0], A[i, 0, 1], A[i, 1, 0], A[i, 1, 1], D[i, 0, 0], D[i, 0, 1], D[i, 1, 0], D[i, 1, 1],
         Q[i, 0], Q[i, 1], -F[i, 0], -F[i, 1],
     )  # fmt: skip
     return _keep(row, stored[i, 0], stored[i, 1])
 
 
 @kernel
-def _meet(state: Any, other: Any, stored):
+def _meet(state, other, stored):
     """Eliminate the middle node between the condensed blocks of both halves."""
+    a00, a01, u00, u01, w0, r0, a10, a11, u10, u11, w1, r1 = state
     d00, d01, b00, b01, q0, f0, d10, d11, b10, b11, q1, f1 = other
-    row = reflect(*state, b00, b01, b10, b11, d00, d01, d10, d11, q0, q1, f0, f1)
+    row = reflect(
+        a00, a01, u00, u01, w0, r0, a10, a11, u10, u11, w1, r1,
+        b00, b01, b10, b11, d00, d01, d10, d11, q0, q1, f0, f1,
+    )  # fmt: skip
     return _keep(row, stored[0], stored[1])
 
 
