@@ -7,17 +7,19 @@ entry points that this package calls itself (`newton`, `examine`), which numba k
 from __future__ import annotations
 
 import hashlib
+import subprocess
+import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import FunctionType, SimpleNamespace
+from types import FunctionType
 from typing import Any
 
 import numpy as np
 
 from orbits import chains, cyclic, lane_links, lanes, trigonometry
 from orbits import kernel as compiling
-from orbits.kernel import kernel, stored_kernel
+from orbits.kernel import inlined_kernel, stored_kernel
 from orbits.models.base import Model
 from orbits.multipliers import periodic_qr, periodic_schur, small_eigenvalues
 
@@ -94,17 +96,70 @@ def _examine(data, u, p, work, row):
     return residual
 
 
-def specialise(function: Callable, name: str, **known: Any) -> Any:
+helpers: dict[str, subprocess.Popen[bytes]] = {}
+"""Processes that compile `inspect` for the model of that name meanwhile (`orbits.ahead`)."""
+
+
+def specialise(function: Callable, name: str, inline: bool = False, **known: Any) -> Any:
     """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`."""
     qualified = f"{function.__name__.strip('_')}_{name}"
     copy = FunctionType(function.__code__, {**function.__globals__, **known}, qualified)
     copy.__qualname__ = qualified
     copy.__module__ = function.__module__
-    return stored_kernel(copy)
+    return (inlined_kernel if inline else stored_kernel)(copy)
+
+
+def cached(function: Any) -> bool:
+    """Whether numba's cache on disk holds a compiled `function`; True where that cannot be told."""
+    try:
+        return bool(function._cache._cache_file._load_index())
+    except (AttributeError, OSError):
+        return True
+
+
+class Kernels:
+    """The compiled functions of one model.
+
+    Attributes
+    ----------
+    linearise, bordered, inspect : compiled functions
+        What a continuation loop calls: `linearise(data, u, p, work)`, `bordered(data, work, border, target, step,
+        tangent)`, `inspect(data, u, p, work, row)`.
+    newton, examine : compiled functions
+        `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, `examine(data, u, p, work, row)`.
+    compiled : bool
+        True.
+    digest : str
+        Of the model and of all sources behind these functions.
+    """
+
+    compiled = True
+
+    def __init__(self, name: str, digest: str, linearise: Any, bordered: Any, inspect: Any) -> None:
+        self.name, self.digest = name, digest
+        self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
+        self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
+        self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
+
+    @property
+    def inspect(self) -> Any:
+        """Multipliers and margins; waits for a process that is compiling just this."""
+        helper = helpers.get(self.name)
+        if helper is not None:
+            while helper.poll() is None and not cached(self._inspect):
+                time.sleep(0.005)
+            helpers.pop(self.name, None)
+        return self._inspect
+
+    @property
+    def examine(self) -> Any:
+        """Residual, and the row of `inspect`, of one solution."""
+        assert self.inspect is not None  # compiled elsewhere, maybe: not again with this one
+        return self._examine
 
 
 @cache
-def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
+def _assemble(kernels: Any, node: int, name: str) -> Kernels:
     files = [
         kernels.__file__,
         *getattr(kernels, "SOURCES", ()),
@@ -122,28 +177,17 @@ def _assemble(kernels: Any, node: int, name: str) -> SimpleNamespace:
     digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
     stamp = f"{name}_{digest}"
     eliminate = cyclic.cyclic_kernels(node).bordered
-    look = FunctionType(
-        _inspect.__code__,
-        {
-            **globals(),
-            "unpin": kernels.unpin,
-            "multipliers": periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers,
-            "margins": kernels.margins,
-        },
+    inspect = specialise(
+        _inspect,
+        stamp,
+        inline=True,
+        unpin=kernels.unpin,
+        multipliers=periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers,
+        margins=kernels.margins,
     )
-    look = kernel(look)
-    known = {"linearise": kernels.linearise, "bordered": eliminate, "inspect": look}
-    return SimpleNamespace(
-        linearise=kernels.linearise,
-        bordered=eliminate,
-        inspect=look,
-        compiled=True,
-        digest=stamp,
-        newton=specialise(_newton, stamp, **known),
-        examine=specialise(_examine, stamp, **known),
-    )
+    return Kernels(name, stamp, kernels.linearise, eliminate, inspect)
 
 
-def assemble(model: Model) -> SimpleNamespace:
+def assemble(model: Model) -> Kernels:
     """The compiled functions for `model`, made once per process."""
     return _assemble(model.kernels, model.node, model.name)

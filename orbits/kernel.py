@@ -17,3 +17,6 @@ kernel = njit(forceinline=True, **OPTIONS)
 
 stored_kernel = njit(cache=True, **OPTIONS)
 """Decorator of functions that are called from Python as well, and kept on disk."""
+
+inlined_kernel = njit(cache=True, forceinline=True, **OPTIONS)
+"""Decorator of functions that other compiled functions call, and that are kept on disk by themselves."""

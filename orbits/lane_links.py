@@ -71,7 +71,7 @@ def _expand(length, twist, links):
 
 
 @cache
-def _functions() -> tuple[Any, Any]:
+def functions() -> tuple[Any, Any]:
     compile_ = cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)
     return compile_(_condense), compile_(_expand)
 
@@ -83,5 +83,5 @@ def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
     """
     if len(arrays[0]) < SHORTEST:
         return np.zeros(FUNCTIONS + ARRAYS, np.int64)
-    functions = [function.address for function in _functions()]
-    return np.array(functions + [array.ctypes.data for array in arrays], np.int64)
+    addresses = [function.address for function in functions()]
+    return np.array(addresses + [array.ctypes.data for array in arrays], np.int64)

@@ -58,7 +58,7 @@ def first_orbit(study: "Study") -> Any:
     ValueError
         If the word cannot be, or no orbit with it is found; the sentence names the study.
     """
-    from orbits.simulation.ahead import compile_ahead
+    from orbits.ahead import compile_ahead
 
     compile_ahead(study.name)
     try:

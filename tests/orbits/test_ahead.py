@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from orbits.simulation import ahead
+from orbits import ahead
 
 
 @pytest.mark.parametrize("name", ["absorber", "coupled"])

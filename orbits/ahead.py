@@ -1,0 +1,81 @@
+"""Compiling beside other work: what a first run needs later is compiled by a second process meanwhile.
+
+numba compiles one function at a time in a process. On a machine with a second core another process compiles the
+kernel `inspect`, the simulator and the elimination of long words, while this one compiles Newton's method and the
+continuation loop; both find each other's results in numba's cache on disk.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+from numba import typeof
+
+from orbits import compiled, lane_links
+from orbits.models import build
+
+SMALL: dict[str, dict[str, float]] = {
+    "absorber": {"restitution": 0.5, "friction": 0.1, "gravity": 0.1, "mass_ratio": 0.01},
+    "coupled": {
+        "restitution": 0.5,
+        "friction": 0.1,
+        "gravity": 0.1,
+        "mass_ratio": 0.01,
+        "forcing": 1.0,
+        "frequency": 0.9,
+    },
+}
+
+
+def compile_ahead(name: str) -> subprocess.Popen[bytes] | None:
+    """Start compiling for the model called `name` in a process of its own, if anything is missing from the cache.
+
+    Returns
+    -------
+    subprocess.Popen or None
+        The process; this one waits for it only where it would otherwise compile `inspect` itself. None if there is nothing
+        to compile or no second core.
+    """
+    if (os.cpu_count() or 1) < 2 or not _missing(name):
+        return None
+    program = f"from orbits.ahead import compile_now; compile_now({name!r})"
+    quiet = subprocess.DEVNULL
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-c", program], stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True
+        )
+    except OSError:
+        return None
+    compiled.helpers[name] = process
+    return process
+
+
+def compile_now(name: str) -> None:
+    """Compile for the model called `name`, in the order in which a run asks for it."""
+    from orbits.problem import OrbitProblem
+    from orbits.simulation.driver import simulate
+    from orbits.words import Word
+
+    model = build({"name": name} | SMALL[name])
+    problem = OrbitProblem(
+        model, Word.parse("LR"), 1, model.parameter_names[0], np.zeros(len(model.parameter_names))
+    )
+    unknowns, row = np.zeros(problem.dimension), np.zeros(1)
+    arguments = (problem.data, unknowns, 0.0, problem.workspace(), row)
+    problem.kernels.inspect.compile(tuple(map(typeof, arguments)))
+    values: dict[str, Any] = {"amplitude": 0.1} if name == "absorber" else {}
+    simulate(model, periods=0.5, **values).sample()
+    if model.node == 2:
+        lane_links.functions()
+
+
+def _missing(name: str) -> bool:
+    """Whether numba's cache lacks the kernel `inspect` or the stepper; False where that cannot be told."""
+    module = importlib.import_module(f"orbits.simulation.{name}_kernels")
+    kernels = compiled.assemble(build({"name": name} | SMALL[name]))
+    return not (compiled.cached(kernels.inspect) and compiled.cached(module.advance))
