@@ -18,6 +18,7 @@ from numba import typeof
 
 from orbits import compiled, lane_links
 from orbits.models import build
+from orbits.multipliers.periodic_qr import periodic_multipliers, scratch_size
 
 SMALL: dict[str, dict[str, float]] = {
     "absorber": {"restitution": 0.5, "friction": 0.1, "gravity": 0.1, "mass_ratio": 0.01},
@@ -72,6 +73,10 @@ def compile_now(name: str) -> None:
     simulate(model, periods=0.5, **values).sample()
     if model.node == 2:
         lane_links.functions()
+    else:
+        n = model.node
+        factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
+        periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
 
 
 def _missing(name: str) -> bool:
