@@ -12,7 +12,10 @@ from .status import Status
 
 @dataclass
 class Chunk:
-    """Consecutive points of a branch; the first one is the last point of the chunk before."""
+    """Consecutive points of a branch; the first one is the last point of the chunk before.
+
+    The loop writes the rows of the next chunk to the same place: copy what is needed later.
+    """
 
     points: np.ndarray
     values: np.ndarray
@@ -37,14 +40,14 @@ class Chunk:
             self.status,
         )
 
-    def solved(self, i: int) -> Solved:
-        """Point i."""
+    def solved(self, i: int, sign: float | None = None) -> Solved:
+        """Point i; with another sign where that is known better."""
         return Solved(
             self.points[i],
             float(self.values[i]),
             self.tangents[i],
-            self.rows[i],
-            float(self.signs[i]),
+            self.rows[i].copy(),
+            float(self.signs[i]) if sign is None else sign,
             0.0,
             float(self.corrections[i]),
         )

@@ -71,6 +71,7 @@ class Engine:
         control[source.LOWER], control[source.UPPER] = self.lower, self.upper
         control[source.ROW_MARGINS] = 2 * self.m
         self.control = control
+        self._rows = np.zeros((0, self.row_size))
         self.at_parameter = np.zeros(n + 1)
         self.at_parameter[n] = 1.0
 
@@ -189,6 +190,12 @@ class Engine:
         return self.step.copy()
 
     # ------------------------------------------------------------------ rows
+    def rows(self, count: int) -> np.ndarray:
+        """Room for rows, the same one every time: large, written once and read once."""
+        if len(self._rows) < count:
+            self._rows = np.zeros((count, self.row_size))
+        return self._rows[:count]
+
     def spectrum(self, rows: np.ndarray) -> NDArray[np.complex128]:
         """Raw multipliers of some rows, shape (..., m)."""
         m = self.m

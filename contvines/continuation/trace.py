@@ -66,7 +66,7 @@ def chunks(
             room = min(capacity, max(settings.max_points - total, 1))
             chunk, h = _march(engine, history, room, h, stop_at_border)
             closed = closing.cut(chunk)
-            away = np.sqrt(((chunk.points - start.u) ** 2).mean(axis=1)) > settings.escape
+            away = _distance(chunk.points, start.u) > settings.escape
             if closed is not None:
                 chunk = closed
             elif away.any():
@@ -92,7 +92,7 @@ def _march(
     first, n = len(history), engine.n
     size = first + capacity
     points, values, tangents = np.empty((size, n)), np.empty(size), np.empty((size, n + 1))
-    rows, signs, corrections = np.zeros((size, engine.row_size)), np.zeros(size), np.zeros(size)
+    rows, signs, corrections = engine.rows(size), np.zeros(size), np.zeros(size)
     for i, point in enumerate(history):
         points[i], values[i], tangents[i] = point.u, point.p, point.tangent
         rows[i], signs[i], corrections[i] = point.row, point.sign, point.correction
@@ -127,6 +127,12 @@ def _march(
         ),
         float(h),
     )
+
+
+def _distance(points: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Root mean square of each point's unknowns less u; nothing as large as the points is made."""
+    square = np.einsum("ij,ij->i", points, points) - 2.0 * (points @ u) + u @ u
+    return np.sqrt(np.maximum(square, 0.0) / len(u))
 
 
 def _pack(solved: list[Solved], status: Status) -> Chunk:

@@ -10,13 +10,12 @@ import numpy as np
 from ..continuation.engine import Engine, Solved, parameter_unit
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .locate import Root, locate, locate_singular
+from .scan import FLAT, MARGIN
 from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
-FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
-MARGIN = -1e-12  # margins below this are negative
 
 
 class Located(NamedTuple):

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from ..continuation.chunk import Chunk
-from ..continuation.engine import Solved, parameter_unit
-from .dips import below_zero, lengths_of, suspects
-from .examine import FLAT, MARGIN, Examiner, Located, changes
-from .functions import counts
+from ..continuation.engine import Engine, Solved
+from .dips import below_zero
+from .examine import Examiner, Located, changes
+from .scan import APART, BORDER, DAMPED, MARGIN, MEETING, SHALLOW, Scan, Scanner
 from .segment import Segment
+
+USER = 128  # beside the bits of a scan: a user function changes its sign
 
 
 class Watch(Examiner):
@@ -25,61 +27,57 @@ class Watch(Examiner):
         See :func:`contvines.events.functions.user_function`.
     """
 
-    def look(self, chunk: Chunk, skip: int = 0, real: bool = True) -> list[Located]:
+    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
+        super().__init__(engine, user_functions)
+        self.scanner = Scanner(engine, self.symmetries)
+
+    def scan(self, chunk: Chunk, real: bool = True) -> Scan:
+        """Marks segments of a chunk that may hold something, and finds the smallest margins; see :meth:`look`."""
+        return self.scanner(
+            chunk.points, chunk.values, chunk.tangents, chunk.rows, without_zeros(chunk.signs), real
+        )
+
+    def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
         """All special points on a chunk, in order; what lies behind a border or a meeting is left out.
 
         Parameters
         ----------
         chunk : Chunk
-        skip : int
-            Leave out this many segments at the beginning (at a branch point).
+        scan : Scan
+            Of the chunk.
         real : bool
             Whether the branch has positive margins; on a virtual one the return to positive margins is the border.
         """
         n = len(chunk)
         if n < 2:
             return []
-        engine = self.engine
-        slope = chunk.tangents[:, -1]
-        steep = np.abs(slope) > FLAT * parameter_unit(engine.within, float(chunk.values[0]))
-        fold = changes(slope) & (steep[:-1] | steep[1:])
-        chunk = replace(chunk, signs=without_zeros(chunk.signs))
-        turned = changes(chunk.signs)
-        numbers = counts(engine.spectrum(chunk.rows), self.kind)
-        jumps = numbers[:-1] != numbers[1:]
-        changed = jumps[:, 0] | jumps[:, 1] | jumps[:, 2]
-        interesting = fold | turned | changed
-        if engine.problem.n_margins:
-            negative = engine.smallest_margin(chunk.rows) < MARGIN
-            border = (negative[1:] & ~negative[:-1]) if real else (negative[:-1] & ~negative[1:])
-            if real and negative[0] and not negative[1:].all():
-                border |= negative[1:]
-            interesting |= border
-        meets = np.zeros(n - 1, dtype=bool)
-        # a cycle is known from any of its nodes: a few unknowns tell whether it is its own image
-        columns = 16 if self.kind == "map" else None
-        for test in self.symmetries:
-            part = test.part(chunk.points, columns)
+        flags = scan.flags.copy()
+        if real and scan.smallest[0] < MARGIN and not (scan.smallest[1:] < MARGIN).all():
+            flags[scan.smallest[1:] < MARGIN] |= BORDER
+        for test in self.scanner.left_out:
+            part = test.part(chunk.points)
             size = np.abs(part).max(axis=1)
-            far = (size[:-1] > 1e-6) & (size[1:] > 1e-6)
-            meets |= far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)
-        interesting |= meets
+            far = (size[:-1] > APART) & (size[1:] > APART)
+            flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
-            interesting |= changes(values)
-        splits = self._dips(chunk, real)
-        interesting[list(splits)] = True
-        interesting[:skip] = False
+            flags[changes(values)] |= USER
+        signs = without_zeros(chunk.signs)
         events: list[Located] = []
-        for i in np.flatnonzero(interesting):
-            i = int(i)
-            segment = Segment(engine, chunk.solved(i), chunk.solved(i + 1))
-            if i in splits:
-                s, middle = splits[i]
+        for i in np.flatnonzero(flags):
+            i, bits = int(i), int(flags[i])
+            segment = Segment(
+                self.engine, chunk.solved(i, float(signs[i])), chunk.solved(i + 1, float(signs[i + 1]))
+            )
+            split = self._split(segment, bits)
+            if split is not None:
+                s, middle = split
                 plain = Located(s, "plain", 0, middle, (np.nan, np.nan), 0.0)
                 found = [*self.both(segment, s, middle, real), plain]
-            else:
+            elif bits & ~(SHALLOW | DAMPED):
                 found = self.examine(segment, real=real)
+            else:
+                continue
             found += self.examine_users(
                 segment, {name: values[i : i + 2] for name, values in user_values.items()}
             )
@@ -97,24 +95,15 @@ class Watch(Examiner):
                     return events
         return events
 
-    def _dips(self, chunk: Chunk, real: bool) -> dict[int, tuple[float, Solved]]:
-        """Segments inside which the smallest margin is negative, or stability lost, though not at their ends."""
-        engine = self.engine
-        tests: list[tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]] = []
-        if engine.problem.n_margins and real:
-            tests.append((engine.smallest_margin(chunk.rows), engine.smallest_margin))
-        if self.kind != "none" and engine.m:
-            tests.append((self._damping(chunk.rows), self._damping))
-        found: dict[int, tuple[float, Solved]] = {}
-        lengths = lengths_of(engine, chunk.points, chunk.values) if tests else np.zeros(0)
-        for values, test in tests:
-            for i in suspects(lengths, values):
-                for k in (int(i) - 1, int(i)):
-                    segment = Segment(engine, chunk.solved(k), chunk.solved(k + 1))
-                    split = below_zero(segment, lambda point, test=test: float(test(point.row)))
-                    if split is not None and k not in found:
-                        found[k] = split
-        return found
+    def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
+        """A point of the segment where the smallest margin is negative, or stability lost, though not at its ends."""
+        tests = {SHALLOW: lambda row: float(self.engine.smallest_margin(row)), DAMPED: self._damping}
+        for bit, test in tests.items():
+            if bits & bit:
+                found = below_zero(segment, lambda point, test=test: float(test(point.row)))
+                if found is not None:
+                    return found
+        return None
 
     def _damping(self, rows: np.ndarray) -> np.ndarray:
         """Positive where stable: minus the logarithm of the largest multiplier (minus the largest real part)."""

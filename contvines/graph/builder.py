@@ -10,9 +10,11 @@ from ..branch import Branch
 from ..continuation.engine import Engine, Solved
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
-from ..events.examine import MARGIN
+from ..events.scan import MARGIN
 from ..events.watch import Watch
-from ..follow import Half, filled, follow, make_branch, single
+from ..finish import filled, make_branch
+from ..follow import follow
+from ..half import Half, single
 from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
@@ -99,12 +101,13 @@ def trace_pending(run: Run, pending: Pending) -> None:
     run.serial += 1
     label = run.new_label("B")
     half, ended, closed = both_ways(run, engine, watch, pending, first, real, label)
-    if pending.kind == "rest" and np.ptp(half.values) < 1e-6 * run.unit(first.p) and len(half) < 4:
+    if pending.kind == "rest" and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p) and len(half) < 4:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return
     half = filled(engine, half, origin_index(half, pending))
-    branch = make_branch(label, engine, half, real, ended, closed, pending.point, origin_index(half, pending))
+    origin = origin_index(half, pending)
+    branch = make_branch(label, engine, half, real, ended, closed, pending.point, origin)
     run.graph.branches[label] = branch
     run.register.add(branch, engine)
     run.connect(pending.point, pending.source, label, pending.note)
@@ -199,7 +202,7 @@ def both_ways(
         return follow(engine, start, watch, run.journal, f"{key}/{side}", real, pending.first_step, notice)
 
     def sentence(half: Half) -> str:
-        return half.status.sentence(name, float(half.values[-1]))
+        return half.status.sentence(name, half.end)
 
     leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"
     if pending.kind == "rest":
@@ -215,7 +218,7 @@ def both_ways(
         ]
         if sides[0].status == Status.CLOSED:
             return sides[0], (sentence(sides[0]), sentence(sides[0])), True
-        whole = single(origin)
+        whole = single(engine, origin)
         if pending.back is None:
             return whole.extended(sides[0]), (leaves, sentence(sides[0])), False
         if len(sides) == 2:

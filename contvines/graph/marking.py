@@ -7,7 +7,7 @@ import numpy as np
 from ..branch import Branch
 from ..continuation.engine import Engine
 from ..events.examine import Located
-from ..follow import Half
+from ..half import Half
 from ..normal_forms import fold_coefficient
 from ..special import BORDERS, PREFIXES, SpecialPoint
 from ..switching import null_vectors
@@ -86,15 +86,17 @@ def origin_index(half: Half, pending: Pending) -> int | None:
     """Index of the special point from which the branch was reached, if it is one of its points."""
     if pending.origin is None:
         return None
-    gap = np.abs(half.points - pending.origin.u).max(axis=1) + np.abs(half.values - pending.origin.p)
-    i = int(np.argmin(gap))
-    return i if gap[i] == 0.0 else None
+    whole = half.joined()
+    for i in np.flatnonzero(whole.values == pending.origin.p):
+        if np.array_equal(whole.points[i], pending.origin.u):
+            return int(i)
+    return None
 
 
 def _end(run: Run, engine: Engine, half: Half, index: int) -> Located:
-    p = float(half.values[index])
+    u, p, tangent = half.at(index)
     bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
-    point = engine.polish(half.points[index], p, engine.at_parameter, p, half.tangents[index])
+    point = engine.polish(u, p, engine.at_parameter, p, tangent)
     assert point is not None
     return Located(float(index), "end", 0, point, (bound, bound), 0.0)
 

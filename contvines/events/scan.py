@@ -1,0 +1,262 @@
+"""Scanning points of a branch: in which segments may there be something to locate?
+
+One pass over the arrays of a chunk; what it marks is examined by :mod:`contvines.events.watch`. The source runs compiled,
+for compiled problems, and interpreted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..continuation.engine import Engine, parameter_unit
+from .functions import PAST, SymmetryTest
+
+FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
+MARGIN = -1e-12  # margins below this are negative
+COLUMNS = 16  # a cycle is known from any of its nodes: a few unknowns tell whether it is its own image
+APART = 1e-6  # parts that a symmetry changes below this are zero
+
+# what a segment may hold, as bits
+FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED = 1, 2, 4, 8, 16, 32, 64
+
+NONE, MAP, FLOW = 0, 1, 2
+KINDS = {"none": NONE, "map": MAP, "flow": FLOW}
+
+
+def sweep(
+    points,
+    values,
+    slopes,
+    rows,
+    signs,
+    first_margin,
+    kind,
+    real,
+    flat,
+    metric_u,
+    metric_p,
+    orders,
+    images,
+    constants,
+    shift,
+    gaps,
+    flags,
+    smallest,
+):
+    """Fill `flags` (n - 1,), bits per segment, and `smallest` (n,), the smallest margin (infinity without margins).
+
+    Parameters
+    ----------
+    points, values, slopes, rows, signs : ndarray
+        Of the chunk; `slopes` is the parameter's component of the tangents.
+    first_margin : int
+        Columns of `rows` before this one are multipliers as (re, im) pairs.
+    kind : int
+        NONE, MAP or FLOW.
+    real : bool
+        Whether the branch has positive margins.
+    flat : float
+        Slopes below this are zero.
+    metric_u, metric_p : float
+    orders, images, constants : ndarray, shape (symmetries, columns)
+        u - T(u) of column j is u[j] - (images[j] u[orders[j]] + constants[j]).
+    shift : ndarray, shape (columns,)
+        Zero, or what shifts by one period add.
+    gaps : ndarray, shape (2, symmetries, columns)
+        Scratch.
+    """
+    count, size = points.shape
+    width = rows.shape[1]
+    columns = shift.shape[0]
+    whole = 0.0
+    for j in range(columns):
+        whole += shift[j] * shift[j]
+    plus, minus, pairs, damping = 0, 0, 0, 0.0
+    before, before_that = 0.0, 0.0  # damping of the two points before
+    short = 0.0  # length of the segment before
+    for i in range(count):
+        # smallest margin; comparisons pass over NaN
+        a = b = c = d = np.inf
+        j = first_margin
+        while j + 3 < width:
+            a = rows[i, j] if rows[i, j] < a else a
+            b = rows[i, j + 1] if rows[i, j + 1] < b else b
+            c = rows[i, j + 2] if rows[i, j + 2] < c else c
+            d = rows[i, j + 3] if rows[i, j + 3] < d else d
+            j += 4
+        while j < width:
+            a = rows[i, j] if rows[i, j] < a else a
+            j += 1
+        smallest[i] = min(min(a, b), min(c, d))
+        # multipliers past the circle
+        old_plus, old_minus, old_pairs = plus, minus, pairs
+        plus, minus, pairs = 0, 0, 0
+        outermost = -np.inf
+        for j in range(0, first_margin, 2):
+            re, im = rows[i, j], rows[i, j + 1]
+            if kind == MAP:
+                modulus = abs(re) if im == 0.0 else math.sqrt(re * re + im * im)
+                outermost = max(outermost, modulus)
+                if im == 0.0:
+                    plus += re > 1.0 + PAST
+                    minus += re < -1.0 - PAST
+                else:
+                    pairs += im > 0.0 and modulus > 1.0 + PAST
+            elif kind == FLOW:
+                outermost = max(outermost, re)
+                if im == 0.0:
+                    plus += re > PAST
+                else:
+                    pairs += im > 0.0 and re > PAST
+        before_that, before = before, damping
+        if kind == MAP:
+            damping = -math.log(outermost) if outermost > 0.0 else np.inf
+        else:
+            damping = -outermost
+        # the part that a symmetry changes, modulo shifts by a period
+        now = i % 2
+        for s in range(orders.shape[0]):
+            dot = 0.0
+            for j in range(columns):
+                gap = points[i, j] - (images[s, j] * points[i, orders[s, j]] + constants[s, j])
+                gaps[now, s, j] = gap
+                dot += gap * shift[j]
+            if dot != 0.0:
+                turns = np.round(dot / whole)
+                for j in range(columns):
+                    gaps[now, s, j] -= turns * shift[j]
+        if i == 0:
+            continue
+        bits = 0
+        if (slopes[i - 1] >= 0.0) != (slopes[i] >= 0.0) and (
+            abs(slopes[i - 1]) > flat or abs(slopes[i]) > flat
+        ):
+            bits |= FOLD
+        if (signs[i - 1] >= 0.0) != (signs[i] >= 0.0):
+            bits |= SINGULAR
+        if plus != old_plus or minus != old_minus or pairs != old_pairs:
+            bits |= MULTIPLIER
+        if (smallest[i - 1] < MARGIN) != (smallest[i] < MARGIN) and (smallest[i] < MARGIN) == real:
+            bits |= BORDER
+        for s in range(orders.shape[0]):
+            here, there, dot = 0.0, 0.0, 0.0
+            for j in range(columns):
+                here = max(here, abs(gaps[now, s, j]))
+                there = max(there, abs(gaps[1 - now, s, j]))
+                dot += gaps[0, s, j] * gaps[1, s, j]
+            if dot < 0.0 and here > APART and there > APART:
+                bits |= MEETING
+        flags[i - 1] = bits
+        square = 0.0
+        for j in range(size):
+            change = points[i, j] - points[i - 1, j]
+            square += change * change
+        change = values[i] - values[i - 1]
+        length = math.sqrt(metric_u * square + metric_p * change * change)
+        if i > 1:
+            if real and dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length):
+                flags[i - 2] |= SHALLOW
+                flags[i - 1] |= SHALLOW
+            if kind != NONE and first_margin > 0 and dips(before_that, before, damping, short, length):
+                flags[i - 2] |= DAMPED
+                flags[i - 1] |= DAMPED
+        short = length
+
+
+def dips(left, middle, right, h1, h2):
+    """Whether the parabola through three neighbouring positive values dips below zero between them."""
+    if not (left > 0.0 and middle > 0.0 and right > 0.0 and h1 > 0.0 and h2 > 0.0):
+        return False
+    if not (left < np.inf and middle < np.inf and right < np.inf):
+        return False
+    before, after = (middle - left) / h1, (right - middle) / h2
+    bend = (after - before) / (h1 + h2)
+    if not bend > 0.0:
+        return False
+    slope = (before * h2 + after * h1) / (h1 + h2)
+    vertex = -0.5 * slope / bend
+    return -h1 < vertex < h2 and middle - 0.25 * slope * slope / bend < 0.0
+
+
+@cache
+def _compiled() -> Callable[..., Any]:
+    from numba import njit
+
+    from ..continuation.binding import copy_with
+
+    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
+    inner = njit(forceinline=True, **options)(dips)
+    # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
+    return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **options)(copy_with(sweep, dips=inner))
+
+
+class Scan(NamedTuple):
+    """``flags`` of the n - 1 segments, ``smallest`` margins of the n points."""
+
+    flags: np.ndarray
+    smallest: np.ndarray
+
+
+class Scanner:
+    """Scans chunks of one problem's branches.
+
+    Parameters
+    ----------
+    engine : Engine
+    symmetries : list of SymmetryTest
+        Those that are signed permutations are looked at here; see ``left_out``.
+    """
+
+    def __init__(self, engine: Engine, symmetries: list[SymmetryTest]) -> None:
+        self.engine = engine
+        self.kind = KINDS[engine.problem.spectrum]
+        self.sweep = _compiled() if engine.problem.kernels.compiled else sweep
+        columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
+        affine = [test.affine for test in symmetries if test.affine is not None]
+        self.left_out = [test for test in symmetries if test.affine is None]
+        shape = (len(affine), columns)
+        self.orders = np.array([order[:columns] for order, _, _ in affine], np.int64).reshape(shape)
+        self.images = np.array([signs[:columns] for _, signs, _ in affine], float).reshape(shape)
+        self.constants = np.array([constant[:columns] for _, _, constant in affine], float).reshape(shape)
+        shift = symmetries[0].shift if symmetries else None
+        self.shift = np.zeros(columns) if shift is None else np.array(shift[:columns], float)
+        self.gaps = np.zeros((2, *shape))
+
+    def __call__(
+        self,
+        points: np.ndarray,
+        values: np.ndarray,
+        tangents: np.ndarray,
+        rows: np.ndarray,
+        signs: np.ndarray,
+        real: bool,
+    ) -> Scan:
+        """Scan at least one point; arrays as those of a chunk."""
+        engine, n = self.engine, len(values)
+        flags, smallest = np.zeros(max(n - 1, 0), np.int64), np.empty(n)
+        self.sweep(
+            points,
+            values,
+            np.ascontiguousarray(tangents[:, -1]),
+            rows,
+            signs,
+            2 * engine.m,
+            self.kind,
+            bool(real),
+            FLAT * parameter_unit(engine.within, float(values[0])),
+            float(engine.weights[0]),
+            float(engine.weights[-1]),
+            self.orders,
+            self.images,
+            self.constants,
+            self.shift,
+            self.gaps,
+            flags,
+            smallest,
+        )
+        return Scan(flags, smallest)

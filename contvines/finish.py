@@ -1,0 +1,111 @@
+"""Finishing a branch: points between special points, stability, the Branch itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .branch import Branch
+from .continuation.engine import Engine, Solved
+from .events.segment import Segment
+from .half import Half
+
+APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
+MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
+
+
+def filled(engine: Engine, half: Half, origin: int | None = None) -> Half:
+    """The half with a solved point between neighbouring special points, or ends, that have none between them."""
+    special = {i for i, _ in half.events} | {0, len(half) - 1}
+    if origin is not None:
+        special.add(origin)
+    events = dict.fromkeys(i for i, _ in half.events)
+    inserted: list[tuple[int, Solved]] = []
+    for i in sorted(special):
+        if i + 1 not in special or not (i in events or i + 1 in events):
+            continue
+        ends = (
+            Solved(u, p, tangent, np.zeros(0), 0.0, 0.0, 0.0) for u, p, tangent in map(half.at, (i, i + 1))
+        )
+        segment = Segment(engine, *ends)
+        if not segment.length > APART:
+            continue
+        middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
+        if middle is not None:
+            inserted.append((i + 1, middle))
+    return half.inserted(engine, inserted) if inserted else half
+
+
+def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.ndarray:
+    """Which points count as stable.
+
+    A special point is stable when one of its neighbours is. A point with a multiplier on the circle to roundoff, as at the
+    end of an interval or where a multiplier crosses, takes the stability of the nearest point that can tell, up to the next
+    special point.
+
+    Parameters
+    ----------
+    engine : Engine
+    spectrum : ndarray, shape (n, 2 m)
+        Multipliers as (re, im) pairs.
+    special : list of int
+        Indices of the special points.
+    """
+    stable = engine.stable(spectrum)
+    n = len(stable)
+    if n < 2:
+        return stable
+    is_special = np.zeros(n, dtype=bool)
+    is_special[special] = True
+    telling = ~is_special & ~engine.marginal(spectrum, MARGINAL)
+    for start, stop in _runs(~is_special):
+        known = start + np.flatnonzero(telling[start:stop])
+        if len(known) == stop - start:
+            continue
+        if not len(known):
+            stable[start:stop] = False  # conservative: nothing is attracted
+            continue
+        here = np.arange(start, stop)
+        after = np.clip(np.searchsorted(known, here), 0, len(known) - 1)
+        before = np.maximum(after - 1, 0)
+        nearer = np.where(np.abs(known[before] - here) < np.abs(known[after] - here), before, after)
+        stable[start:stop] = stable[known[nearer]]
+    before = np.append(False, stable[:-1] & ~is_special[:-1])
+    after = np.append(stable[1:] & ~is_special[1:], False)
+    return np.where(is_special, before | after, stable)
+
+
+def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
+    """Maximal runs of chosen entries, as (start, stop)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2])]
+
+
+def make_branch(
+    label: str,
+    engine: Engine,
+    half: Half,
+    real: bool,
+    ended: tuple[str, str],
+    closed: bool,
+    seed: str | None,
+    origin: int | None = None,
+) -> Branch:
+    """A Branch from what was found; ``marks`` are left to the caller, ``origin`` is the point at which it was reached."""
+    problem, whole = engine.problem, half.joined()
+    special = [i for i, _ in half.events]
+    return Branch(
+        label=label,
+        problem=problem,
+        points=whole.points,
+        values=whole.values,
+        tangents=whole.tangents,
+        multipliers=engine.multipliers(whole.spectrum),
+        margin=whole.smallest,
+        stable=stability(engine, whole.spectrum, special if origin is None else [*special, origin]),
+        real=real,
+        ended=ended,
+        closed=closed,
+        seed=seed,
+        description=dict(problem.describe()),
+        parameter=problem.parameter,
+    )

@@ -1,0 +1,133 @@
+"""Half: what has been found of a branch, as pieces in order; put together once, at the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from .continuation.engine import Engine, Solved
+from .continuation.status import Status
+from .events.examine import Located
+
+
+class Piece(NamedTuple):
+    """Consecutive points: arrays of shapes (n, N), (n,), (n, N + 1), (n, 2 m) and (n,).
+
+    ``spectrum`` has the multipliers as (re, im) pairs, ``smallest`` the smallest margins. ``turned`` pieces are read
+    backwards, with tangents of opposite sign.
+    """
+
+    points: np.ndarray
+    values: np.ndarray
+    tangents: np.ndarray
+    spectrum: np.ndarray
+    smallest: np.ndarray
+    turned: bool = False
+
+    def part(self, start: int, stop: int) -> Piece:
+        """Points start to stop in the order in which the piece is read."""
+        n = len(self.values)
+        where = slice(n - stop, n - start) if self.turned else slice(start, stop)
+        return Piece(*(array[where] for array in self[:5]), turned=self.turned)
+
+
+def piece_of(engine: Engine, point: Solved) -> Piece:
+    """A piece of one point."""
+    return Piece(
+        point.u[None, :],
+        np.array([point.p]),
+        point.tangent[None, :],
+        point.row[None, : 2 * engine.m],
+        np.array([float(engine.smallest_margin(point.row))]),
+    )
+
+
+@dataclass
+class Half:
+    """Points of a branch in order, and the events with their indices among them."""
+
+    pieces: list[Piece]
+    events: list[tuple[int, Located]] = field(default_factory=list)
+    status: Status = Status.RUNNING
+
+    def __len__(self) -> int:
+        return sum(len(piece.values) for piece in self.pieces)
+
+    @property
+    def end(self) -> float:
+        """Parameter value of the last point."""
+        piece = self.pieces[-1]
+        return float(piece.values[0 if piece.turned else -1])
+
+    def reversed(self) -> Half:
+        """The same points in opposite order, tangents turned round."""
+        last = len(self) - 1
+        events = [
+            (last - i, e._replace(point=e.point._replace(tangent=-e.point.tangent)))
+            for i, e in self.events[::-1]
+        ]
+        return Half(
+            [piece._replace(turned=not piece.turned) for piece in self.pieces[::-1]], events, self.status
+        )
+
+    def extended(self, other: Half, skip: int = 0) -> Half:
+        """This half, then the other one without its first ``skip`` points."""
+        shift = len(self) - skip
+        events = self.events + [(i + shift, e) for i, e in other.events]
+        return Half(self.pieces + other._slice(skip, len(other)), events, other.status)
+
+    def inserted(self, engine: Engine, points: list[tuple[int, Solved]]) -> Half:
+        """With more points, each before the point that has its index now; in increasing order."""
+        pieces: list[Piece] = []
+        here = 0
+        for i, point in points:
+            pieces += [*self._slice(here, i), piece_of(engine, point)]
+            here = i
+        where = [i for i, _ in points]
+        events = [(i + int(np.searchsorted(where, i, side="right")), e) for i, e in self.events]
+        return Half(pieces + self._slice(here, len(self)), events, self.status)
+
+    def joined(self) -> Piece:
+        """All points as one piece, in order."""
+        if len(self.pieces) == 1 and not self.pieces[0].turned:
+            return self.pieces[0]
+        first, total = self.pieces[0], len(self)
+        whole = Piece(*[np.empty((total, *array.shape[1:])) for array in first[:5]], turned=False)
+        start = 0
+        for piece in self.pieces:
+            stop = start + len(piece.values)
+            order = slice(None, None, -1 if piece.turned else 1)
+            for to, array in zip(whole[:5], piece[:5]):
+                if array is piece.tangents and piece.turned:
+                    np.negative(array[order], out=to[start:stop])
+                else:
+                    to[start:stop] = array[order]
+            start = stop
+        self.pieces = [whole]
+        return whole
+
+    def at(self, i: int) -> tuple[np.ndarray, float, np.ndarray]:
+        """(u, p, tangent) of point i."""
+        piece = self._slice(i, i + 1)[0]
+        return (
+            piece.points[0],
+            float(piece.values[0]),
+            -piece.tangents[0] if piece.turned else piece.tangents[0],
+        )
+
+    def _slice(self, start: int, stop: int) -> list[Piece]:
+        found, before = [], 0
+        for piece in self.pieces:
+            n = len(piece.values)
+            a, b = max(start - before, 0), min(stop - before, n)
+            if a < b:
+                found.append(piece if (a, b) == (0, n) else piece.part(a, b))
+            before += n
+        return found
+
+
+def single(engine: Engine, point: Solved) -> Half:
+    """A half of one point."""
+    return Half([piece_of(engine, point)])
