@@ -6,6 +6,8 @@ the motion itself is not.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from orbits.orbit import Orbit
@@ -46,41 +48,36 @@ def position_error(orbit: Orbit, points: int = 400) -> float:
     definite = np.flatnonzero(speeds > DEFINITE)
     places = definite if definite.size else _calm(orbit)
     places = places[:: -(-len(places) // STRETCHES)]
-    durations = lengths(orbit)
     ends = np.append(places[1:], places[0] + len(orbit.word))
-    return max(
-        _stretch_error(orbit, durations, int(a), int(b - a), points)
-        for a, b in zip(places, ends, strict=True)
-    )
+    follow = _follower(orbit, points)
+    return max(follow(int(a), int(b - a)) for a, b in zip(places, ends, strict=True))
 
 
-def _stretch_error(orbit: Orbit, durations: np.ndarray, place: int, events: int, points: int) -> float:
-    """The same from one event over the next ones."""
-    engine = machine(orbit.model.name)
+def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
+    """The same from one event over the next ones, as a function of place and number of events."""
+    model = orbit.model
+    own = {name for name in orbit.parameters if hasattr(model, name) and name != "excitation"}
+    given: dict[str, float] = {k: v for k, v in orbit.parameters.items() if not hasattr(model, k)}
+    model = model.changed(**{name: orbit.parameters[name] for name in own})
+    engine, durations = machine(model.name), lengths(orbit)
     codes, modes = orbit.word.codes, orbit.word.modes
-    start = state_of(engine, orbit.params, int(codes[place]), int(modes[place]), orbit.nodes[place])
-    start[1] = np.clip(start[1], -1.0, 1.0)
-    phases, positions, passed = [], [], 0.0
-    for segment in np.arange(place, place + events) % len(codes):
-        count = max(2, round(points * durations[segment] / (2.0 * np.pi * orbit.periods)))
-        within = np.linspace(0.0, max(float(durations[segment]), 0.0), count)
-        phases.append(passed + within)
-        positions.append(flight(orbit, int(segment), within)[:, 0])
-        passed += float(durations[segment])
-    ahead, claimed = np.concatenate(phases), np.concatenate(positions)
-    given = {name: value for name, value in orbit.parameters.items() if not hasattr(orbit.model, name)}
-    model = orbit.model.changed(
-        **{
-            name: value
-            for name, value in orbit.parameters.items()
-            if name not in given and name != "excitation"
-        }
-    )
-    turns = float(ahead[-1]) / (2.0 * np.pi)
-    run = simulate(model, start, periods=turns + 1e-6, **given)  # type: ignore[arg-type]
-    first = run.start[0] + 2.0 * np.pi * run.start[4]
-    seen = run.sample(first + ahead)
-    return float(np.abs(seen.w - claimed).max())
+
+    def error(place: int, events: int) -> float:
+        start = state_of(engine, orbit.params, int(codes[place]), int(modes[place]), orbit.nodes[place])
+        start[1] = min(max(start[1], -1.0), 1.0)
+        phases, positions, passed = [], [], 0.0
+        for segment in np.arange(place, place + events) % len(codes):
+            count = max(2, round(points * durations[segment] / (2.0 * np.pi * orbit.periods)))
+            within = np.linspace(0.0, max(float(durations[segment]), 0.0), count)
+            phases.append(passed + within)
+            positions.append(flight(orbit, int(segment), within)[:, 0])
+            passed += float(durations[segment])
+        ahead, claimed = np.concatenate(phases), np.concatenate(positions)
+        run = simulate(model, start, periods=float(ahead[-1]) / (2.0 * np.pi) + 1e-6, **given)  # type: ignore[arg-type]
+        seen = run.sample(run.start[0] + 2.0 * np.pi * run.start[4] + ahead)
+        return float(np.abs(seen.w - claimed).max())
+
+    return error
 
 
 def _calm(orbit: Orbit) -> np.ndarray:
