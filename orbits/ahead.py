@@ -33,8 +33,14 @@ SMALL: dict[str, dict[str, float]] = {
 }
 
 
-def compile_ahead(name: str) -> subprocess.Popen[bytes] | None:
+def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
     """Start compiling for the model called `name` in a process of its own, if anything is missing from the cache.
+
+    Parameters
+    ----------
+    name : str
+    *more : str
+        "module:function" of what else to call there.
 
     Returns
     -------
@@ -44,7 +50,7 @@ def compile_ahead(name: str) -> subprocess.Popen[bytes] | None:
     """
     if (os.cpu_count() or 1) < 2 or not _missing(name):
         return None
-    program = f"from orbits.ahead import compile_now; compile_now({name!r})"
+    program = f"from orbits.ahead import compile_now; compile_now({name!r}, *{more!r})"
     quiet = subprocess.DEVNULL
     try:
         process = subprocess.Popen(
@@ -56,7 +62,7 @@ def compile_ahead(name: str) -> subprocess.Popen[bytes] | None:
     return process
 
 
-def compile_now(name: str) -> None:
+def compile_now(name: str, *more: str) -> None:
     """Compile for the model called `name`, in the order in which a run asks for it."""
     from orbits.problem import OrbitProblem
     from orbits.simulation.driver import simulate
@@ -69,6 +75,9 @@ def compile_now(name: str) -> None:
     unknowns, row = np.zeros(problem.dimension), np.zeros(1)
     arguments = (problem.data, unknowns, 0.0, problem.workspace(), row)
     problem.kernels.inspect.compile(tuple(map(typeof, arguments)))
+    for place in more:
+        module, _, function = place.partition(":")
+        getattr(importlib.import_module(module), function)()
     values: dict[str, Any] = {"amplitude": 0.1} if name == "absorber" else {}
     simulate(model, periods=0.5, **values).sample()
     if model.node == 2:

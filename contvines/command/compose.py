@@ -60,7 +60,7 @@ def first_orbit(study: "Study") -> Any:
     """
     from orbits.ahead import compile_ahead
 
-    compile_ahead(study.name)
+    compile_ahead(study.name, "contvines.events.scan:prepare")
     try:
         return machine(study).orbit(study.word, study.periods, guess=study.guess, **loose(study))
     except ValueError as error:

@@ -18,9 +18,8 @@ from . import march as loop
 
 
 class Bound(NamedTuple):
-    """``correct``, ``march`` and ``solve`` with the kernels of a problem inside."""
+    """``march`` and ``solve`` with the kernels of a problem inside."""
 
-    correct: Callable[..., Any]
     march: Callable[..., Any]
     solve: Callable[..., Any]
 
@@ -56,17 +55,18 @@ def _make(kernels: Any) -> Bound:
     if not kernels.compiled:
         correct = copy_with(corrector.correct, **functions)
         march = copy_with(loop.march, correct=correct, predict=predictor.predict, **functions)
-        return Bound(correct, march, copy_with(corrector.solve, **functions))
+        return Bound(march, copy_with(corrector.solve, **functions))
     from numba import njit
 
     from ..problem import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     compile_ = njit(cache=True, forceinline=True, **OPTIONS)
-    correct = compile_(copy_with(corrector.correct, suffix, **functions))
+    improve = compile_(copy_with(corrector.improve, suffix))
+    correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **functions))
     predict = compile_(copy_with(predictor.predict, suffix))
     march = compile_(copy_with(loop.march, suffix, correct=correct, predict=predict, **functions))
-    return Bound(correct, march, compile_(copy_with(corrector.solve, suffix, **functions)))
+    return Bound(march, compile_(copy_with(corrector.solve, suffix, improve=improve, **functions)))
 
 
 def _loop_digest() -> str:

@@ -26,6 +26,56 @@ def inspect(data, u, p, work, row):
     raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
+def improve(u, p, step, sweep, residual, before, tolerance):
+    """Add a Newton correction to u and p, unless Newton's method diverges.
+
+    Parameters
+    ----------
+    u, p, step
+        Unknowns (changed in place), parameter, correction of both.
+    sweep : int
+        Number of corrections before this one.
+    residual : float
+        Largest absolute residual before this correction.
+    before : float
+        Size of the correction before this one.
+    tolerance : float
+
+    Returns
+    -------
+    p : float
+    size : float
+        Of the correction, relative to 1 + abs(unknown).
+    verdict : int
+        1 when converged, -1 when diverged, else 0.
+    """
+    n = u.shape[0]
+    size = abs(step[n]) / (1.0 + abs(p))
+    finite = step[n] - step[n]
+    for i in range(n):
+        finite += step[i] - step[i]
+        change = abs(step[i]) / (1.0 + abs(u[i]))
+        if change > size:
+            size = change
+    if not (finite == 0.0 and size < HUGE):
+        return p, size, -1
+    if sweep > 1 and size > 2.0 * before and size > STALLED:
+        return p, size, -1
+    for i in range(n):
+        u[i] += step[i]
+    p += step[n]
+    if size <= 1e-11:
+        return p, size, 1
+    if sweep > 0:
+        ratio = size / before
+        # quadratic convergence: the next correction would be about ratio^2 size
+        if size <= tolerance and ratio * ratio * size <= ROUNDOFF:
+            return p, size, 1
+        if size <= STALLED and ratio > 0.3 and residual < 1e-9:
+            return p, size, 1
+    return p, size, 0
+
+
 def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent):
     """Newton's method for F(u, p) = 0, border.(u, p) = target; u is updated in place.
 
@@ -36,73 +86,69 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
     p : float
     sweeps : int
         Number of sweeps; -1: no convergence; -2: not evaluable.
-    residual : float
-        Largest absolute residual at the last linearisation, before the last correction.
     sign : float
-        Sign of the bordered determinant there.
+        Sign of the bordered determinant at the last linearisation, before the last correction.
     size : float
         Last correction, relative to 1 + abs(unknown).
     """
-    n = u.shape[0]
-    before = 0.0
     size = 0.0
-    residual = 0.0
     sign = 0.0
     for sweep in range(max_sweeps):
         residual = linearise(data, u, p, work)
         if not residual < 1e300:
-            return p, -2, residual, sign, size
-        gap = target - border[n] * p
-        for i in range(n):
+            return p, -2, sign, size
+        gap = target - border[u.shape[0]] * p
+        for i in range(u.shape[0]):
             gap -= border[i] * u[i]
         sign = bordered(data, work, border, gap, step, tangent)
-        size = abs(step[n]) / (1.0 + abs(p))
-        finite = step[n] - step[n]
-        for i in range(n):
-            finite += step[i] - step[i]
-            change = abs(step[i]) / (1.0 + abs(u[i]))
-            if change > size:
-                size = change
-        if not (finite == 0.0 and size < HUGE):
-            return p, -1, residual, sign, size
-        if sweep > 1 and size > 2.0 * before and size > STALLED:
-            return p, -1, residual, sign, size
-        for i in range(n):
-            u[i] += step[i]
-        p += step[n]
-        if size <= 1e-11:
-            return p, sweep + 1, residual, sign, size
-        if sweep > 0:
-            ratio = size / before
-            # quadratic convergence: the next correction would be about ratio^2 size
-            if size <= tolerance and ratio * ratio * size <= ROUNDOFF:
-                return p, sweep + 1, residual, sign, size
-            if size <= STALLED and ratio > 0.3 and residual < 1e-9:
-                return p, sweep + 1, residual, sign, size
-        before = size
-    return p, -1, residual, sign, size
+        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance)
+        if verdict != 0:
+            return p, sweep + 1 if verdict > 0 else -1, sign, size
+    return p, -1, sign, size
 
 
-def solve(data, work, u, p, border, target, step, tangent, row, what):
-    """One call of the kernels: LINEARISE only, ELIMINATE only (with the linearisation at hand), or EVERYTHING.
+def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, row, what):
+    """A single solution, and everything about it.
+
+    EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method (none: the point is good as it is), then linearisation,
+    elimination and multipliers once more at the solution. LINEARISE: the residual only. ELIMINATE: with the linearisation at hand.
 
     Returns
     -------
+    p : float
+    sweeps : int
+        As of ``correct``.
     residual : float
         0 if there was no linearisation.
     sign : float
         Of the bordered determinant; 0 if there was no elimination.
+    size : float
+        Of the last correction.
     """
     residual = 0.0
     sign = 0.0
-    if what != ELIMINATE:
-        residual = linearise(data, u, p, work)
-        if what == LINEARISE or not residual < 1e300:
-            return residual, sign
-        target -= border[u.shape[0]] * p
-        for i in range(u.shape[0]):
-            target -= border[i] * u[i]
-    sign = bordered(data, work, border, target, step, tangent)
+    size = 0.0
+    sweep = 0
+    settled = max_sweeps == 0
+    while True:
+        gap = target
+        if what != ELIMINATE:
+            residual = linearise(data, u, p, work)
+            if what == LINEARISE:
+                return p, sweep, residual, sign, size
+            if not residual < 1e300:
+                return p, -2, residual, sign, size
+            gap -= border[u.shape[0]] * p
+            for i in range(u.shape[0]):
+                gap -= border[i] * u[i]
+        sign = bordered(data, work, border, gap, step, tangent)
+        if settled:
+            break
+        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance)
+        sweep += 1
+        settled = verdict > 0
+        if verdict < 0 or (not settled and sweep == max_sweeps):
+            return p, -1, residual, sign, size
     if what == EVERYTHING:
         inspect(data, u, p, work, row)
-    return residual, sign
+    return p, sweep, residual, sign, size

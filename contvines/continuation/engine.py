@@ -109,31 +109,43 @@ class Engine:
         along : ndarray, optional
             The tangent is returned with <along, tangent> > 0; else with <border, tangent> > 0.
         """
-        self.u[:] = u
-        p, sweeps, _, _, size = self.bound.correct(
-            self.data, self.work, self.u, float(p), border, float(target), TIGHT, 40, self.step, self.tangent
-        )
-        if sweeps < 0:
-            return None
-        return self.polish(self.u.copy(), p, border, target, along, size)
+        here = np.array(u, dtype=float)
+        return self._solved(here, float(p), border, float(target), 40, along)
 
     def polish(
+        self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
+    ) -> Solved | None:
+        """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
+        return self._solved(u, float(p), border, float(target), 0, along)
+
+    def _solved(
         self,
         u: np.ndarray,
         p: float,
         border: np.ndarray,
         target: float,
-        along: np.ndarray | None = None,
-        size: float = 0.0,
+        sweeps: int,
+        along: np.ndarray | None,
     ) -> Solved | None:
-        """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
         row = np.zeros(self.row_size)
-        residual, sign = self.bound.solve(
-            self.data, self.work, u, p, border, target, self.step, self.tangent, row, corrector.EVERYTHING
+        step, tangent = self.step, self.tangent
+        p, sweeps, residual, sign, size = self.bound.solve(
+            self.data,
+            self.work,
+            u,
+            p,
+            border,
+            target,
+            TIGHT,
+            sweeps,
+            step,
+            tangent,
+            row,
+            corrector.EVERYTHING,
         )
-        if not residual < 1e300 or not np.all(np.isfinite(self.tangent)):
+        if sweeps < 0 or not np.isfinite(tangent).all():
             return None
-        tangent = self.unit(self.tangent)
+        tangent = self.unit(tangent)
         if along is not None and self.inner(along, tangent) < 0.0:
             tangent = -tangent
         if float(np.dot(border, tangent)) < 0.0:
@@ -165,27 +177,29 @@ class Engine:
 
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual."""
-        u, p = np.ascontiguousarray(u), float(p)
-        found, _ = self.bound.solve(
-            self.data, self.work, u, p, self.border, 0.0, self.step, self.tangent, NO_ROW, corrector.LINEARISE
+        here, what = np.ascontiguousarray(u), corrector.LINEARISE
+        _, _, found, _, _ = self.bound.solve(
+            self.data,
+            self.work,
+            here,
+            float(p),
+            self.border,
+            0.0,
+            TIGHT,
+            0,
+            self.step,
+            self.tangent,
+            NO_ROW,
+            what,
         )
         return float(found)
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
         self.work[0].reshape(-1)[:] = -side[: self.n]
-        target = float(side[self.n])
+        target, what = float(side[self.n]), corrector.ELIMINATE
         self.bound.solve(
-            self.data,
-            self.work,
-            self.u,
-            0.0,
-            border,
-            target,
-            self.step,
-            self.tangent,
-            NO_ROW,
-            corrector.ELIMINATE,
+            self.data, self.work, self.u, 0.0, border, target, TIGHT, 0, self.step, self.tangent, NO_ROW, what
         )
         return self.step.copy()
 

@@ -120,7 +120,7 @@ def march(
         for j in range(n):
             points[i, j] = u[j]
         guess = p
-        p, sweeps, _, sign, size = correct(
+        p, sweeps, sign, size = correct(
             data, work, u, p, border, target, control[TOLERANCE], sweeps_allowed, step, tangent
         )
         if sweeps < 0:

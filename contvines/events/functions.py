@@ -73,8 +73,8 @@ class SymmetryTest:
         self.shift = (
             None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
         )
-        rng = np.random.default_rng(1)
-        probe, check = rng.uniform(0.1, 0.9, n), rng.uniform(0.1, 0.9, n)
+        # numbers without a pattern: multiples of irrational numbers
+        probe, check = (0.1 + 0.8 * np.modf(np.sqrt(a) * np.arange(1.0, n + 1.0))[0] for a in (2.0, 3.0))
         self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         try:
             constant = np.asarray(symmetry.apply(np.zeros(n)), dtype=float)

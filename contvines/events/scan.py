@@ -195,6 +195,15 @@ def _compiled() -> Callable[..., Any]:
     return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **options)(copy_with(sweep, dips=inner))
 
 
+def prepare() -> None:
+    """Compile, or take from the cache on disk, what scans compiled problems."""
+    table, line, places = np.zeros((1, 2)), np.zeros(1), np.zeros((0, 1), np.int64)
+    parts = np.zeros((0, 1))
+    numbers = (2, MAP, True, 0.0, 1.0, 1.0)
+    symmetry = (places, parts, parts, line, np.zeros((2, 0, 1)))
+    _compiled()(table, line, line, table, line, *numbers, *symmetry, np.zeros(0, np.int64), np.zeros(1))
+
+
 class Scan(NamedTuple):
     """``flags`` of the n - 1 segments, ``smallest`` margins of the n points."""
 
