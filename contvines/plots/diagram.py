@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .labels import merge_labels, place_labels
-from .style import LINES, MARKS, PLAIN, STATES, axis_label, new_axes, settle, styled
+from .style import LINES, MARKS, PLAIN, STATES, axis_label, freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,9 +92,11 @@ def plot_diagram(
         axes.set_ylabel(axis_label(y))
         _legend(axes, states, used, undrawn(graph, x, y))
         if labels:
-            settle(figure, freeze=False)
-            _clear_legend(axes, obstacles)
-            settle(figure, freeze=own)
+            settle(figure)
+            if _clear_legend(axes, obstacles):
+                settle(figure)
+            if own:
+                freeze(figure)
             taken = _hold_legend(axes)
             spots, names = merge_labels(axes, [(px, py) for _, px, py in special], [t for t, _, _ in special])
             middles = _middles(graph, x, y, tint, axes) if len(graph.branches) > 1 else []
@@ -207,17 +209,19 @@ def _dense(axes: "Axes", xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(at, np.arange(len(xs)), v) for v in (xs, ys)])
 
 
-def _clear_legend(axes: "Axes", obstacles: list[np.ndarray]) -> None:
-    """Put a legend beside the axes if it would cover curves or marks inside, and the figure can make room."""
+def _clear_legend(axes: "Axes", obstacles: list[np.ndarray]) -> bool:
+    """Put a legend beside the axes if it would cover curves or marks inside, and the figure can make room: whether so."""
     legend, figure = axes.get_legend(), axes.get_figure(root=True)
     if legend is None or figure is None or figure.get_layout_engine() is None:
-        return
+        return False
     box = legend.get_window_extent()
     drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
     points = axes.transData.transform(np.vstack([*obstacles, *drawn, np.empty((0, 2))]))
-    if any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)]):
-        legend.set_loc("upper left")
-        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+    if not any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)]):
+        return False
+    legend.set_loc("upper left")
+    legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+    return True
 
 
 def _hold_legend(axes: "Axes") -> list[tuple[float, float, float, float]]:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from .style import new_axes, settle, styled
+from .style import freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,6 +54,7 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
         axes.set_xlim(-0.5, wide - 0.5)
         axes.set_ylim(-(high - 1) / 2 - 0.6, (high - 1) / 2 + 0.6)
         settle(figure)
+        freeze(figure)
         for pair, switches in _pairs(graph).items():
             source, target = pair
             both = len({(s.source, s.target) for s in switches}) > 1

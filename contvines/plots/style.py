@@ -98,10 +98,14 @@ def new_figure(**options: Any) -> "Figure":
     return made
 
 
-def settle(figure: "Figure", freeze: bool = True) -> None:
-    """Give everything its final place; a figure without a window is then not laid out again."""
+def settle(figure: "Figure") -> None:
+    """Give everything its place."""
     figure.draw_without_rendering()
-    if freeze and not _windows():
+
+
+def freeze(figure: "Figure") -> None:
+    """Leave everything where it is: a figure without a window is not laid out again."""
+    if not _windows():
         figure.set_layout_engine("none")
 
 
