@@ -11,7 +11,7 @@ from .continuation.engine import Engine, Solved
 from .continuation.status import Status
 from .continuation.trace import chunks
 from .events.examine import Located
-from .events.watch import Watch
+from .events.watch import Watch, stops
 from .half import Half, Piece, piece_of, single
 
 
@@ -24,6 +24,7 @@ def follow(
     real: bool = True,
     first_step: float | None = None,
     notice: Callable[[int, float], None] | None = None,
+    origin: Solved | None = None,
 ) -> Half:
     """Follow a branch from a point in the direction of its tangent until it ends.
 
@@ -41,8 +42,14 @@ def follow(
     first_step : float, optional
     notice : callable, optional
         Called after each chunk with the number of points so far and the parameter value.
+    origin : Solved, optional
+        The special point beside which the branch starts: it becomes the first point, and the segment between is looked at.
     """
     half = single(engine, start)
+    if origin is not None:
+        half = _opening(engine, origin, start, watch, journal, f"{key}/opening", real)
+        if half.status != Status.RUNNING:
+            return half
     stop = real and engine.problem.n_margins > 0
     for number, chunk in enumerate(chunks(engine, start, journal, key, stop, first_step)):
         name = f"{key}/{number}/events"
@@ -54,7 +61,7 @@ def follow(
         else:
             events = unpack(known)
         status, count = chunk.status, len(chunk)
-        if events and (events[-1].kind == "meets" or events[-1].note == "border"):
+        if events and stops(events[-1]):
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:
             # the loop saw a negative margin that could not be located: keep what is certainly real
@@ -81,6 +88,27 @@ def follow(
             notice(len(half), half.end)
         if status != Status.RUNNING:
             break
+    return half
+
+
+def _opening(
+    engine: Engine, origin: Solved, start: Solved, watch: Watch, journal: Any, key: str, real: bool
+) -> Half:
+    """From a special point to the first point of a branch that leaves it."""
+    known = journal.recall(key)
+    if known is None:
+        events = watch.beside(origin, start, real)
+        journal.record(key, pack(events, engine))
+    else:
+        events = unpack(known)
+    half = single(engine, origin)
+    for i, event in enumerate(events):
+        half.pieces.append(piece_of(engine, event.point))
+        half.events.append((i + 1, event))
+    if events and stops(events[-1]):
+        half.status = Status.BORDER
+    else:
+        half.pieces.append(piece_of(engine, start))
     return half
 
 

@@ -78,6 +78,12 @@ class Half:
         events = self.events + [(i + shift, e) for i, e in other.events]
         return Half(self.pieces + other._slice(skip, len(other)), events, other.status)
 
+    def since(self, u: np.ndarray) -> Half:
+        """From the first point with these unknowns on."""
+        skip = next(i for i in range(len(self)) if np.array_equal(self.at(i)[0], u))
+        events = [(i - skip, e) for i, e in self.events if i >= skip]
+        return Half(self._slice(skip, len(self)), events, self.status)
+
     def inserted(self, engine: Engine, points: list[tuple[int, Solved]]) -> Half:
         """With more points, each before the point that has its index now; in increasing order."""
         pieces: list[Piece] = []

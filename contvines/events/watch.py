@@ -15,6 +15,7 @@ from .scan import APART, BORDER, DAMPED, MARGIN, MEETING, SHALLOW, Scan, Scanner
 from .segment import Segment
 
 USER = 128  # beside the bits of a scan: a user function changes its sign
+BESIDE = 0.02  # part of the segment next to a branch point that is left out
 
 
 class Watch(Examiner):
@@ -84,16 +85,32 @@ class Watch(Examiner):
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + e.position, bracket=bracket) for e in found]
             found.sort(key=lambda e: e.position)
-            stop = next((e for e in found if e.kind == "meets" or e.note == "border"), None)
+            stop = next((e for e in found if stops(e)), None)
             if stop is not None:
                 # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
                 found = [e for e in found if e is stop or self._apart(e, stop)]
                 events = [e for e in events if self._apart(e, stop)]
-            for event in found:
-                events.append(event)
-                if event.kind == "meets" or event.note == "border":
-                    return events
+            events += before_stop(found)
+            if stop is not None:
+                break
         return events
+
+    def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
+        """The special points between a branch point and the first point of a branch that leaves it, in order.
+
+        The beginning of the segment, where every solution is that of a nearly singular system, is left out.
+        """
+        whole = Segment(self.engine, origin, first)
+        start = whole.at(BESIDE)
+        if start is None:
+            return []
+        segment = Segment(self.engine, start, first)
+        found = self.examine(segment, real=real)
+        ends = np.array([start.u, first.u]), np.array([start.p, first.p])
+        found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
+        bracket = (origin.p, first.p)
+        found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
+        return before_stop(sorted(found, key=lambda e: e.position))
 
     def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin is negative, or stability lost, though not at its ends."""
@@ -116,6 +133,19 @@ class Watch(Examiner):
     def _apart(self, event: Located, stop: Located) -> bool:
         engine, a, b = self.engine, event.point, stop.point
         return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > 1e-5
+
+
+def stops(event: Located) -> bool:
+    """Whether a branch ends at this point: a border, or the fixed space of a symmetry."""
+    return event.kind == "meets" or event.note == "border"
+
+
+def before_stop(events: list[Located]) -> list[Located]:
+    """The events up to the first one at which the branch ends."""
+    for i, event in enumerate(events):
+        if stops(event):
+            return events[: i + 1]
+    return events
 
 
 def without_zeros(signs: np.ndarray) -> np.ndarray:

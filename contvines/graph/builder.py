@@ -14,7 +14,7 @@ from ..events.scan import MARGIN
 from ..events.watch import Watch
 from ..finish import filled, make_branch
 from ..follow import follow
-from ..half import Half, single
+from ..half import Half
 from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
@@ -198,8 +198,9 @@ def both_ways(
     def notice(points: int, value: float) -> None:
         run.tell(f"{label}: {points} points", value)
 
-    def go(start: Solved, side: str) -> Half:
-        return follow(engine, start, watch, run.journal, f"{key}/{side}", real, pending.first_step, notice)
+    def go(start: Solved, side: str, origin: Solved | None = None) -> Half:
+        place = f"{key}/{side}"
+        return follow(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
     def sentence(half: Half) -> str:
         return half.status.sentence(name, half.end)
@@ -210,24 +211,21 @@ def both_ways(
         return ahead, (f"goes on from {pending.source} at {pending.point}", sentence(ahead)), False
     if pending.kind == "switch":
         assert pending.origin is not None
-        origin, beside = pending.origin, [pending.ahead, pending.back]
-        sides = [
-            go(point, side)
-            for point, side in zip(beside, ("ahead", "back"))
+        starts = {"ahead": pending.ahead, "back": pending.back}
+        sides = {
+            side: go(point, side, pending.origin)
+            for side, point in starts.items()
             if point is not None and engine.lower <= point.p <= engine.upper
-        ]
-        if sides[0].status == Status.CLOSED:
-            return sides[0], (sentence(sides[0]), sentence(sides[0])), True
-        whole = single(engine, origin)
-        if pending.back is None:
-            return whole.extended(sides[0]), (leaves, sentence(sides[0])), False
+        }
+        if "ahead" in sides and sides["ahead"].status == Status.CLOSED:
+            ahead = sides["ahead"].since(first.u)
+            return ahead, (sentence(ahead), sentence(ahead)), True
         if len(sides) == 2:
-            whole = sides[1].reversed().extended(whole).extended(sides[0])
-            return whole, (sentence(sides[1]), sentence(sides[0])), False
-        if beside[0] is first:
-            return whole.extended(sides[0]), (leaves, sentence(sides[0])), False
-        whole = sides[0].reversed().extended(whole)
-        return whole, (sentence(sides[0]), leaves), False
+            whole = sides["back"].reversed().extended(sides["ahead"], skip=1)
+            return whole, (sentence(sides["back"]), sentence(sides["ahead"])), False
+        if "ahead" in sides:
+            return sides["ahead"], (leaves, sentence(sides["ahead"])), False
+        return sides["back"].reversed(), (sentence(sides["back"]), leaves), False
     if first.tangent[-1] < 0.0 and pending.kind == "start":
         first = first._replace(tangent=-first.tangent, sign=-first.sign)
     ahead = go(first, "ahead")

@@ -137,6 +137,19 @@ def test_seed_on_a_known_branch_is_not_traced_again():
     assert len(graph.switches) == 2
 
 
+def test_a_cascade_is_followed_where_doublings_lie_closer_than_the_first_step():
+    """The logistic map's doublings crowd at r = 3.5699456718709449 (Briggs, Math. Comp. 57 (1991) 435)."""
+    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+    graph = cv.diagram(problem, within=(2.0, 4.0), depth=8)
+    found = sorted(point.value for point in graph.of_kind("period-doubling"))
+    known = [3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228, 3.5644072660954326, 3.5687594195438266]
+    assert found[:5] == pytest.approx(known, abs=1e-12)
+    assert len(found) == 9
+    a, b, c = found[-3:]
+    assert c - (c - b) ** 2 / (c - 2.0 * b + a) == pytest.approx(3.5699456718709449, abs=1e-9)
+    assert (b - a) / (c - b) == pytest.approx(4.669201609, abs=1e-2)
+
+
 def test_depth_counts_switches():
     for depth, branches in ((0, 1), (1, 2), (2, 3)):
         problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
