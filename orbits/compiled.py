@@ -21,7 +21,13 @@ from orbits import chains, cyclic, lane_links, lanes, trigonometry
 from orbits import kernel as compiling
 from orbits.kernel import inlined_kernel, stored_kernel
 from orbits.models.base import Model
-from orbits.multipliers import periodic_qr, periodic_schur, small_eigenvalues
+from orbits.multipliers import (
+    periodic_qr,
+    periodic_schur,
+    product_of_any,
+    product_of_two,
+    small_eigenvalues,
+)
 
 # filled in per model by `specialise`
 linearise: Any = None
@@ -170,6 +176,8 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         lanes.__file__,
         trigonometry.__file__,
         periodic_schur.__file__,
+        product_of_any.__file__,
+        product_of_two.__file__,
         periodic_qr.__file__,
         small_eigenvalues.__file__,
         __file__,
