@@ -75,7 +75,7 @@ def follow(
         )
         here, total = 1, len(half)  # the first point is the last one of the chunk before
         for event in events:
-            where = int(event.position) + 1
+            where = max(int(event.position) + 1, here)
             half.pieces += [whole.part(here, where)] if where > here else []
             half.pieces.append(piece_of(engine, event.point))
             total += where - here

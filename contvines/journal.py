@@ -20,7 +20,7 @@ class Journal(Protocol):
         ...
 
     def record(self, key: str, values: dict[str, Any]) -> None:
-        """Keep the values; on return they survive a kill."""
+        """Keep the values, as copies; on return they survive a kill."""
         ...
 
     def checkpoint(self, graph: Any) -> None:

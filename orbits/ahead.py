@@ -14,7 +14,7 @@ import sys
 from typing import Any
 
 import numpy as np
-from numba import typeof
+from numba import config, typeof
 
 from orbits import compiled, lane_links
 from orbits.models import build
@@ -48,18 +48,38 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         The process; this one waits for it only where it would otherwise compile `inspect` itself. None if there is nothing
         to compile or no second core.
     """
-    if (os.cpu_count() or 1) < 2 or not _missing(name):
+    running = compiled.helpers.get(name)
+    if running is not None and running.poll() is None:
+        return running
+    if _cores() < 2 or not _missing(name):
         return None
-    program = f"from orbits.ahead import compile_now; compile_now({name!r}, *{more!r})"
+    digest = compiled.assemble(build({"name": name} | SMALL[name])).digest
+    program = f"from orbits.ahead import compile_as; compile_as({digest!r}, {name!r}, *{more!r})"
+    # the very modules and the very cache of this process, wherever it was started
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    place = getattr(config, "CACHE_DIR", "")
+    if place:
+        environment["NUMBA_CACHE_DIR"] = str(place)
     quiet = subprocess.DEVNULL
     try:
         process = subprocess.Popen(
-            [sys.executable, "-c", program], stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True
+            [sys.executable, "-P", "-c", program],
+            stdin=quiet,
+            stdout=quiet,
+            stderr=quiet,
+            env=environment,
+            start_new_session=True,
         )
     except OSError:
         return None
     compiled.helpers[name] = process
     return process
+
+
+def compile_as(digest: str, name: str, *more: str) -> None:
+    """`compile_now`, if the sources are those with this digest: others would be compiled for nobody."""
+    if compiled.assemble(build({"name": name} | SMALL[name])).digest == digest:
+        compile_now(name, *more)
 
 
 def compile_now(name: str, *more: str) -> None:
@@ -86,6 +106,13 @@ def compile_now(name: str, *more: str) -> None:
         n = model.node
         factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
+
+
+def _cores() -> int:
+    """Number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _missing(name: str) -> bool:

@@ -1,7 +1,7 @@
 """The compiled functions of each model, put together once: maps, elimination, multipliers, margins.
 
 `assemble(model)` returns the kernels that a continuation loop calls (`linearise`, `bordered`, `inspect`) and the two
-entry points that this package calls itself (`newton`, `examine`), which numba keeps on disk.
+entry points that this package calls itself (`newton`, `examine`). numba keeps `inspect` and the entry points on disk.
 """
 
 from __future__ import annotations
@@ -105,6 +105,8 @@ def _examine(data, u, p, work, row):
 helpers: dict[str, subprocess.Popen[bytes]] = {}
 """Processes that compile `inspect` for the model of that name meanwhile (`orbits.ahead`)."""
 
+PATIENCE = 60.0  # seconds to wait for one of them
+
 
 def specialise(function: Callable, name: str, inline: bool = False, **known: Any) -> Any:
     """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`."""
@@ -149,19 +151,24 @@ class Kernels:
 
     @property
     def inspect(self) -> Any:
-        """Multipliers and margins; waits for a process that is compiling just this."""
-        helper = helpers.get(self.name)
-        if helper is not None:
-            while helper.poll() is None and not cached(self._inspect):
-                time.sleep(0.005)
-            helpers.pop(self.name, None)
+        """Multipliers and margins."""
+        self._wait()
         return self._inspect
 
     @property
     def examine(self) -> Any:
         """Residual, and the row of `inspect`, of one solution."""
-        assert self.inspect is not None  # compiled elsewhere, maybe: not again with this one
+        self._wait()
         return self._examine
+
+    def _wait(self) -> None:
+        """Wait while another process is compiling `inspect`; if that takes too long it is compiled here as well."""
+        helper = helpers.pop(self.name, None)
+        deadline = time.monotonic() + PATIENCE
+        while helper is not None and helper.poll() is None and not cached(self._inspect):
+            if time.monotonic() > deadline:
+                break
+            time.sleep(0.005)
 
 
 @cache

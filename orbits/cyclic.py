@@ -231,7 +231,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def eliminate_two(F, A, D, Q, twist, stored, panel, small, order, solution):
+    def eliminate_two(F, A, D, Q, twist, stored, small, order, solution):
         """The same for two unknowns per node, two halves side by side."""
         state, sign = chains.forward(F, A, D, Q, stored)
         v00, v01, u00, u01, w0, r0, v10, v11, u10, u11, w1, r1 = state
@@ -242,15 +242,15 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def eliminate_lanes(F, A, D, Q, twist, stored, panel, small, order, solution, short, found, listed):
+    def eliminate_lanes(F, A, D, Q, twist, stored, small, order, solution, short, found, listed):
         """The same with sixteen segments side by side, where the cycle is long enough."""
         length = F.shape[0]
         if length < SHORTEST:
-            return eliminate_two(F, A, D, Q, twist, stored, panel, small, order, solution)
+            return eliminate_two(F, A, D, Q, twist, stored, small, order, solution)
         address = listed.ctypes.data
         sign = call(listed[0], length, twist, address)
         F_, A_, D_, Q_ = short
-        sign *= eliminate_two(F_, A_, D_, Q_, twist, stored, panel, small, order, found)
+        sign *= eliminate_two(F_, A_, D_, Q_, twist, stored, small, order, found)
         call(listed[1], length, twist, address)
         return sign
 
@@ -276,7 +276,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         if n == 2:
             short = (work[17], work[18], work[19], work[20])
             sign = eliminate_lanes(
-                F, A, D, Q, data[4], stored, panel, small, order, solution, short, work[21], work[24]
+                F, A, D, Q, data[4], stored, small, order, solution, short, work[21], work[24]
             )
         else:
             sign = eliminate(F, A, D, Q, data[4], stored, panel, small, order, solution)

@@ -1,7 +1,7 @@
 """Elimination of the inner nodes of long cycles with two unknowns per node, sixteen segments side by side.
 
 The cycle is cut into sixteen segments of equal length; each eliminates its inner nodes by the same Householder
-reflections as `orbits.cyclic` (this is the parallel form of Wright's structured orthogonal factorisation, SIAM J.
+reflections as `orbits.chains` (this is the parallel form of Wright's structured orthogonal factorisation, SIAM J.
 Sci. Stat. Comput. 13 (1992) 742, with the same stability), and leaves one block that ties its two ends. The segments
 are independent, so the innermost loops run over them and the compiler turns them into vector instructions: arrays
 are flat, the lane is their last index, and each place is a slice (indices are then known not to be negative).
@@ -10,18 +10,16 @@ are flat, the lane is their last index, and each place is a slice (indices are t
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import njit
 
-from orbits.chains import reflect
-from orbits.kernel import OPTIONS, kernel
+from orbits.chains import FAST, reflect
+from orbits.kernel import kernel
 
 LANES = 16
-SHORTEST = 32  # cycles shorter than this are eliminated one node after the other
+SHORTEST = 32  # cycles shorter than this are eliminated by `orbits.chains`
 PACK, KEEP, STATE, ENDS = 12 * LANES, 16 * LANES, 13 * LANES, 14 * LANES
-LANE_OPTIONS: dict[str, Any] = {**OPTIONS, "forceinline": True, "fastmath": {"contract", "nsz", "arcp"}}
 
 
 def lanes_size(length: int) -> int:
@@ -29,7 +27,7 @@ def lanes_size(length: int) -> int:
     return 0 if length < SHORTEST else length // LANES * (PACK + KEEP) + STATE + ENDS
 
 
-@njit(**LANE_OPTIONS)
+@njit(**FAST)
 def _pack(F, A, D, Q, m, pack):
     """Copy block s m + b to place b of lane s: A, D, Q, -F as twelve rows."""
     for b in range(m):
@@ -50,7 +48,7 @@ def _pack(F, A, D, Q, m, pack):
             pack[at + 176] = -F[i, 1]
 
 
-@njit(**LANE_OPTIONS)
+@njit(**FAST)
 def _forward(m, pack, keep, state):
     """Eliminate the inner nodes of every segment.
 
@@ -131,7 +129,7 @@ def _forward(m, pack, keep, state):
             state[s + 192] *= math.copysign(1.0, row[0] * row[8])
 
 
-@njit(**LANE_OPTIONS)
+@njit(**FAST)
 def _backward(m, keep, ends, p, null):
     """Inner nodes of the particular and the null solution from the two ends of every segment.
 

@@ -1,4 +1,4 @@
-"""Corrector: Newton's method on the bordered system, and single calls of the kernels.
+"""Corrector: Newton's method on the bordered system, along a branch and for single points.
 
 Runs compiled and interpreted: see :mod:`contvines.continuation.march`.
 """
@@ -128,9 +128,8 @@ def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent
     residual = 0.0
     sign = 0.0
     size = 0.0
-    sweep = 0
     settled = max_sweeps == 0
-    while True:
+    for sweep in range(max_sweeps + 1):
         gap = target
         if what != ELIMINATE:
             residual = linearise(data, u, p, work)
@@ -143,12 +142,12 @@ def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent
                 gap -= border[i] * u[i]
         sign = bordered(data, work, border, gap, step, tangent)
         if settled:
-            break
-        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance)
-        sweep += 1
-        settled = verdict > 0
-        if verdict < 0 or (not settled and sweep == max_sweeps):
-            return p, -1, residual, sign, size
-    if what == EVERYTHING:
-        inspect(data, u, p, work, row)
-    return p, sweep, residual, sign, size
+            if what == EVERYTHING:
+                inspect(data, u, p, work, row)
+            return p, sweep, residual, sign, size
+        if sweep < max_sweeps:
+            p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance)
+            if verdict < 0:
+                break
+            settled = verdict > 0
+    return p, -1, residual, sign, size

@@ -109,8 +109,7 @@ class Engine:
         along : ndarray, optional
             The tangent is returned with <along, tangent> > 0; else with <border, tangent> > 0.
         """
-        here = np.array(u, dtype=float)
-        return self._solved(here, float(p), border, float(target), 40, along)
+        return self._solved(u, float(p), border, float(target), 40, along)
 
     def polish(
         self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
@@ -127,12 +126,14 @@ class Engine:
         sweeps: int,
         along: np.ndarray | None,
     ) -> Solved | None:
+        here = np.empty(self.n)
+        here[:] = u
         row = np.zeros(self.row_size)
         step, tangent = self.step, self.tangent
         p, sweeps, residual, sign, size = self.bound.solve(
             self.data,
             self.work,
-            u,
+            here,
             p,
             border,
             target,
@@ -150,7 +151,7 @@ class Engine:
             tangent = -tangent
         if float(np.dot(border, tangent)) < 0.0:
             sign = -sign
-        return Solved(u, float(p), tangent, row, float(sign), float(residual), float(size))
+        return Solved(here, float(p), tangent, row, float(sign), float(residual), float(size))
 
     def at_value(self, u: np.ndarray, p: float, along: np.ndarray | None = None) -> Solved | None:
         """The solution at a fixed parameter value, or None."""
@@ -177,7 +178,8 @@ class Engine:
 
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual."""
-        here, what = np.ascontiguousarray(u), corrector.LINEARISE
+        here, what = np.empty(self.n), corrector.LINEARISE
+        here[:] = u
         _, _, found, _, _ = self.bound.solve(
             self.data,
             self.work,

@@ -101,6 +101,8 @@ def march(
         length = h
         if fixed:
             bound = upper if p > upper else lower
+            if start == bound:
+                return i, h, LEFT_INTERVAL
             for _ in range(3):
                 if p != start:
                     length *= min(max((bound - start) / (p - start), 0.0), 1.5)

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..journal import NullJournal
 from . import march as source
 from .chunk import Chunk
 from .closing import Closing
@@ -41,7 +42,8 @@ def chunks(
     Yields
     ------
     Chunk
-        The last one has a status other than RUNNING. A closed branch ends with its first point again.
+        The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
+        chunks share their memory: take from them what is needed before the next one.
     """
     settings = engine.settings
     n, capacity = engine.n, settings.first_chunk
@@ -66,7 +68,7 @@ def chunks(
             room = min(capacity, max(settings.max_points - total, 1))
             chunk, h = _march(engine, history, room, h, stop_at_border)
             closed = closing.cut(chunk)
-            away = _distance(chunk.points, start.u) > settings.escape
+            away = _away(chunk.points, start.u, settings.escape)
             if closed is not None:
                 chunk = closed
             elif away.any():
@@ -74,8 +76,9 @@ def chunks(
                 chunk.status = Status.ESCAPED
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
-            if journal is not None:
+            if journal is not None and not isinstance(journal, NullJournal):
                 values: dict[str, Any] = {part: getattr(chunk, part) for part in ARRAYS}
+                values["rows"] = chunk.rows.copy()
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})
         yield chunk
         if chunk.status != Status.RUNNING:
@@ -129,10 +132,14 @@ def _march(
     )
 
 
-def _distance(points: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Root mean square of each point's unknowns less u; nothing as large as the points is made."""
-    square = np.einsum("ij,ij->i", points, points) - 2.0 * (points @ u) + u @ u
-    return np.sqrt(np.maximum(square, 0.0) / len(u))
+def _away(points: np.ndarray, u: np.ndarray, escape: float) -> np.ndarray:
+    """Which points are further than `escape` from u (root mean square)."""
+    limit = escape * escape * len(u)
+    squares = np.einsum("ij,ij->i", points, points)
+    # nothing as large as the points is made, unless unknowns are so large that their squares cancel
+    if squares.max() + u @ u < 1e9 * limit:
+        return squares - 2.0 * (points @ u) + u @ u > limit
+    return ~(((points - u) ** 2).sum(axis=1) <= limit)
 
 
 def _pack(solved: list[Solved], status: Status) -> Chunk:

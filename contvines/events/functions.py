@@ -88,18 +88,16 @@ class SymmetryTest:
         except (ArithmeticError, ValueError, IndexError):
             self.affine = None
 
-    def part(self, points: np.ndarray, columns: int | None = None) -> np.ndarray:
-        """u - T(u) for points of shape (n, N); of the first unknowns only, where `columns` says how many."""
-        shift = self.shift
+    def part(self, points: np.ndarray) -> np.ndarray:
+        """u - T(u) for points of shape (n, N)."""
         if self.affine is not None:
-            order, signs, constant = (part[:columns] for part in self.affine)
-            gap = points[:, :columns] - (signs * points[:, order] + constant)
+            order, signs, constant = self.affine
+            gap = points - (signs * points[:, order] + constant)
         else:
-            gap = (points - np.array([self.symmetry.apply(u) for u in points]))[:, :columns]
-        if shift is not None and np.any(shift[:columns]):
-            shift = shift[:columns]
-            turns = np.round(gap @ shift / (shift @ shift))
-            gap = gap - turns[:, None] * shift
+            gap = points - np.array([self.symmetry.apply(u) for u in points])
+        if self.shift is not None:
+            turns = np.round(gap @ self.shift / (self.shift @ self.shift))
+            gap = gap - turns[:, None] * self.shift
         return gap
 
     def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -6,14 +6,17 @@ for compiled problems, and interpreted.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..continuation.engine import Engine, parameter_unit
+from . import functions
 from .functions import PAST, SymmetryTest
 
 FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
@@ -187,12 +190,16 @@ def dips(left, middle, right, h1, h2):
 def _compiled() -> Callable[..., Any]:
     from numba import njit
 
-    from ..continuation.binding import copy_with
+    from ..continuation.binding import OPTIONS, copy_with
 
-    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
-    inner = njit(forceinline=True, **options)(dips)
+    inner = njit(forceinline=True, **OPTIONS)(dips)
+    # numba looks at this file only, not at where the constants come from
+    sources = (Path(__file__), Path(str(functions.__file__)))
+    digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
-    return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **options)(copy_with(sweep, dips=inner))
+    return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(
+        copy_with(sweep, f"_{digest}", dips=inner)
+    )
 
 
 def prepare() -> None:

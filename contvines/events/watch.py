@@ -56,7 +56,7 @@ class Watch(Examiner):
         if real and scan.smallest[0] < MARGIN and not (scan.smallest[1:] < MARGIN).all():
             flags[scan.smallest[1:] < MARGIN] |= BORDER
         for test in self.scanner.left_out:
-            part = test.part(chunk.points)
+            part = test.part(chunk.points)  # of all unknowns, as in `examine`
             size = np.abs(part).max(axis=1)
             far = (size[:-1] > APART) & (size[1:] > APART)
             flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
@@ -83,7 +83,7 @@ class Watch(Examiner):
                 segment, {name: values[i : i + 2] for name, values in user_values.items()}
             )
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
-            found = [e._replace(position=i + e.position, bracket=bracket) for e in found]
+            found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             found.sort(key=lambda e: e.position)
             stop = next((e for e in found if stops(e)), None)
             if stop is not None:
@@ -146,6 +146,11 @@ def before_stop(events: list[Located]) -> list[Located]:
         if stops(event):
             return events[: i + 1]
     return events
+
+
+def _inside(position: float) -> float:
+    """The position in [0, 1): an interpolated point may lie just outside of its segment."""
+    return min(max(position, 0.0), 1.0 - 1e-9)
 
 
 def without_zeros(signs: np.ndarray) -> np.ndarray:
