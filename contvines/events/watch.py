@@ -11,6 +11,7 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
 from .dips import below_zero
 from .examine import Examiner, Located, changes
+from .leaps import ends_branch, leap
 from .scan import APART, BORDER, DAMPED, MARGIN, MEETING, SHALLOW, Scan, Scanner
 from .segment import Segment
 
@@ -38,7 +39,7 @@ class Watch(Examiner):
         )
 
     def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
-        """All special points on a chunk, in order; what lies behind a border or a meeting is left out.
+        """All special points on a chunk, in order; what lies behind a border, a meeting or a leap is left out.
 
         Parameters
         ----------
@@ -81,17 +82,20 @@ class Watch(Examiner):
             found += self.examine_users(
                 segment, {name: values[i : i + 2] for name, values in user_values.items()}
             )
+            found.sort(key=lambda e: e.position)
+            leaping = leap(segment, found)
+            if leaping is not None:
+                return [*events, leaping._replace(position=float(i))]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + e.position, bracket=bracket) for e in found]
-            found.sort(key=lambda e: e.position)
-            stop = next((e for e in found if e.kind == "meets" or e.note == "border"), None)
+            stop = next((e for e in found if ends_branch(e)), None)
             if stop is not None:
                 # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
                 found = [e for e in found if e is stop or self._apart(e, stop)]
                 events = [e for e in events if self._apart(e, stop)]
             for event in found:
                 events.append(event)
-                if event.kind == "meets" or event.note == "border":
+                if ends_branch(event):
                     return events
         return events
 
