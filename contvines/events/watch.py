@@ -9,7 +9,7 @@ import numpy as np
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
-from .dips import below_zero
+from .dips import before_border, below_zero
 from .examine import Examiner, Located, changes
 from .leaps import ends_branch, leap
 from .scan import APART, BORDER, DAMPED, MARGIN, MEETING, SHALLOW, Scan, Scanner
@@ -77,6 +77,10 @@ class Watch(Examiner):
                 found = [*self.both(segment, s, middle, real), plain]
             elif bits & ~(SHALLOW | DAMPED):
                 found = self.examine(segment, real=real)
+                border = min((e for e in found if e.note == "border"), key=lambda e: e.position, default=None)
+                split = before_border(segment, border.position, border.point) if real and border else None
+                if split is not None:
+                    found = self.both(segment, *split, real)
             else:
                 continue
             found += self.examine_users(
