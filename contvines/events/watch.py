@@ -105,6 +105,8 @@ class Watch(Examiner):
 
     def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin is negative, or stability lost, though not at its ends."""
+        if bits & MEETING:
+            bits &= ~DAMPED  # a branch that comes back to a symmetry is marginal there: no point to cut it at
         tests = {SHALLOW: lambda row: float(self.engine.smallest_margin(row)), DAMPED: self._damping}
         for bit, test in tests.items():
             if bits & bit:
