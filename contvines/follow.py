@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import count as count_from
 from typing import Any
 
 import numpy as np
 
 from .continuation.engine import Engine, Solved
 from .continuation.status import Status
-from .continuation.trace import chunks
+from .continuation.trace import Retrace, chunks
 from .events.examine import Located
-from .events.watch import Watch, stops
+from .events.leaps import ends_branch
+from .events.watch import Watch
 from .half import Half, Piece, piece_of, single
+
+SHORTER = (
+    0.125  # steps with which a gap between two branches is approached again, of the step that leapt over it
+)
 
 
 def follow(
@@ -29,7 +35,8 @@ def follow(
     """Follow a branch from a point in the direction of its tangent until it ends.
 
     A real branch ends at its first border, a virtual one where all margins are positive again; both end where they come
-    back to the fixed space of a symmetry. Special points are put between the points.
+    back to the fixed space of a symmetry. Special points are put between the points. Where a step has led to another
+    branch, it is traced again with shorter ones.
 
     Parameters
     ----------
@@ -51,7 +58,10 @@ def follow(
         if half.status != Status.RUNNING:
             return half
     stop = real and engine.problem.n_margins > 0
-    for number, chunk in enumerate(chunks(engine, start, journal, key, stop, first_step)):
+    walk = chunks(engine, start, journal, key, stop, first_step)
+    retrace = None
+    for number in count_from(0):
+        chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"
         known = journal.recall(name)
         scan = watch.scan(chunk, real)
@@ -61,7 +71,12 @@ def follow(
         else:
             events = unpack(known)
         status, count = chunk.status, len(chunk)
-        if events and stops(events[-1]):
+        retrace = None
+        if events and events[-1].kind == "leap":
+            leap = events.pop()
+            status, count = Status.RUNNING, int(leap.position) + 1
+            retrace = Retrace(count, SHORTER * leap.error)
+        elif events and ends_branch(events[-1]):
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:
             # the loop saw a negative margin that could not be located: keep what is certainly real
@@ -105,7 +120,7 @@ def _opening(
     for i, event in enumerate(events):
         half.pieces.append(piece_of(engine, event.point))
         half.events.append((i + 1, event))
-    if events and stops(events[-1]):
+    if events and ends_branch(events[-1]):
         half.status = Status.BORDER
     else:
         half.pieces.append(piece_of(engine, start))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +16,15 @@ from .settings import Settings
 from .status import Status
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
+AGAIN = 32  # points that are traced again with shorter steps
 ARRAYS = ("points", "values", "tangents", "rows", "signs", "corrections")
+
+
+class Retrace(NamedTuple):
+    """Wish to go on from the last of the first ``count`` points of a chunk, at first with steps of at most ``longest``."""
+
+    count: int
+    longest: float
 
 
 def chunks(
@@ -26,8 +34,10 @@ def chunks(
     key: str = "",
     stop_at_border: bool = False,
     first_step: float | None = None,
-) -> Iterator[Chunk]:
+) -> Generator[Chunk, Retrace | None, None]:
     """Follow the branch from a point in the direction of its tangent, a chunk at a time.
+
+    Who sees that a step of the chunk leads astray sends a :class:`Retrace`, and gets the next chunk from there.
 
     Parameters
     ----------
@@ -47,6 +57,7 @@ def chunks(
     """
     settings = engine.settings
     n, capacity = engine.n, settings.first_chunk
+    retrace: Retrace | None = None
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
@@ -65,8 +76,12 @@ def chunks(
             chunk = Chunk(*(np.asarray(known[part]) for part in ARRAYS), status=Status(int(known["status"])))
             h = float(known["h"])
         else:
-            room = min(capacity, max(settings.max_points - total, 1))
-            chunk, h = _march(engine, history, room, h, stop_at_border)
+            room, longest = capacity, settings.max_step
+            if retrace is not None:
+                room, longest = AGAIN, min(retrace.longest, longest)
+                h = min(h, longest)
+            room = min(room, max(settings.max_points - total, 1))
+            chunk, h = _march(engine, history, room, h, longest, stop_at_border)
             closed = closing.cut(chunk)
             away = _away(chunk.points, start.u, settings.escape)
             if closed is not None:
@@ -80,8 +95,10 @@ def chunks(
                 values: dict[str, Any] = {part: getattr(chunk, part) for part in ARRAYS}
                 values["rows"] = chunk.rows.copy()
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})
-        yield chunk
-        if chunk.status != Status.RUNNING:
+        retrace = yield chunk
+        if retrace is not None:
+            chunk = chunk.cut(retrace.count)
+        elif chunk.status != Status.RUNNING:
             return
         total += len(chunk) - 1
         number += 1
@@ -90,7 +107,7 @@ def chunks(
 
 
 def _march(
-    engine: Engine, history: list[Solved], capacity: int, h: float, stop_at_border: bool
+    engine: Engine, history: list[Solved], capacity: int, h: float, longest: float, stop_at_border: bool
 ) -> tuple[Chunk, float]:
     first, n = len(history), engine.n
     size = first + capacity
@@ -100,6 +117,7 @@ def _march(
         points[i], values[i], tangents[i] = point.u, point.p, point.tangent
         rows[i], signs[i], corrections[i] = point.row, point.sign, point.correction
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
+    engine.control[source.MAX_STEP] = longest
     filled, h, status = engine.bound.march(
         engine.data,
         engine.work,

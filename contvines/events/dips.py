@@ -1,7 +1,8 @@
 """Dips: a test function that touches zero between two points and comes back, so that no sign changes.
 
 :mod:`contvines.events.scan` suspects them where the parabola through three neighbouring points passes zero though none of
-the points does; here they are looked for on the branch itself.
+the points does; here they are looked for on the branch itself. A margin may also dip before the border of another margin
+in the same segment, whose other end then says nothing of it.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..continuation.engine import Solved
+from .scan import dips
 from .segment import Segment
 
 GOLDEN = 0.3819660112501051
@@ -44,3 +46,33 @@ def below_zero(segment: Segment, test: Callable[[Solved], float]) -> tuple[float
             b = high - GOLDEN * (high - low)
             fb = value(b)
     return None
+
+
+def before_border(segment: Segment, position: float, border: Solved) -> tuple[float, Solved] | None:
+    """A point before a border where a margin is negative that is positive at the border and at both ends, or None.
+
+    Parameters
+    ----------
+    segment : Segment
+    position : float
+        Of the border, in [0, 1].
+    border : Solved
+    """
+    if not 0.0 < position < 1.0:
+        return None
+    margins = segment.engine.margins
+    left, middle, right = (margins(point.row) for point in (segment.a, border, segment.b))
+    convex = np.flatnonzero(middle < (1.0 - position) * left + position * right)
+    parts = (position * segment.length, (1.0 - position) * segment.length)
+    suspects = [j for j in convex if dips(left[j], middle[j], right[j], *parts)]
+    if not suspects:
+        return None
+    part = Segment(segment.engine, segment.a, border)
+    found = below_zero(part, lambda point: float(margins(point.row)[suspects].min()))
+    if found is None:
+        return None
+    _, point = found
+    # measured along the chord of the whole segment
+    return float(
+        segment.border @ (segment.engine.join(point.u, point.p) - segment.za)
+    ) / segment.length, point

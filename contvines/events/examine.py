@@ -27,7 +27,8 @@ class Located(NamedTuple):
         Index of the point before it plus the fraction of the segment.
     kind : str
         fold, branch-point, period-doubling, symmetry-breaking, neimark-sacker, hopf, a border, user; "meets" where a
-        branch comes back to the fixed space of a symmetry; "plain" for a point between two special points.
+        branch comes back to the fixed space of a symmetry; "plain" for a point between two special points;
+        "leap" for the point before a step to another branch, with the length of the step in place of the error.
     index : int
         Which multiplier, margin, symmetry or user function.
     point : Solved

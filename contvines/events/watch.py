@@ -9,8 +9,9 @@ import numpy as np
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
-from .dips import below_zero
+from .dips import before_border, below_zero
 from .examine import Examiner, Located, changes
+from .leaps import ends_branch, leap
 from .scan import APART, BORDER, DAMPED, MARGIN, MEETING, SHALLOW, Scan, Scanner
 from .segment import Segment
 
@@ -39,7 +40,7 @@ class Watch(Examiner):
         )
 
     def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
-        """All special points on a chunk, in order; what lies behind a border or a meeting is left out.
+        """All special points on a chunk, in order; what lies behind a border, a meeting or a leap is left out.
 
         Parameters
         ----------
@@ -77,15 +78,22 @@ class Watch(Examiner):
                 found = [*self.both(segment, s, middle, real), plain]
             elif bits & ~(SHALLOW | DAMPED):
                 found = self.examine(segment, real=real)
+                border = min((e for e in found if e.note == "border"), key=lambda e: e.position, default=None)
+                split = before_border(segment, border.position, border.point) if real and border else None
+                if split is not None:
+                    found = self.both(segment, *split, real)
             else:
                 continue
             found += self.examine_users(
                 segment, {name: values[i : i + 2] for name, values in user_values.items()}
             )
+            found.sort(key=lambda e: e.position)
+            leaping = leap(segment, found)
+            if leaping is not None:
+                return [*events, leaping._replace(position=float(i))]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
-            found.sort(key=lambda e: e.position)
-            stop = next((e for e in found if stops(e)), None)
+            stop = next((e for e in found if ends_branch(e)), None)
             if stop is not None:
                 # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
                 found = [e for e in found if e is stop or self._apart(e, stop)]
@@ -114,6 +122,8 @@ class Watch(Examiner):
 
     def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin is negative, or stability lost, though not at its ends."""
+        if bits & MEETING:
+            bits &= ~DAMPED  # a branch that comes back to a symmetry is marginal there: no point to cut it at
         tests = {SHALLOW: lambda row: float(self.engine.smallest_margin(row)), DAMPED: self._damping}
         for bit, test in tests.items():
             if bits & bit:
@@ -135,15 +145,10 @@ class Watch(Examiner):
         return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > 1e-5
 
 
-def stops(event: Located) -> bool:
-    """Whether a branch ends at this point: a border, or the fixed space of a symmetry."""
-    return event.kind == "meets" or event.note == "border"
-
-
 def before_stop(events: list[Located]) -> list[Located]:
     """The events up to the first one at which the branch ends."""
     for i, event in enumerate(events):
-        if stops(event):
+        if ends_branch(event):
             return events[: i + 1]
     return events
 

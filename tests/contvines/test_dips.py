@@ -48,6 +48,31 @@ def test_short_loss_of_a_margin(centre, half):
     assert graph["B1"].values[-1] == graph["VG1"].value
 
 
+class TwoMargins(Line):
+    """u = p with a margin that dips, and one that is lost for good a little later."""
+
+    n_margins = 2
+
+    def __init__(self, centre, half, later):
+        def inspect_both(data, u, p, work, row):
+            row[:] = 0.5, 0.0, (p - centre) ** 2 - half**2, centre + half + later - p
+
+        super().__init__()
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_both)
+
+    def margin_kind(self, j):
+        return ("velocity-graze", "wall-graze")[j]
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.02), st.floats(1e-3, 0.02))
+def test_short_loss_of_a_margin_before_another_one_is_lost(centre, half, later):
+    """The branch ends where the first of them is lost, though the next point lies beyond the other one."""
+    graph = cv.diagram(TwoMargins(centre, half, later), within=(-1.0, 1.0))
+    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
+    assert graph["B1"].values[-1] == graph["VG1"].value
+
+
 @settings(max_examples=40, deadline=None)
 @given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
 def test_short_loss_of_stability(centre, half):

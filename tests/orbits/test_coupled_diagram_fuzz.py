@@ -22,6 +22,7 @@ __all__ = ["guard"]  # a fixture that stops a diagram that hangs
 
 DRAWN = 260 if os.environ.get("CONTVINES_LARGE") else 24
 TURNING = [436]  # a fold right behind a border
+TOUCHING = [497, 583, 604]  # two branches with a gap that is narrower than a step
 
 
 def start(seed):
@@ -57,7 +58,7 @@ def start(seed):
     return polish(found.orbit), options
 
 
-@pytest.mark.parametrize("seed", [*range(DRAWN), *TURNING])
+@pytest.mark.parametrize("seed", [*range(DRAWN), *TURNING, *TOUCHING])
 def test_diagram(seed):
     orbit, options = start(seed)
     if orbit is None:
@@ -68,6 +69,22 @@ def test_diagram(seed):
     followed(graph)
     unique(graph)
     crossed(graph, options["depth"])
+
+
+@pytest.mark.parametrize("seed", [497, 604])
+def test_a_narrow_gap_does_not_depend_on_the_step(seed):
+    """Steps ten times as short find the same special points, at the same places."""
+    long, short = (
+        cv.diagram(orbit, **options, settings=settings)
+        for settings in ({}, {"max_step": 0.003, "angle": 0.01})
+        for orbit, options in [start(seed)]
+    )
+    ours, theirs = (
+        sorted((point.kind, point.real, point.value) for point in graph.special.values())
+        for graph in (long, short)
+    )
+    assert [point[:2] for point in ours] == [point[:2] for point in theirs]
+    np.testing.assert_allclose([point[2] for point in ours], [point[2] for point in theirs], atol=1e-8)
 
 
 def test_a_light_absorber_begins_to_slip():

@@ -80,6 +80,27 @@ def test_diagram(seed):
     crossed(graph, options["depth"])
 
 
+@pytest.mark.parametrize("seed", [2, 4, 49])
+def test_a_doubled_orbit_comes_back_to_its_root(seed):
+    """It is marginal there without being unstable on either side: one point, no fold and no branch point beside it.
+
+    Steps ten times as short find the same points.
+    """
+    long, short = (
+        cv.diagram(orbit, over="amplitude", **options, settings=settings)
+        for settings in ({}, {"max_step": 0.003})
+        for orbit, options in [start(seed)]
+    )
+    assert any(point.note.startswith("met from") for point in long.special.values())
+    assert not long.of_kind("branch-point")
+    ours, theirs = (
+        sorted((point.kind, point.real, point.value) for point in graph.special.values())
+        for graph in (long, short)
+    )
+    assert [point[:2] for point in ours] == [point[:2] for point in theirs]
+    np.testing.assert_allclose([point[2] for point in ours], [point[2] for point in theirs], atol=1e-8)
+
+
 def followed(graph):
     """Real special points are solutions that the simulator follows."""
     for point in graph.special.values():

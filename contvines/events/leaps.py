@@ -1,0 +1,61 @@
+"""Leaps: a step that ends on another branch, where two branches nearly touch.
+
+Along one branch the sign of det [[F_u, F_p], [tangent]] changes at branch points only, and neighbouring branches have
+opposite signs. Steps longer than the gap between two branches pass the rule of the loop, which compares tangents: beside
+the gap they agree. So a changed sign that no branch point accounts for is a leap, and so is a special point that cannot
+be located, because the test function jumps with the branch.
+
+The branch is then traced again from the point before the gap, with shorter steps: see :mod:`contvines.follow`.
+"""
+
+from __future__ import annotations
+
+from ..continuation.engine import parameter_unit
+from .examine import Located
+from .segment import Segment
+
+SHORTEST = 1e-6  # two branches whose gap is narrower than this cannot be told from a branch point
+INEXACT = 1e-9  # special points are located far better than this wherever there is one
+BESIDE = 1e-3  # distance from a singular point at which signs can be trusted
+
+
+def leap(segment: Segment, found: list[Located]) -> Located | None:
+    """A mark at the start of the segment if its ends lie on different branches.
+
+    Parameters
+    ----------
+    segment : Segment
+    found : list of Located
+        What was found on it, in order; positions in [0, 1].
+    """
+    if segment.length <= SHORTEST:
+        return None
+    stop = next((i for i, e in enumerate(found) if ends_branch(e)), len(found))
+    if not (any(_inexact(segment, e) for e in found[: stop + 1]) or _unaccounted(segment, found, stop)):
+        return None
+    ends = (segment.a.p, segment.b.p)
+    return Located(0.0, "leap", 0, segment.a, ends, segment.length)
+
+
+def ends_branch(event: Located) -> bool:
+    """Whether what lies behind the event is left out."""
+    return event.kind == "meets" or event.note == "border"
+
+
+def _inexact(segment: Segment, event: Located) -> bool:
+    unit = parameter_unit(segment.engine.within, event.point.p)
+    size = 1.0 + float(abs(event.point.u).max())
+    return event.error > 10.0 * INEXACT * unit or event.point.residual > INEXACT * size
+
+
+def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
+    """Whether the sign changes before the branch ends, and nothing was found at which it may."""
+    if any(e.kind in ("branch-point", "meets") for e in found[: stop + 1]):
+        return False
+    last = segment.b if stop == len(found) else found[stop].point
+    if not segment.a.sign * last.sign < 0.0:
+        return False
+    # an end may itself be singular (a stick of length zero): its sign is that of roundoff
+    reach = 1.0 if stop == len(found) else found[stop].position
+    beside = [segment.at(share * reach) for share in (BESIDE, 1.0 - BESIDE)]
+    return beside[0] is None or beside[1] is None or beside[0].sign * beside[1].sign < 0.0
