@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -18,6 +19,10 @@ from orbits.words import Word
 
 TOLERANCE = 1e-12
 LONG = 12  # words with more events are not looked for from random nodes
+
+
+class StartWarning(UserWarning):
+    """An orbit was found, but not from the guess."""
 
 
 class StartError(ValueError):
@@ -123,6 +128,7 @@ def find(
         tried.append("the closed forms")
     orbit, nearest = _simulated(model, reading, periods, params)
     if orbit is not None:
+        _warn(guess, reading, "simulation from many starts")
         return orbit
     tried.append("simulation from many starts")
     if guess is None:
@@ -132,6 +138,7 @@ def find(
         tried.append("Newton's method from random nodes")
     orbit = _repeated(model, reading, periods, parameters)
     if orbit is not None:
+        _warn(guess, reading, "a shorter orbit, written several times")
         return orbit
     found = (
         f"the nearest motion that the simulator finds is {nearest}"
@@ -143,6 +150,16 @@ def find(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
         f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."
     )
+
+
+def _warn(guess: Any, word: Word, instead: str) -> None:
+    if guess is not None:
+        shown = word.text if len(word) <= LONG else f"{word.text[:LONG]}..."
+        warnings.warn(
+            f"the guess does not lead to an orbit {shown!r}; the orbit was found by {instead}",
+            StartWarning,
+            stacklevel=4,
+        )
 
 
 def _repeated(model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None) -> Orbit | None:

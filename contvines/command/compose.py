@@ -1,6 +1,7 @@
 """Where the two packages meet: a study becomes a machine, a first orbit and a run."""
 
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -62,7 +63,12 @@ def first_orbit(study: "Study") -> Any:
 
     compile_ahead(study.name, "contvines.events.scan:prepare")
     try:
-        return machine(study).orbit(study.word, study.periods, guess=study.guess, **loose(study))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            orbit = machine(study).orbit(study.word, study.periods, guess=study.guess, **loose(study))
+        for warning in caught:
+            print(f"contvines: {study.path}: [start] {warning.message}.", file=sys.stderr)
+        return orbit
     except ValueError as error:
         raise ValueError(f"{study.path}: [start] {error}") from error
 

@@ -16,10 +16,16 @@ def main() -> None:
 
 
 def _unraisable(problem: "sys.UnraisableHookArgs") -> None:
-    """A Ctrl-C that fell into a callback of the compiler is given again, not lost."""
+    """A Ctrl-C that fell into a callback, where Python can only ignore it, is given again a little later.
+
+    Not at once: that would fall into this function, and be ignored again.
+    """
     if problem.exc_type is not None and issubclass(problem.exc_type, KeyboardInterrupt):
         import _thread
+        import threading
 
-        _thread.interrupt_main()
+        again = threading.Timer(0.02, _thread.interrupt_main)
+        again.daemon = True
+        again.start()
     else:
         sys.__unraisablehook__(problem)

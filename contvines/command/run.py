@@ -156,6 +156,7 @@ def _continue(
             graph = run(study, seed, journal=store, progress=progress, **alone)
         if not store.finished:
             store.checkpoint(graph)
+        store.settle()
     return graph
 
 

@@ -70,6 +70,7 @@ class ContinueSection(Section):
     angle: Annotated[float, Field(gt=0, le=0.5)] | None = None
     max_step: Annotated[float, Field(gt=1e-9, le=0.5)] | None = None
     max_points: Annotated[int, Field(ge=1)] | None = None
+    max_branches: Annotated[int, Field(ge=1)] | None = None
 
 
 class SweepSection(Section):

@@ -193,7 +193,9 @@ def _resolve(file: StudyFile, path: Path) -> Study:
         within=(float(low), float(high)),
         depth=go.depth,
         virtual=go.virtual,
-        settings=go.model_dump(include={"tolerance", "angle", "max_step", "max_points"}, exclude_none=True),
+        settings=go.model_dump(
+            include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
+        ),
         sweep=file.sweep,
     )
 

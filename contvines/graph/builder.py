@@ -60,7 +60,10 @@ def work(run: Run) -> None:
     try:
         while run.queue:
             if len(graph.branches) >= run.settings.max_branches:
-                graph.message = f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting"
+                graph.message = (
+                    f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
+                    "the graph is not complete; raise max_branches, or lower depth"
+                )
                 break
             trace_pending(run, run.queue.popleft())
     except KeyboardInterrupt:

@@ -98,7 +98,8 @@ class Graph:
     def __str__(self) -> str:
         from .table import table
 
-        return table(self)
+        cut = self.message.startswith("stopped") and self.settings.get("max_branches") != 1
+        return f"{table(self)}\n\n{self.message}" if cut else table(self)
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -128,6 +129,7 @@ class Graph:
             "parameter": self.parameter,
             "within": list(self.within),
             "finished": self.finished,
+            "message": self.message,
             "branches": [branch.to_dict() for branch in self.branches.values()],
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],

@@ -277,9 +277,13 @@ class Store:
             ) from None
 
     def settle(self) -> None:
-        """Fold the log into the file, so that it stands alone."""
+        """Fold the log into the file, so that it stands alone, and give free pages back."""
         with self._guard():
             self._db.execute("PRAGMA journal_mode=DELETE")
+            with suppress(
+                sqlite3.OperationalError
+            ):  # no room for a second copy: then it stays as large as it is
+                self._db.execute("VACUUM")
 
     def close(self) -> None:
         """Close the file; nothing is lost if this is never called."""

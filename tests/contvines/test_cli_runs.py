@@ -1,6 +1,7 @@
 """The commands that compute, one after the other on one study, as a user would."""
 
 import json
+import sqlite3
 from pathlib import Path
 
 import pytest
@@ -186,3 +187,27 @@ def test_everything_can_be_exported(folder):
     for kind in ("csv", "json", "graphml", "mat"):
         call("export", folder / "s.vines", "--to", kind, "-o", folder / f"e.{kind}")
         assert Path(folder / f"e.{kind}").stat().st_size > 1000
+
+
+def test_a_graph_that_was_cut_says_so(tmp_path, capsys):
+    (tmp_path / "c.toml").write_text(STUDY.format(depth=3, virtual="false") + "max_branches = 2\n")
+    call("diagram", tmp_path / "c.toml", "-o", tmp_path / "c.vines")
+    assert "max_branches = 2" in capsys.readouterr().out
+    call("show", tmp_path / "c.vines", "--json")
+    cut = json.loads(capsys.readouterr().out)
+    assert len(cut["branches"]) == 2 and "max_branches = 2" in cut["message"]
+
+
+def test_a_guess_that_leads_nowhere_is_not_dropped_silently(tmp_path, capsys):
+    text = STUDY.format(depth=0, virtual="false").replace(
+        'word = "LR"', 'word = "LR"\nguess = [[1e300, 2.0], [3.0, 1e300]]'
+    )
+    (tmp_path / "g.toml").write_text(text)
+    call("diagram", tmp_path / "g.toml", "-o", tmp_path / "g.vines", "--quiet")
+    said = capsys.readouterr().err
+    assert "the guess does not lead to an orbit 'LR'" in said and "found by simulation" in said
+
+
+def test_a_finished_file_has_no_free_pages(folder):
+    with sqlite3.connect(folder / "s.vines") as db:
+        assert db.execute("PRAGMA freelist_count").fetchone() == (0,)
