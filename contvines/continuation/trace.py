@@ -200,6 +200,9 @@ def trace(
 ) -> Iterator[Point]:
     """The points of a branch, one by one; the caller's loop decides when to stop.
 
+    Nothing is looked for between the points. Special points, and steps to another branch where two nearly touch, are found by
+    ``diagram`` with ``depth=0``.
+
     Parameters
     ----------
     problem : Problem or orbit
