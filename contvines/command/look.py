@@ -133,7 +133,17 @@ def export(
         typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
     ] = None,
 ) -> None:
-    """Write a result for other programs: csv, json, graphml or mat."""
+    """Write a result for other programs: csv, json, graphml or mat.
+
+    csv has one row per point of every branch: u0, u1 ... are the unknowns, then multipliers, word, periods and all
+    measures (empty where not defined). mat has the same in a struct per branch; json and graphml have summaries.
+
+    The unknowns are, event by event in the word's order: at an impact the phase of the forcing (radians) and the
+    absorber's velocity after the impact (times 1 + mass ratio, as B_post), at a turn, a stick and its slip the phase
+    and the displacement w; in the coupled machine v and v_rate follow each pair. A symmetric branch has those of the
+    first half of its word, the second half is their mirror image. The stuck absorber has no events: its u are the
+    oscillator's sine and cosine (reduced machine: 0).
+    """
     from contvines.command.compose import beside
     from contvines.export import check_target
     from contvines.export import export as write
@@ -141,7 +151,7 @@ def export(
 
     target = output or beside(file, f".{to.value}")
     check_target(target, to.value)
-    graph = load(file, problems=False)
+    graph = load(file, problems=to in (Format.csv, Format.mat))  # measures need them
     if not graph.finished:
         _unfinished(file)
     typer.echo(str(write(graph, to.value, target)))

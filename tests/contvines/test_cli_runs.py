@@ -1,6 +1,8 @@
 """The commands that compute, one after the other on one study, as a user would."""
 
+import csv
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -186,3 +188,20 @@ def test_everything_can_be_exported(folder):
     for kind in ("csv", "json", "graphml", "mat"):
         call("export", folder / "s.vines", "--to", kind, "-o", folder / f"e.{kind}")
         assert Path(folder / f"e.{kind}").stat().st_size > 1000
+
+
+def test_export_has_the_measures_of_every_point(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    call("export", "s.vines", "--to", "csv")
+    with open("s.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["branch"] == "B1"]
+    assert {(row["word"], row["periods"]) for row in rows} == {("LR", "1")}
+    for row in rows:
+        assert float(row["C2"]) == pytest.approx(float(row["amplitude"]) ** 2, rel=1e-14)
+        assert float(row["B_post"]) == pytest.approx(
+            float(row["u1"]), abs=1e-15
+        )  # the first event is an impact on the left wall
+        # LR on the impacting manifold C^2 = (1 - pi B/2)^2 + (R B + h)^2, friction included in h
+        B, R, h = float(row["B"]), 0.24 / 1.76, math.pi / 2 * 1.006 * 0.5 * 0.211
+        assert float(row["C2"]) == pytest.approx((1 - math.pi * B / 2) ** 2 + (R * B + h) ** 2, rel=1e-9)
+        assert float(row["friction_loss"]) == pytest.approx(0.5 * 0.211 * 4, rel=1e-14)
