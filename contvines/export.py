@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .endings import refuse_ending
+
 if TYPE_CHECKING:
     from .branch import Branch
     from .graph.graph import Graph
@@ -66,6 +68,7 @@ def check_target(path: Path, ending: str) -> None:
             if own != f".{ending}"
             else f"{path}: this file is a database, it is left untouched; choose another name with -o."
         )
+    refuse_ending(path, ending)
 
 
 def _is_database(path: Path) -> bool:
