@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import contvines as cv
 from contvines.command.cli import main
 from contvines.graph.persistence import same_graph
 from contvines.store import load
@@ -205,3 +206,30 @@ def test_export_has_the_measures_of_every_point(folder, monkeypatch):
         B, R, h = float(row["B"]), 0.24 / 1.76, math.pi / 2 * 1.006 * 0.5 * 0.211
         assert float(row["C2"]) == pytest.approx((1 - math.pi * B / 2) ** 2 + (R * B + h) ** 2, rel=1e-9)
         assert float(row["friction_loss"]) == pytest.approx(0.5 * 0.211 * 4, rel=1e-14)
+
+
+def test_a_graze_has_no_multipliers(folder, capsys):
+    """At the orbit LR that touches the walls at rest, impacts come with the square root of the distance."""
+    call("orbit", folder / "s.vines", "WG1")
+    out = capsys.readouterr().out
+    assert "  multipliers: not defined at a graze\n" in out
+    assert "nan" not in out
+    call("orbit", folder / "s.vines", "WG1", "--json")
+    pairs = json.loads(capsys.readouterr().out)["multipliers"]
+    assert pairs == [[None, None], [None, None]]
+
+
+def test_python_refusals_are_sentences(folder):
+    graph = load(folder / "s.vines")
+    with pytest.raises(
+        ValueError, match=r"none/x.vines: there is no folder '.*none'; make it first, or choose another"
+    ):
+        graph.save(folder / "none" / "x.vines")
+    with pytest.raises(ValueError, match="this is a folder"):
+        graph.save(folder)
+    with pytest.raises(
+        TypeError, match="wants the label of a special point as text, for example 'SB1', the label of"
+    ):
+        cv.switch(graph, graph["SB1"])  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="for example 'SB1'$"):
+        cv.switch(graph, 3)  # type: ignore[arg-type]
