@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from ..graph.graph import Graph
 
-COLUMNS = 8  # at most, side by side
+COLUMNS = 6  # at most, side by side
 
 
 def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
@@ -112,7 +112,12 @@ def _bend(place: dict[str, tuple[float, float]], source: str, target: str) -> fl
             and abs(ax + share * (bx - ax) - px) < 0.3
             and abs(ay + share * (by - ay) - py) < 0.3
         ):
-            return 0.9 if ax == bx else 0.3
+            if ax != bx:
+                return 0.3
+            outside = 1.0 if ax > 0 and ax == max(x for x, _ in place.values()) else -1.0
+            return (
+                outside * 2.2 / (by - ay)
+            )  # beside its own column, at the edge of the picture if that is near
     return 0.0
 
 

@@ -187,6 +187,19 @@ def test_a_long_network_goes_on_below():
     assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
 
 
+def test_arrows_past_a_box_have_their_labels_beside_it():
+    graph = chain(9)  # the seventh to ninth branch leave the sixth: below it, one under the other
+    graph.switches[6:] = [Switch(f"PD{i}", "B6", f"B{i}", "period-doubling") for i in (8, 9)]
+    figure = plot_network(graph)
+    figure.canvas.draw()
+    boxes, labels = figure.axes[0].texts[:9], figure.axes[0].texts[9:]
+    assert {"PD8", "PD9"} <= {t.get_text() for t in labels}
+    for label in labels:
+        extent = label.get_window_extent()
+        assert not any(extent.overlaps(box.get_window_extent()) for box in boxes)
+        assert figure.bbox.x0 < extent.x0 and extent.x1 < figure.bbox.x1
+
+
 def test_network_captions_tell_ends_apart_and_shorten_words():
     graph = chain(3)
     one, two, three = graph.branches.values()
