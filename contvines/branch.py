@@ -91,6 +91,12 @@ class Branch:
                 intervals.append((float(part.min()), float(part.max())))
         return intervals
 
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Names that `measure` knows beside the parameter's own; without a problem only ``norm``."""
+        names = getattr(self.problem, "measure_names", None) or ("norm",)
+        return tuple(str(name) for name in names if name != self.parameter)
+
     def measure(self, name: str) -> np.ndarray:
         """A measure along the branch, shape (n,). The parameter's own name is a measure, too."""
         if name == self.parameter:

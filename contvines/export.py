@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .endings import refuse_ending
+
 if TYPE_CHECKING:
+    from .branch import Branch
     from .graph.graph import Graph
 
 FORMATS = ("csv", "json", "graphml", "mat")
@@ -18,8 +21,10 @@ def export(graph: "Graph", to: str, path: str | Path) -> Path:
     """Write a graph in one of `FORMATS`.
 
     csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
-    unknowns, multipliers). json: what `contvines show --json` prints. graphml: branches as nodes, switches as
-    edges. mat: one struct of arrays per branch and per special point.
+    unknowns, multipliers, word, periods, and every measure that a branch of the graph has; what is not defined
+    is left empty). json: what `contvines show --json` prints. graphml: branches as nodes, switches as edges. mat:
+    one struct of arrays per branch (its measures a struct in it) and per special point. Measures need the
+    branches' problems: load the graph with them.
 
     Raises
     ------
@@ -63,6 +68,7 @@ def check_target(path: Path, ending: str) -> None:
             if own != f".{ending}"
             else f"{path}: this file is a database, it is left untouched; choose another name with -o."
         )
+    refuse_ending(path, ending)
 
 
 def _is_database(path: Path) -> bool:
@@ -98,11 +104,18 @@ def _csv(graph: "Graph", path: Path) -> None:
     head = ["branch", "index", graph.parameter, "stable", "real", "margin", "special"]
     head += [f"u{i}" for i in range(unknowns)]
     head += [f"multiplier{j}_{part}" for j in range(multipliers) for part in ("re", "im")]
+    measures = {b.label: _measures(b) for b in graph.branches.values()}
+    head += ["word", "periods"]
+    more = [n for n in dict.fromkeys(n for found in measures.values() for n in found) if n not in head]
+    head += more
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(head)
         for branch in graph.branches.values():
             marks = dict(branch.marks)
+            about = [branch.description.get("word", ""), branch.description.get("periods", "")]
+            nothing = np.full(len(branch), np.nan)
+            columns = [measures[branch.label].get(name, nothing) for name in more]
             for i in range(len(branch)):
                 row = [
                     branch.label,
@@ -115,7 +128,20 @@ def _csv(graph: "Graph", path: Path) -> None:
                 point = [repr(float(v)) for v in branch.points[i]]
                 spectrum = [repr(float(v)) for m in branch.multipliers[i] for v in (m.real, m.imag)]
                 pad = [""] * (unknowns - len(point))
-                writer.writerow(row + point + pad + spectrum + [""] * (2 * multipliers - len(spectrum)))
+                spectrum += [""] * (2 * multipliers - len(spectrum))
+                measured = ["" if np.isnan(c[i]) else repr(float(c[i])) for c in columns]
+                writer.writerow(row + point + pad + spectrum + about + measured)
+
+
+def _measures(branch: "Branch") -> dict[str, np.ndarray]:
+    """All measures of a branch that can be evaluated, each of shape (n,)."""
+    found = {}
+    for name in branch.measure_names:
+        try:
+            found[name] = np.asarray(branch.measure(name), dtype=float)
+        except (KeyError, ValueError):
+            continue
+    return found
 
 
 def _json(graph: "Graph", path: Path) -> None:
@@ -156,6 +182,9 @@ def _mat(graph: "Graph", path: Path) -> None:
             "stable": b.stable,
             "real": b.real,
             "ended": list(b.ended),
+            "word": str(b.description.get("word", "")),
+            "periods": float(b.description.get("periods", np.nan)),
+            "measures": _measures(b),
             "about": json_text(b.to_dict(), indent=None),
         }
         for b in graph.branches.values()

@@ -20,6 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .multiple_scales import manifolds
 
+SCALE = (1e-9, 1e9)  # metres and hertz of a machine; squares and quotients stay far from overflow
+_AROUND = (1e-12, 1e12)  # of the maps drawn around it
+_LARGEST = 1e9
+
 
 class Figure(NamedTuple):
     """One line of a design table."""
@@ -68,14 +72,20 @@ class Design:
     acceleration: Any = 9.81
 
     def __post_init__(self) -> None:
+        def scale(x: NDArray) -> NDArray:
+            return (x >= _AROUND[0]) & (x <= _AROUND[1])
+
+        def size(x: NDArray) -> NDArray:
+            return (x >= 0) & (x <= _LARGEST)
+
         rules = {
-            "cavity": (lambda x: x > 0, "must be positive [m]"),
-            "natural_frequency": (lambda x: x > 0, "must be positive [Hz]"),
+            "cavity": (scale, "must be positive, from 1e-12 to 1e12 [m]"),
+            "natural_frequency": (scale, "must be positive, from 1e-12 to 1e12 [Hz]"),
             "restitution": (lambda x: (x > 0) & (x <= 1), "must lie in (0, 1]"),
-            "friction": (lambda x: x >= 0, "must not be negative"),
-            "mass_ratio": (lambda x: x >= 0, "must not be negative"),
-            "damping": (lambda x: x >= 0, "must not be negative"),
-            "acceleration": (lambda x: x >= 0, "must not be negative [m/s^2]"),
+            "friction": (size, "must lie between 0 and 1e9"),
+            "mass_ratio": (size, "must lie between 0 and 1e9"),
+            "damping": (size, "must lie between 0 and 1e9"),
+            "acceleration": (size, "must lie between 0 and 1e9 [m/s^2]"),
         }
         for name, (holds, rule) in rules.items():
             value = np.asarray(getattr(self, name), dtype=float)
@@ -98,7 +108,7 @@ class Design:
         Raises
         ------
         ValueError
-            If both scales or none are given, or ``gravity`` is not positive.
+            If both scales or none are given, ``gravity`` is not positive, or a scale leaves `SCALE`.
         """
         if (cavity is None) == (natural_frequency is None):
             raise ValueError(
@@ -106,12 +116,24 @@ class Design:
             )
         if not gravity > 0:
             raise ValueError(f"gravity = {gravity} must be positive to fix a scale.")
+        name, unit = ("natural_frequency", "Hz") if cavity is None else ("cavity", "m")
+        value = float(natural_frequency if cavity is None else cavity)  # type: ignore[arg-type]
+        if not SCALE[0] <= value <= SCALE[1]:
+            raise ValueError(
+                f"{name} = {value!r} must be positive, from {SCALE[0]:g} to {SCALE[1]:g} [{unit}]."
+            )
         g = float(fields.get("acceleration", cls.acceleration))
-        if cavity is None:
-            assert natural_frequency is not None
-            cavity = g / (gravity * (2.0 * np.pi * natural_frequency) ** 2)
-        else:
-            natural_frequency = float(np.sqrt(g / (gravity * cavity)) / (2.0 * np.pi))
+        with np.errstate(over="ignore"):
+            if cavity is None:
+                cavity = other = g / (float(gravity) * (2.0 * np.pi * value) ** 2)
+            else:
+                natural_frequency = other = float(np.sqrt(np.float64(g) / gravity / cavity) / (2.0 * np.pi))
+        if not SCALE[0] <= other <= SCALE[1]:
+            follows = "cavity = {:.6g} m" if name == "natural_frequency" else "natural_frequency = {:.6g} Hz"
+            raise ValueError(
+                f"gravity = {gravity!r} with {name} = {value!r} {unit} means {follows.format(other)}, which lies outside "
+                f"{SCALE[0]:g} to {SCALE[1]:g}; change one of the two."
+            )
         return cls(cavity=cavity, natural_frequency=natural_frequency, **fields)
 
     def with_(self, **changes: Any) -> Design:
@@ -151,8 +173,9 @@ class Design:
 
     @property
     def operating_ratio(self) -> Any:
-        """``xi = q1_max/q1_min``: width of the working range."""
-        return self.upper_bound / self.activation_threshold
+        """``xi = q1_max/q1_min``: width of the working range; inf for elastic walls without friction, whose threshold is 0."""
+        with np.errstate(divide="ignore"):
+            return self.upper_bound / self.activation_threshold
 
     def sticking_limit(self, frequency: ArrayLike | None = None) -> Any:
         """``q1_cr = mu g/omega^2`` [m] at an excitation frequency [Hz] (default ``f_0``): below it the

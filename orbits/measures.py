@@ -1,7 +1,9 @@
 """Measures of orbits: velocities at the impacts, losses per period, and what each machine adds of its own.
 
 Everything is computed for many solutions at once: nodes have shape (m, L, n), parameter vectors (m, P), results (m,).
-Energies are in units of m b^2 omega_0^2 (m the absorber's mass) per period of the orbit.
+Energies are in units of m b^2 omega_0^2 (m the absorber's mass) per period of the orbit, which has k periods of the
+forcing: a doubled orbit loses twice as much in it. Those that end in ``_mean`` are per forcing period, so that orbits of
+different periods compare (and branches of doubled orbits begin where they leave).
 """
 
 from __future__ import annotations
@@ -27,6 +29,10 @@ COMMON = (
     "friction_loss",
     "max_abs_w",
 )
+
+ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
+ENERGIES = ("impact_loss", "friction_loss", "input_work", "damping_loss")  # per period of the orbit
+MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
 
 
 @dataclass(frozen=True)
@@ -79,7 +85,8 @@ def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray)
 
 def names(model: Model) -> tuple[str, ...]:
     """Measures that orbits of this machine have."""
-    return COMMON + tuple(getattr(model, "own_measures", ()))
+    known = COMMON + tuple(getattr(model, "own_measures", ()))
+    return known + tuple(mean for mean, name in MEANS.items() if name in known)
 
 
 def measure(
@@ -92,7 +99,7 @@ def measure(
     B-)/2) and ``B_mean`` the mean of B over all impacts. ``C2`` is the squared amplitude of v, ``phase`` the
     forcing phase of the first event. ``impact_speed`` is the fastest approach. ``impact_loss`` is the kinetic energy of
     the relative motion lost at impacts, sum of (1 - r^2) w'-^2 / (2 (1 + eps)), ``friction_loss`` is mu g times the
-    path slid.
+    path slid; both over the orbit's period, ``impact_loss_mean`` and ``friction_loss_mean`` per forcing period.
 
     Raises
     ------
@@ -110,7 +117,15 @@ def measure(
     eps = parameter(model, params, "mass_ratio")
     nothing = np.full(m, np.nan)
     result: dict[str, np.ndarray] = {}
-    own = [name for name in wanted if name not in COMMON or (name == "C2" and model.node != 2)]
+    means = [name for name in wanted if name in MEANS]
+    if means:
+        whole = measure(model, word, periods, nodes, params, [MEANS[name] for name in means])
+        result |= {name: whole[MEANS[name]] / periods for name in means}
+    own = [
+        name
+        for name in wanted
+        if name not in MEANS and (name not in COMMON or (name == "C2" and model.node != 2))
+    ]
     if own:
         result |= model.measure_own(own, word, periods, nodes, params)  # type: ignore[attr-defined]
     for name in wanted:

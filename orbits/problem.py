@@ -256,6 +256,11 @@ class OrbitProblem:
         return measuring.names(self.model)
 
     @property
+    def angles(self) -> tuple[str, ...]:
+        """Measures that are angles: they jump by 2 pi without a jump of the orbit."""
+        return measuring.ANGLES
+
+    @property
     def default_measure(self) -> str:
         """The measure that a diagram shows when none is asked for."""
         return self.model.default_measure

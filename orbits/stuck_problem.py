@@ -81,6 +81,11 @@ class StuckProblem:
         return measuring.names(self.model)
 
     @property
+    def angles(self) -> tuple[str, ...]:
+        """Measures that are angles: they jump by 2 pi without a jump of the orbit."""
+        return measuring.ANGLES
+
+    @property
     def default_measure(self) -> str:
         """The measure that a diagram shows when none is asked for."""
         return self.model.default_measure
@@ -98,6 +103,7 @@ class StuckProblem:
         return result
 
     def _measure(self, name: str, u: np.ndarray, params: np.ndarray) -> float:
+        name = measuring.MEANS.get(name, name)  # its period is the forcing's
         if name in ("impact_loss", "friction_loss", "impact_speed", "impact_speed_min", "max_abs_w"):
             return 0.0
         if self.model.node == 2:

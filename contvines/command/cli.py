@@ -5,9 +5,7 @@ numpy, numba, matplotlib, rich and pydantic are imported by the commands that ne
 """
 
 import gc
-import re
 import sys
-from itertools import pairwise
 from typing import Annotated, Any
 
 import typer
@@ -70,6 +68,8 @@ def main(arguments: list[str] | None = None) -> None:
             raise
         explain: Any = getattr(error, "show", None)
         if callable(explain):  # the line itself cannot be understood
+            from contvines.command.refusals import refusal
+
             about = refusal(error, words)
             if about:
                 print(f"contvines: {about}", file=sys.stderr)
@@ -89,23 +89,6 @@ def stopped(note: str = "") -> None:
     """End after Ctrl-C: say what is kept and how to go on, exit status 130."""
     print(f"\ncontvines: stopped; {note or 'the same command begins again, or goes on'}.", file=sys.stderr)
     sys.exit(130)
-
-
-def refusal(error: Any, words: list[str]) -> str:
-    """An option's value that cannot be, as one sentence; empty for other mistakes on the line."""
-    names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
-    message = str(getattr(error, "message", ""))
-    if not names or not names[-1].startswith("-"):
-        return ""
-    given = [w.split("=", 1)[1] for w in words if w.startswith(f"{names[-1]}=")]
-    given += [value for name, value in pairwise(words) if name in names]
-    place = " ".join([names[-1], *given[:1]])
-    if " is not one of " in message:
-        choices = re.findall(r"'([^']*)'", message.rsplit(" is not one of ", 1)[1])
-        return f"{place}: there is no such choice; choose one of {', '.join(choices)}."
-    if "valid number" in message or "valid integer" in message or "valid float" in message:
-        return f"{place}: this is not a number; give one such as {'3' if 'integer' in message else '0.02'}."
-    return ""
 
 
 def sentence(error: Exception) -> str:

@@ -87,13 +87,16 @@ def beside(path: Path, ending: str) -> Path:
 
 
 def check_place(path: Path) -> None:
-    """Refuse, before any work, a result that could not be written at the end."""
+    """Refuse, before any work, a graph that could not be written at the end, or not under this name."""
+    from contvines.endings import refuse_ending
+
     if path.is_dir():
         raise ValueError(f"{path}: this is a folder; give the name of a file with -o.")
     if not path.parent.is_dir():
         raise ValueError(
             f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
         )
+    refuse_ending(path, "vines")
 
 
 def say(text: str, quiet: bool = False) -> None:

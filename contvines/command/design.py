@@ -3,7 +3,6 @@ a picture."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,18 +27,22 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     Raises
     ------
     StudyError
-        If the scale is missing, given twice, or not positive.
+        If the scale is missing, given twice, or out of range.
     """
-    from orbits.design import Design
+    from orbits.design import SCALE, Design
 
     from .study import StudyError
 
     values = study.parameters
     fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
     fields["damping"] = values.get("damping", DAMPING)
-    for name, value in (("cavity", cavity), ("natural-frequency", natural_frequency)):
-        if value is not None and not 0 < value < math.inf:
-            raise StudyError(f"--{name} = {value!r} must be a positive number.")
+    asked = (("cavity", cavity, "m", 0.02), ("natural-frequency", natural_frequency, "Hz", 7.666))
+    for name, value, unit, usual in asked:
+        if value is not None and not SCALE[0] <= value <= SCALE[1]:
+            raise StudyError(
+                f"--{name} = {value!r} is out of range; a positive number from {SCALE[0]:g} to {SCALE[1]:g} {unit} "
+                f"would do, for example {usual}."
+            )
     if values["gravity"] == 0:
         if cavity is None or natural_frequency is None:
             raise StudyError(
@@ -53,9 +56,12 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
         )
     if cavity is None and natural_frequency is None:
         cavity = 0.02
-    return Design.from_dimensionless(
-        gravity=values["gravity"], cavity=cavity, natural_frequency=natural_frequency, **fields
-    )
+    try:
+        return Design.from_dimensionless(
+            gravity=values["gravity"], cavity=cavity, natural_frequency=natural_frequency, **fields
+        )
+    except ValueError as error:
+        raise StudyError(f"{study.path}: [model] {error}") from None
 
 
 def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
@@ -160,10 +166,13 @@ def draw(design: Design) -> Figure:
             ),
         )
         for panel, values, title in maps:
-            levels = np.geomspace(values.min(), values.max(), 12)
-            panel.contourf(mu, 1e3 * b, values, levels=levels, cmap="Greys", alpha=0.55, norm="log")
-            lines = panel.contour(mu, 1e3 * b, values, levels=levels, colors="#0b3c6f", linewidths=0.9)
-            panel.clabel(lines, fmt="%.3g", fontsize=7.5)
+            known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
+            if known.size and known.max() > 1.001 * known.min():
+                levels = np.geomspace(known.min(), known.max(), 12)
+                shown = np.ma.masked_invalid(values)
+                panel.contourf(mu, 1e3 * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
+                lines = panel.contour(mu, 1e3 * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)
+                panel.clabel(lines, fmt="%.3g", fontsize=7.5)
             panel.plot(mu0, 1e3 * b0, "o", color="#b5121b")
             panel.set(ylabel="half-width $b$ [mm]", title=title)
             panel.grid(False)
@@ -174,10 +183,10 @@ def draw(design: Design) -> Figure:
 def design(
     study: Path = typer.Argument(..., metavar="STUDY.toml", help="The study whose machine is meant."),
     cavity: float | None = typer.Option(
-        None, help="Half-width b of the cavity [m]; 0.02 if no scale is given."
+        None, help="Half-width b of the cavity \\[m]; 0.02 if no scale is given."
     ),
     natural_frequency: float | None = typer.Option(
-        None, help="f_0 of the oscillator [Hz], instead of the cavity."
+        None, help="f_0 of the oscillator \\[Hz], instead of the cavity."
     ),
     plot: Path | None = typer.Option(
         None, metavar="FILE.png", help="Where the picture goes; STUDY-design.png in this folder if not given."
@@ -191,14 +200,16 @@ def design(
 
     from .study import read_study
 
+    if no_plot and plot is not None:
+        raise ValueError(f"--plot {plot} and --no-plot exclude each other; leave one of them out.")
     plot = None if no_plot else plot or Path(f"{study.stem}-design.png")
     if plot is not None:
         check_picture(plot)
     figures = machine(read_study(study), cavity, natural_frequency)
     if json_:
-        import json
+        from contvines.export import json_text
 
-        typer.echo(json.dumps(as_json(figures), indent=2))
+        typer.echo(json_text(as_json(figures)))
     else:
         typer.echo(table(f"Design figures of {study.name}", rows(figures)))
     if plot is not None:

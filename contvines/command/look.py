@@ -1,5 +1,6 @@
 """`contvines show`, `orbit`, `plot` and `export`: the commands that look at results."""
 
+import math
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -97,6 +98,7 @@ def plot(
     from contvines.plots.style import check_picture, save_figure
     from contvines.store import load
 
+    _refuse_ignored(kind, {"-x": x, "-y": y, "--branch": branch})
     target = output or beside(file, ".png")
     check_picture(target)
     graph = load(file)
@@ -133,7 +135,20 @@ def export(
         typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
     ] = None,
 ) -> None:
-    """Write a result for other programs: csv, json, graphml or mat."""
+    """Write a result for other programs: csv, json, graphml or mat.
+
+    csv has a row per point of every branch: the unknowns u0, u1 ..., then
+    multipliers, word, periods and all measures (empty where not defined).
+    mat has the same, a struct per branch; json and graphml are summaries.
+
+    The unknowns follow the events in the word's order: at an impact the
+    forcing's phase (radians) and the absorber's velocity after it (times
+    1 + mass ratio, as B_post); at a turn, a stick and its slip the phase and
+    the displacement w. In the coupled machine v and v_rate follow each pair.
+    A symmetric branch has those of the first half of its word; the other half
+    is their mirror image. The stuck absorber has no events: its u are the
+    oscillator's sine and cosine (0 in the reduced machine).
+    """
     from contvines.command.compose import beside
     from contvines.export import check_target
     from contvines.export import export as write
@@ -141,10 +156,27 @@ def export(
 
     target = output or beside(file, f".{to.value}")
     check_target(target, to.value)
-    graph = load(file, problems=False)
+    graph = load(file, problems=to in (Format.csv, Format.mat))  # measures need them
     if not graph.finished:
         _unfinished(file)
     typer.echo(str(write(graph, to.value, target)))
+
+
+def _refuse_ignored(kind: Picture, options: dict[str, str | None]) -> None:
+    """Options that this kind of picture would ignore are refused."""
+    takes = {
+        Picture.diagram: (("-x", "-y"), "draws all branches"),
+        Picture.multipliers: (("--branch",), "draws over the parameter"),
+        Picture.network: ((), "draws boxes and arrows"),
+    }
+    known, why = takes[kind]
+    for name, value in options.items():
+        if value is not None and name not in known:
+            other = Picture.multipliers if name == "--branch" else Picture.diagram
+            raise ValueError(
+                f"{name} {value}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
+                f"or choose --kind {other.value}."
+            )
 
 
 def _orbit(file: Path, label: str | None) -> Any:
@@ -206,10 +238,12 @@ def _describe(found: Any) -> str:
         widths = [max(len(row[i]) for row in table) for i in range(len(names))]
         lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths)) for row in table]
     if "multipliers" in about:
+        pairs = about["multipliers"]
         text = ", ".join(
-            _number(re) if _number(im) == "0" else f"{_number(re)}{im:+.10g}i"
-            for re, im in about["multipliers"]
+            _number(re) if _number(im) == "0" else f"{_number(re)}{im:+.10g}i" for re, im in pairs
         )
+        if any(math.isnan(part) for pair in pairs for part in pair):
+            text = "not defined at a graze"
         lines.append(f"  multipliers: {text or 'none'}")
     if about.get("margins"):
         smallest = min(about["margins"], key=lambda m: m["value"])

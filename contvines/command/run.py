@@ -113,9 +113,11 @@ def _run(
     y: str | None,
 ) -> None:
     from contvines.command.compose import beside, check_place, checked_study, first_orbit, run_diagram, say
+    from contvines.command.measures import check_axes
     from contvines.store import Store
 
     study = checked_study(path)
+    check_axes(study, {"-x": x, "-y": y}, plot)
     target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)
     if target.resolve() == path.resolve():
@@ -156,7 +158,7 @@ def _continue(
             graph = run(study, seed, journal=store, progress=progress, **alone)
         if not store.finished:
             store.checkpoint(graph)
-        store.settle()
+        store.tidy()
     return graph
 
 

@@ -114,9 +114,13 @@ def switch(
 
     Raises
     ------
-    KeyError, ValueError
-        If there is no such special point, or it has no problem.
+    TypeError, KeyError, ValueError
+        If it is no label, there is no such special point, or it has no problem.
     """
+    if not isinstance(label, str):
+        name = getattr(label, "label", None)
+        hint = f"{name!r}, the label of this {type(label).__name__}" if name else "'SB1'"
+        raise TypeError(f"switch wants the label of a special point as text, for example {hint}")
     if label not in graph.special:
         known = ", ".join(graph.special) or "none"
         raise KeyError(f"the graph has no special point {label!r}; it has {known}")

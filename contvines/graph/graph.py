@@ -163,9 +163,24 @@ class Graph:
         return plot_diagram(self, x=x, y=y, **options)
 
     def save(self, path: str | Path) -> None:
-        """Write the graph to a .vines file; see :mod:`contvines.store`."""
+        """Write the graph to a .vines file; see :mod:`contvines.store`.
+
+        Raises
+        ------
+        ValueError
+            If the place cannot be written, or holds a file that is not ours.
+        """
+        from pathlib import Path
+
         from ..store import save
 
+        place = Path(path)
+        if place.is_dir():
+            raise ValueError(f"{place}: this is a folder; give the name of a file in it.")
+        if not place.parent.is_dir():
+            raise ValueError(
+                f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."
+            )
         save(self, path)
 
     @classmethod

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .shortening import short_word, short_words
+
 if TYPE_CHECKING:
     from .graph import Graph
 
@@ -22,7 +24,7 @@ def table(graph: Graph) -> str:
         what = " ".join(
             str(part)
             for part in (
-                about.get("word", about.get("name", "")),
+                short_word(about.get("word") or about.get("name", "")),
                 f"k={about['periods']}" if "periods" in about else "",
                 "symmetric" if about.get("symmetric") else "",
                 "" if branch.real else "virtual",
@@ -46,7 +48,7 @@ def table(graph: Graph) -> str:
             for switch in graph.switches:
                 if switch.point == point.label:
                     arrow = f"{switch.source} -> {switch.target}"
-                    targets.append(f"{arrow} ({switch.note})" if switch.note else arrow)
+                    targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
             rows.append(
                 (
                     point.label,

@@ -6,6 +6,7 @@ import numpy as np
 
 from .labels import merge_labels, place_labels
 from .style import LINES, MARKS, PLAIN, STATES, axis_label, freeze, new_axes, settle, styled
+from .wraps import angles_of, broken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,19 +50,19 @@ def plot_diagram(
         for i, branch in enumerate(graph.branches.values()):
             color = tint[branch.label] = cycle[i % len(cycle)]
             xs, ys = measured(branch, x), measured(branch, y)
+            turning = (x in angles_of(branch), y in angles_of(branch))
             for first, last, stable in branch.pieces():
                 state = ("stable" if stable else "unstable") if branch.real else "virtual"
                 states.setdefault(state, None)
                 axes.plot(
-                    xs[first : last + 1],
-                    ys[first : last + 1],
+                    *broken(xs[first : last + 1], ys[first : last + 1], turning),
                     linestyle=LINES[state],
                     color=color,
                     linewidth=2.1 if state == "stable" else 1.5,
                     zorder=3 if state == "stable" else 2.5,
                 )
             if len(branch):
-                obstacles.append(_dense(axes, xs, ys))
+                obstacles.append(_dense(axes, *broken(xs, ys, turning)))
         special: list[tuple[str, float, float]] = []
         for point in graph.special.values():
             if point.kind == "end" and not ends:
@@ -160,7 +161,7 @@ def measured(branch: Any, name: str) -> np.ndarray:
     try:
         return np.asarray(branch.measure(name), float)
     except (KeyError, ValueError) as error:
-        names = sorted({branch.parameter, *(getattr(branch.problem, "measure_names", None) or ("norm",))})
+        names = sorted({branch.parameter, *branch.measure_names})
         raise ValueError(
             f"{branch.label} has no measure {name!r}; choose one of {', '.join(names)}."
         ) from error
@@ -191,12 +192,14 @@ def _middles(
     for branch in graph.branches.values():
         if len(branch) < 2:
             continue
-        points = np.column_stack([measured(branch, x), measured(branch, y)])
+        turning = (x in angles_of(branch), y in angles_of(branch))
+        points = np.column_stack(broken(measured(branch, x), measured(branch, y), turning))
         screen = axes.transData.transform(points)
-        length = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(screen, axis=0).T))])
-        if not np.isfinite(length[-1]) or length[-1] < 12:
+        steps = np.hypot(*np.diff(screen, axis=0).T)
+        length = np.concatenate([[0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])
+        if length[-1] < 12:
             continue
-        i = int(np.searchsorted(length, 0.5 * length[-1]))
+        i = int(np.searchsorted(length, 0.5 * length[-1]))  # never at a gap: nothing is added there
         found.append((branch.label, float(points[i, 0]), float(points[i, 1]), tint[branch.label]))
     return found
 

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from ..graph.shortening import short_word
 from .style import freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:
@@ -10,24 +11,24 @@ if TYPE_CHECKING:
 
     from ..graph.graph import Graph
 
+COLUMNS = 6  # at most, side by side
+
 
 def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
     """Draw branches (boxes: label, word, range) from left to right by the number of switches that lead to them.
 
-    A solid box is a real branch, a dotted one a virtual branch; a grey filling says that some of it is stable.
+    A solid box is a real branch, a dotted one a virtual branch; a grey filling says that some of it is stable. After
+    `COLUMNS` columns the picture goes on below, from right to left and so on, as one ploughs a field.
     """
     from matplotlib.patches import FancyArrowPatch
 
-    rows = _layers(graph)
-    wide, high = max(len(rows), 1), max((len(r) for r in rows), default=1)
+    place = _places(_layers(graph))
+    wide = round(max((px for px, _ in place.values()), default=0.0)) + 1
+    low, top = (edge((py for _, py in place.values()), default=0.0) for edge in (min, max))
+    high = top - low + 1
     with styled():
         figure, axes = new_axes(axes, figsize=(max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6)))
         axes.set_axis_off()
-        place = {
-            label: (float(column), -(i - (len(labels) - 1) / 2))
-            for column, labels in enumerate(rows)
-            for i, label in enumerate(labels)
-        }
         boxes: dict[str, Any] = {}
         for label, (px, py) in place.items():
             branch = graph.branches[label]
@@ -52,7 +53,7 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
                 "grey: partly stable; dotted: virtual; arrows: switches at special points", fontsize=8.5
             )
         axes.set_xlim(-0.5, wide - 0.5)
-        axes.set_ylim(-(high - 1) / 2 - 0.6, (high - 1) / 2 + 0.6)
+        axes.set_ylim(low - 0.6, top + 0.6)
         settle(figure)
         freeze(figure)
         for pair, switches in _pairs(graph).items():
@@ -111,7 +112,12 @@ def _bend(place: dict[str, tuple[float, float]], source: str, target: str) -> fl
             and abs(ax + share * (bx - ax) - px) < 0.3
             and abs(ay + share * (by - ay) - py) < 0.3
         ):
-            return 0.9 if ax == bx else 0.3
+            if ax != bx:
+                return 0.3
+            outside = 1.0 if ax > 0 and ax == max(x for x, _ in place.values()) else -1.0
+            return (
+                outside * 2.2 / (by - ay)
+            )  # beside its own column, at the edge of the picture if that is near
     return 0.0
 
 
@@ -136,12 +142,37 @@ def _layers(graph: "Graph") -> list[list[str]]:
     return layers
 
 
+def _places(layers: list[list[str]]) -> dict[str, tuple[float, float]]:
+    """Where each box stands: layers as columns, `COLUMNS` of them in a band, the bands below one another."""
+    place: dict[str, tuple[float, float]] = {}
+    middle = 0.0
+    for first in range(0, len(layers), COLUMNS):
+        band = layers[first : first + COLUMNS]
+        half = (max(map(len, band)) - 1) / 2
+        middle -= half if first else 0.0
+        back = first // COLUMNS % 2 == 1
+        for column, labels in enumerate(band):
+            for i, label in enumerate(labels):
+                px = COLUMNS - 1 - column if back else column
+                place[label] = (float(px), middle - (i - (len(labels) - 1) / 2))
+        middle -= half + 1.0
+    return place
+
+
+def _range(low: float, high: float) -> str:
+    """Two numbers with as many digits as tell them apart, at least four."""
+    for digits in range(4, 17):
+        texts = f"{low:.{digits}g}", f"{high:.{digits}g}"
+        if texts[0] != texts[1]:
+            return " to ".join(texts)
+    return f"{low:.4g}"
+
+
 def _caption(branch: Any) -> str:
-    word = branch.description.get("word")
-    if word and len(word) > 18:
-        word = word[:15] + "..."
+    about = branch.description
+    word = short_word(about["word"] or about.get("name", ""), 18) if "word" in about else ""
     periods = branch.description.get("periods")
     what = f"  {word}" if word else ""
     cycles = f"  k={periods}" if periods else ""
     low, high = branch.range
-    return f"{branch.label}{what}{cycles}\n{branch.parameter} {low:.4g} to {high:.4g}"
+    return f"{branch.label}{what}{cycles}\n{branch.parameter} {_range(low, high)}"

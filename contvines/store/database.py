@@ -35,6 +35,7 @@ class Store:
         self._db = connection
         self.path = path
         self._kept: dict[tuple[str, str], tuple[str, dict[str, np.ndarray]]] = {}
+        self._version = 0
 
     @classmethod
     def create(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> "Store":
@@ -172,6 +173,11 @@ class Store:
         from contvines.graph.persistence import graph_entries
 
         with self.transaction():
+            # changes when another process has written, which then may have replaced what was kept here
+            version = self._db.execute("PRAGMA data_version").fetchone()[0]
+            if version != self._version:
+                self._kept.clear()
+                self._version = version
             if not self._kept:
                 self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
             present = {self._renew(*entry) for entry in graph_entries(graph)}
@@ -280,9 +286,13 @@ class Store:
         """Fold the log into the file, so that it stands alone, and give free pages back."""
         with self._guard():
             self._db.execute("PRAGMA journal_mode=DELETE")
-            with suppress(
-                sqlite3.OperationalError
-            ):  # no room for a second copy: then it stays as large as it is
+            self._db.execute("VACUUM")
+
+    def tidy(self) -> None:
+        """`settle`, if nobody else uses the file now and there is room for it."""
+        with suppress(sqlite3.OperationalError):
+            self._db.execute("PRAGMA busy_timeout=0")
+            if self._db.execute("PRAGMA journal_mode=DELETE").fetchone()[0] == "delete":
                 self._db.execute("VACUUM")
 
     def close(self) -> None:

@@ -234,7 +234,50 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
         (("switch", "g.vines", "B1"), "B1 is a branch"),
         (("switch", "g.vines", "XX1"), "XX1 is no label of it; its special points are BP1, EP1, VG1"),
         (("sweep", EXAMPLE, "--over", "g.vines", "--plot", "a.png"), "g.vines continues in p"),
-        (("frobnicate",), "frobnicate"),
+        (
+            ("frobnicate",),
+            "contvines: frobnicate: there is no such command; choose one of diagram, trace, sw",
+        ),
+        (("shw", "g.vines"), "contvines: shw: there is no such command; did you mean show?"),
+        (("show",), "contvines: FILE.vines is missing; `contvines show --help` says"),
+        (("switch", "g.vines"), "contvines: LABEL is missing; `contvines switch --help` says"),
+        (("export", "g.vines"), "contvines: --to is missing; choose one of csv, json, graphml, mat."),
+        (("show", "g.vines", "--jsn"), "contvines: --jsn: there is no such option; did you mean --json?"),
+        (
+            ("show", "g.vines", "--zz"),
+            "contvines: --zz: there is no such option; `contvines show --help` lists",
+        ),
+        (("show", "g.vines", "x", "y"), "contvines: x y: this is too much for `contvines show`;"),
+        (("plot", "g.vines", "-y"), "contvines: -y: its value is missing; `contvines plot --help` says"),
+        (
+            ("diagram", EXAMPLE, "--quiet=3"),
+            "contvines: --quiet: this option takes no value; write --quiet al",
+        ),
+        (
+            ("diagram", EXAMPLE, "-y", "speed"),
+            "contvines: -y speed: there is no such measure; choose one of amp",
+        ),
+        (
+            ("trace", EXAMPLE, "-x", "impct_loss", "--plot", "a.png"),
+            "-x impct_loss: there is no such measure (did you mean 'impact_loss'?)",
+        ),
+        (("diagram", EXAMPLE, "-y", "C2"), "-y C2: there is no picture to show it in; give --plot"),
+        (
+            ("plot", "g.vines", "--branch", "B1"),
+            "--branch B1: --kind diagram draws all branches and has no use",
+        ),
+        (("plot", "g.vines", "--kind", "network", "-y", "norm"), "-y norm: --kind network draws boxes"),
+        (("plot", "g.vines", "--kind", "multipliers", "-x", "p"), "-x p: --kind multipliers draws over"),
+        (
+            ("design", EXAMPLE, "--no-plot", "--plot", "a.png"),
+            "--plot a.png and --no-plot exclude each other",
+        ),
+        (("export", "g.vines", "--to", "csv", "-o", "x.json"), "x.json: this is not a .csv file by its name"),
+        (("export", "g.vines", "--to", "mat", "-o", "-"), "-: results are kept in files"),
+        (("diagram", EXAMPLE, "-o", "x.txt"), "x.txt: this is not a .vines file by its name; -o x.vines"),
+        (("trace", EXAMPLE, "-o", "x.png"), "x.png: this is not a .vines file by its name; -o x.vines"),
+        (("diagram", EXAMPLE, "-o", "-"), "-: results are kept in files"),
+        (("sweep", EXAMPLE, "-o", "x.json"), "x.json: this is not a .csv file by its name; -o x.csv"),
     ],
 )
 def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path, words, sentence):
@@ -245,8 +288,26 @@ def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path
     status, out, err = run(*words)
     assert status != 0
     assert sentence in err
+    assert err.startswith("contvines: ") and err.count("\n") == 1  # one sentence
     assert "Traceback" not in out + err
     assert {p: p.read_bytes() for p in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("name", ["data", "data.dat", "data.csv", "data.CSV", "data.txt", "v1.2"])
+def test_other_endings_are_the_users_affair(run, vines, tmp_path, name):
+    assert run("export", vines, "--to", "csv", "-o", name)[0] == 0
+    assert (tmp_path / name).read_text().startswith("branch,index,p,")
+
+
+def test_help_of_export_says_what_the_unknowns_are(run):
+    out = " ".join(run("export", "--help")[1].split())
+    for part in (
+        "forcing's phase (radians)",
+        "velocity after it",
+        "displacement w",
+        "first half of its word",
+    ):
+        assert part in out
 
 
 def test_debug_shows_the_traceback(monkeypatch, tmp_path):

@@ -1,11 +1,14 @@
 """The commands that compute, one after the other on one study, as a user would."""
 
+import csv
 import json
+import math
 import sqlite3
 from pathlib import Path
 
 import pytest
 
+import contvines as cv
 from contvines.command.cli import main
 from contvines.graph.persistence import same_graph
 from contvines.store import load
@@ -211,3 +214,47 @@ def test_a_guess_that_leads_nowhere_is_not_dropped_silently(tmp_path, capsys):
 def test_a_finished_file_has_no_free_pages(folder):
     with sqlite3.connect(folder / "s.vines") as db:
         assert db.execute("PRAGMA freelist_count").fetchone() == (0,)
+
+
+def test_export_has_the_measures_of_every_point(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    call("export", "s.vines", "--to", "csv")
+    with open("s.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["branch"] == "B1"]
+    assert {(row["word"], row["periods"]) for row in rows} == {("LR", "1")}
+    for row in rows:
+        assert float(row["C2"]) == pytest.approx(float(row["amplitude"]) ** 2, rel=1e-14)
+        assert float(row["B_post"]) == pytest.approx(
+            float(row["u1"]), abs=1e-15
+        )  # the first event is an impact on the left wall
+        # LR on the impacting manifold C^2 = (1 - pi B/2)^2 + (R B + h)^2, friction included in h
+        B, R, h = float(row["B"]), 0.24 / 1.76, math.pi / 2 * 1.006 * 0.5 * 0.211
+        assert float(row["C2"]) == pytest.approx((1 - math.pi * B / 2) ** 2 + (R * B + h) ** 2, rel=1e-9)
+        assert float(row["friction_loss"]) == pytest.approx(0.5 * 0.211 * 4, rel=1e-14)
+
+
+def test_a_graze_has_no_multipliers(folder, capsys):
+    """At the orbit LR that touches the walls at rest, impacts come with the square root of the distance."""
+    call("orbit", folder / "s.vines", "WG1")
+    out = capsys.readouterr().out
+    assert "  multipliers: not defined at a graze\n" in out
+    assert "nan" not in out
+    call("orbit", folder / "s.vines", "WG1", "--json")
+    pairs = json.loads(capsys.readouterr().out)["multipliers"]
+    assert pairs == [[None, None], [None, None]]
+
+
+def test_python_refusals_are_sentences(folder):
+    graph = load(folder / "s.vines")
+    with pytest.raises(
+        ValueError, match=r"none/x.vines: there is no folder '.*none'; make it first, or choose another"
+    ):
+        graph.save(folder / "none" / "x.vines")
+    with pytest.raises(ValueError, match="this is a folder"):
+        graph.save(folder)
+    with pytest.raises(
+        TypeError, match="wants the label of a special point as text, for example 'SB1', the label of"
+    ):
+        cv.switch(graph, graph["SB1"])  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="for example 'SB1'$"):
+        cv.switch(graph, 3)  # type: ignore[arg-type]

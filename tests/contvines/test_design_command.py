@@ -80,3 +80,77 @@ def test_scale_is_given_once(tmp_path):
     floating = check_study(tomllib.loads(STUDY.replace("gravity = 0.211", "gravity = 0")))
     with pytest.raises(StudyError, match="give both"):
         machine(floating, None, None)
+
+
+def test_help_shows_the_units(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    out = run("--help").output
+    assert "cavity [m];" in out and "oscillator [Hz]," in out
+
+
+@pytest.mark.parametrize(
+    ("cavity", "frequency", "gravity", "sentence"),
+    [
+        (1e300, None, 0.211, r"--cavity = 1e\+300 is out of range; .* m would do, for example 0.02"),
+        (0.0, None, 0.211, r"--cavity = 0.0 is out of range"),
+        (
+            None,
+            1e300,
+            0.211,
+            r"--natural-frequency = 1e\+300 is out of range; .* Hz would do, for example 7.666",
+        ),
+        (None, float("nan"), 0.211, "--natural-frequency = nan is out of range"),
+        (
+            None,
+            1e9,
+            0.211,
+            r"\[model\] gravity = 0.211 with natural_frequency = .* Hz means cavity = .*; change one",
+        ),
+        (0.02, None, 1e-300, r"\[model\] gravity = 1e-300 with cavity = 0.02 m means natural_frequency = "),
+        (None, None, 1e-300, r"\[model\] gravity = 1e-300 with cavity = 0.02 m means natural_frequency = "),
+        (1e300, 7.0, 0.0, "--cavity = "),
+    ],
+)
+def test_scales_out_of_range_are_refused(cavity, frequency, gravity, sentence):
+    import tomllib
+
+    study = check_study(tomllib.loads(STUDY.replace("gravity = 0.211", f"gravity = {gravity!r}")))
+    with pytest.raises(StudyError, match=sentence):
+        machine(study, cavity, frequency)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("old", "new", "more"),
+    [
+        (
+            "restitution = 0.76",
+            "restitution = 1",
+            (),
+        ),  # without friction the threshold is zero, the ratio infinite
+        ("friction = 0.5", "friction = 0", ()),
+        (
+            "gravity = 0.211",
+            "gravity = 0",
+            ("--cavity", 0.02, "--natural-frequency", 7),
+        ),  # a ratio that never changes
+        ("friction = 0.5", "friction = 1e6", ("--cavity", 1e9)),
+    ],
+)
+def test_extreme_machines_have_a_table_and_a_picture(study, tmp_path, old, new, more):
+    study.write_text(STUDY.replace(old, new))
+    target = tmp_path / "map.png"
+    result = run(study, "--plot", target, *more)
+    assert result.exit_code == 0, result.output
+    assert target.stat().st_size > 20_000
+
+
+def test_an_infinite_ratio_is_null_in_json(study):
+    study.write_text(
+        STUDY.replace("restitution = 0.76", "restitution = 1").replace("friction = 0.5", "friction = 0")
+    )
+    text = run(study, "--no-plot", "--json").output
+    assert "Infinity" not in text
+    found = json.loads(text)
+    assert found["q1_min"]["value"] == 0.0
+    assert found["xi"]["value"] is None

@@ -40,6 +40,45 @@ def test_csv_has_every_point_at_full_precision(graph, tmp_path):
     assert [(r["branch"], int(r["index"])) for r in rows if r["special"] == "BP1"] == [("B1", 20), ("B2", 0)]
 
 
+class Measured:
+    """A made-up problem: the measures double and triple, and one that cannot be had."""
+
+    measure_names = ("double", "triple", "u0", "refused", "p")
+
+    def measures(self, names, u, p):
+        (name,) = names
+        if name == "refused":
+            raise ValueError("not for this problem")
+        return {
+            name: {"double": 2 * u[:, 0], "triple": np.where(p > 0.5, np.nan, 3 * u[:, 0])}.get(name, u[:, 0])
+        }
+
+
+def test_csv_and_mat_have_word_periods_and_measures(graph, tmp_path):
+    branch = graph.branches["B2"]  # the parabola p = u^2
+    branch.problem = Measured()
+    branch.description = {"word": "LR", "periods": 3}
+    with export(graph, "csv", tmp_path / "g.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    head = list(rows[0])
+    assert head[:8] == ["branch", "index", "p", "stable", "real", "margin", "special", "u0"]
+    assert head[8:] == ["multiplier0_re", "multiplier0_im", "word", "periods", "norm", "double", "triple"]
+    for row in rows:
+        u, p = float(row["u0"]), float(row["p"])
+        if row["branch"] != "B2":
+            assert (row["word"], row["periods"], row["double"], row["triple"]) == ("",) * 4
+            assert float(row["norm"]) == abs(u)
+            continue
+        assert (row["word"], row["periods"], row["norm"]) == ("LR", "3", "")
+        assert float(row["double"]) == 2 * u
+        assert row["triple"] == "" if p > 0.5 else float(row["triple"]) == 3 * u
+    data = loadmat(export(graph, "mat", tmp_path / "g.mat"), simplify_cells=True)["branches"]
+    assert (data["B2"]["word"], data["B2"]["periods"]) == ("LR", 3)
+    x = np.linspace(0, 1, 31)
+    assert np.array_equal(data["B2"]["measures"]["double"], 2 * x)
+    assert np.isnan(data["B2"]["measures"]["triple"]).sum() == np.sum(x**2 > 0.5)
+
+
 def test_json_is_the_graphs_own_object_in_standard_json(graph, tmp_path):
     graph.special["BP1"].bracket = (float("nan"), float("inf"))
     text = export(graph, "json", tmp_path / "g.json").read_text()

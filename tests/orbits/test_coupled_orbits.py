@@ -111,6 +111,10 @@ def test_measures_against_quadrature_and_the_balance_of_energy(word):
     found = orbit.measures()
     lost = found["damping_loss"] + found["impact_loss"] + found["friction_loss"]
     assert found["input_work"] == pytest.approx(lost, rel=1e-10)
+    doubled = orbit.repeat(2).measures("input_work", "input_work_mean", "damping_loss_mean")
+    assert doubled["input_work"] == pytest.approx(2 * found["input_work"], rel=1e-9)
+    assert doubled["input_work_mean"] == pytest.approx(found["input_work"], rel=1e-9)
+    assert doubled["damping_loss_mean"] == pytest.approx(found["damping_loss"], rel=1e-9)
     points = orbit.sample(20000)
     assert found["max_abs_q1"] == pytest.approx(np.abs(points["cavity"]).max(), abs=1e-6)
     sine = np.trapezoid(points["v"] * np.sin(points["phase"]), points["phase"]) / np.pi

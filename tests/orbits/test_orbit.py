@@ -142,6 +142,16 @@ def test_losses_balance_the_work_of_the_cavity():
     np.testing.assert_allclose(s["cavity"] - s["absorber"], s["w"], atol=1e-12)
 
 
+def test_losses_per_forcing_period_do_not_depend_on_how_often_an_orbit_is_written():
+    orbit = PAPER.symmetric_orbit(0.6)
+    once, thrice = orbit.measures(), orbit.repeat(3).measures()
+    assert "input_work_mean" not in once  # the reduced machine's oscillator is prescribed
+    for name in ("impact_loss", "friction_loss"):
+        assert once[f"{name}_mean"] == once[name]
+        assert thrice[name] == pytest.approx(3 * once[name], rel=1e-13)
+        assert thrice[f"{name}_mean"] == pytest.approx(once[name], rel=1e-13)
+
+
 def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
     low, high = (float(x) for x in sliding_squares(friction_number(0.5, 0.211, 0.006)))
     for square, word in (

@@ -1,0 +1,42 @@
+"""The axes that a user asks for, checked before any work."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from contvines.command.study import Study
+
+
+def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -> None:
+    """Refuse measures that the study's machine does not have, and axes without a picture.
+
+    Parameters
+    ----------
+    study : Study
+    axes : option -> name of a measure, or None where it is not given.
+    plot : where the picture goes, or None.
+
+    Raises
+    ------
+    ValueError
+        With a sentence that names the option, the measure and those there are.
+    """
+    given = {option: name for option, name in axes.items() if name is not None}
+    if not given:
+        return
+    from contvines.command.compose import machine
+    from contvines.command.sentences import did_you_mean
+    from orbits.measures import names
+
+    known = list(dict.fromkeys([study.parameter, *names(machine(study))]))
+    for option, name in given.items():
+        if name not in known:
+            raise ValueError(
+                f"{option} {name}: there is no such measure{did_you_mean(name, known)}; "
+                f"choose one of {', '.join(known)}."
+            )
+    if plot is None:
+        option, name = next(iter(given.items()))
+        raise ValueError(
+            f"{option} {name}: there is no picture to show it in; give --plot FILE.png, too, or leave it out."
+        )

@@ -1,0 +1,25 @@
+"""Long words for tables and captions; files keep them whole."""
+
+from __future__ import annotations
+
+
+def short_word(word: str, limit: int = 24) -> str:
+    """A word of events in at most about `limit` characters.
+
+    A word that repeats a shorter one is written with its power, ``(LtRLttR)^8``; what is still too long is cut, with the
+    number of its events (signs such as those of ``s+`` belong to the event before them).
+    """
+    if len(word) <= limit:
+        return word
+    length = (word + word).find(word, 1)  # of the shortest root
+    power = f"^{len(word) // length}" if length < len(word) else ""
+    root = word[:length]
+    if len(root) > limit:
+        events = sum(letter.isalpha() for letter in root)
+        root = f"{root[: limit - 8]}... {events} events"
+    return f"({root}){power}" if power else root
+
+
+def short_words(text: str, limit: int = 24) -> str:
+    """A sentence with its long words shortened."""
+    return " ".join(short_word(part, limit) for part in text.split(" "))

@@ -1,0 +1,60 @@
+"""The table that people read: names, short words."""
+
+import importlib.util
+import itertools
+from pathlib import Path
+
+import pytest
+
+from contvines.graph.shortening import short_word, short_words
+
+_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
+assert _spec is not None and _spec.loader is not None
+fakes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(fakes)
+
+
+@pytest.mark.parametrize(
+    ("word", "short"),
+    [
+        ("LR", "LR"),
+        ("", ""),
+        ("LRLR", "LRLR"),
+        ("LtRLttR" * 8, "(LtRLttR)^8"),
+        ("s-s+" * 16, "(s-s+)^16"),
+        ("LR" * 100 + "tt", "LRLRLRLRLRLRLRLR... 202 events"),
+        ("LR" * 50 + "s+", "LRLRLRLRLRLRLRLR... 101 events"),
+        (("LtR" * 30 + "tt") * 2, "(LtRLtRLtRLtRLtRL... 92 events)^2"),
+    ],
+)
+def test_short_words(word, short):
+    assert short_word(word) == short
+
+
+def test_sentences_keep_their_short_words():
+    text = "a turn hits the wall: nonsmooth fold, the word becomes "
+    assert short_words(text + "LtLRLttR") == text + "LtLRLttR"
+    assert short_words(text + "LtLRLttR" * 16) == text + "(LtLRLttR)^16"
+
+
+def test_the_table_names_the_stuck_motion_and_stays_narrow():
+    graph = fakes.pitchfork_graph()
+    words = ("", "LtLRLttR" * 64, "LR" * 99 + "tt")
+    for branch, word in zip(graph.branches.values(), words, strict=True):
+        branch.description = {
+            "word": word,
+            "periods": 1,
+            "name": "stuck" if not word else "P",
+            "symmetric": not word,
+        }
+    graph.special["VG1"].kind = "velocity-graze"
+    lines = str(graph).splitlines()
+    assert any(line.split()[:4] == ["B1", "stuck", "k=1", "symmetric"] for line in lines)
+    assert any(line.split()[:2] == ["B2", "(LtLRLttR)^64"] for line in lines)
+    assert max(map(len, lines)) < 160
+    assert [b["word"] for b in graph.to_dict()["branches"]] == list(words)
+
+
+def test_short_words_of_different_powers_differ():
+    names = [short_word("LttR" * n) for n in range(1, 40)]
+    assert all(a != b for a, b in itertools.combinations(names, 2))
