@@ -43,7 +43,8 @@ class Attractor:
     state : ndarray, shape (S,)
         A state on the attractor, from which a simulation goes on.
     impacts_per_period, impact_speed : float
-        Impacts per forcing period and fastest approach |w'-|, over the motion looked at.
+        Impacts per forcing period and fastest approach |w'-|, over the motion looked at: the cycle, or what
+        `orbits.simulation.observation` needs where nothing recurs.
     """
 
     model: Any
