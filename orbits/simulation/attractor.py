@@ -25,8 +25,8 @@ class Attractor:
         Parameter vector.
     kind : str
         ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts
-        pile up into persistent contact, periodically or not) or ``chaotic`` (nothing recurs within the
-        periods looked at).
+        pile up into persistent contact, in every cycle or every 32 periods on average) or ``chaotic`` (nothing
+        recurs within the periods looked at).
     periods : int
         Forcing periods k until the motion recurs; 0 if it does not.
     codes, modes : ndarray of int8, shape (n,)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from orbits.simulation.attractor import Attractor
-from orbits.simulation.contract import EVENTS_FULL, PSI, TIME_REACHED, TURNS, V
+from orbits.simulation.contract import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS, V
 from orbits.simulation.driver import collect
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
@@ -18,6 +18,8 @@ LONGEST = 16384
 """Forcing periods after which the observation ends in any case."""
 SETTLED = 0.01
 """Largest relative change over the last doubling."""
+OFTEN = 32
+"""A motion that does not recur is `chatter` if it rests on a wall at least once in so many periods, on average."""
 PIECE = 256  # periods simulated at a time: bounds the memory
 PER_OSCILLATION = 12  # instants between which an extremum of q1 is looked for; events come on top
 MOST_EVENTS = 400  # per period
@@ -35,6 +37,8 @@ class Observation:
         Largest displacement of the cavity (nan in the reduced model), largest |w|, fastest approach |w'-|.
     impacts_per_period : float
         Mean number of impacts per forcing period.
+    contacts : int
+        How often impacts piled up into persistent contact.
     """
 
     periods: float
@@ -42,6 +46,7 @@ class Observation:
     max_abs_w: float
     impact_speed: float
     impacts_per_period: float
+    contacts: int
 
     def near(self, other: Observation) -> bool:
         """Whether two observations tell the same, up to `SETTLED`."""
@@ -75,11 +80,16 @@ def observe(found: Attractor) -> Observation:
 
 
 def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
-    """The attractor with its impacts as `observe` sees them; one that recurs is returned as it is."""
+    """The attractor with its kind and impacts as `observe` sees them; one that recurs is returned as it is."""
     if found.recurrent:
         return found
     seen = seen or observe(found)
-    return replace(found, impacts_per_period=seen.impacts_per_period, impact_speed=seen.impact_speed)
+    return replace(
+        found,
+        kind="chatter" if seen.contacts * OFTEN >= seen.periods else "chaotic",
+        impacts_per_period=seen.impacts_per_period,
+        impact_speed=seen.impact_speed,
+    )
 
 
 class _Tally:
@@ -88,7 +98,7 @@ class _Tally:
     def __init__(self, found: Attractor) -> None:
         self.found, self.state = found, found.state.copy()
         self.begin = self._time()
-        self.impacts, self.moving = 0, True
+        self.impacts, self.contacts, self.moving = 0, 0, True
         self.q1 = 0.0 if found.machine.state > V else np.nan
         self.w = self.speed = 0.0
         frequency = float(found.params[found.model.parameter_names.index("frequency")])
@@ -98,7 +108,9 @@ class _Tally:
         """One cycle; its impacts are the attractor's own."""
         found = self.found
         self._add(found.periods or 1, per_period=200)
-        return Observation(self._lasted(), self.q1, self.w, found.impact_speed, found.impacts_per_period)
+        return Observation(
+            self._lasted(), self.q1, self.w, found.impact_speed, found.impacts_per_period, self.contacts
+        )
 
     def go_on(self, length: float) -> Observation:
         """Simulate until `length` periods have been seen in all."""
@@ -106,7 +118,7 @@ class _Tally:
             self._add(min(PIECE, length - self._lasted()), self.per_period)
         lasted = self._lasted()
         rate = self.impacts / lasted if lasted > 0.0 else 0.0
-        return Observation(lasted, self.q1, self.w, self.speed, rate)
+        return Observation(lasted, self.q1, self.w, self.speed, rate, self.contacts)
 
     def _time(self) -> float:
         return float(self.state[TURNS] + self.state[PSI] / TWO_PI)
@@ -121,6 +133,7 @@ class _Tally:
         run = Trajectory(found.model, found.params, found.machine, begin, self.state.copy(), *seen)
         hits = np.abs(run.rows[run.codes < 2, 3])
         self.impacts += hits.size
+        self.contacts += int(np.count_nonzero(run.codes == HOLD))
         self.speed = max(self.speed, float(hits.max(initial=0.0)))
         reach = np.append(run.states[:, 1], run.end[1])
         if found.model.friction_acceleration(found.params) == 0.0:  # turns are no events there

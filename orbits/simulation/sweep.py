@@ -16,6 +16,9 @@ from orbits.simulation.observation import Observation, lasting, observe
 from orbits.simulation.recurrence import find_attractor, settle
 from orbits.simulation.trajectory import Trajectory
 
+PATIENCE = 2
+"""How often the transient is prolonged fourfold before a motion is said not to recur: weakly damped ones settle late."""
+
 
 @dataclass(frozen=True)
 class SweepRow:
@@ -121,7 +124,7 @@ def sweep(
         if nudge and state[MODE] != 0.0:
             state[RATE] += nudge * np.sign(state[MODE])
         engine.launch(state, params)
-        found = settle(model, engine, params, state, transient, max_period, patience=1)
+        found = settle(model, engine, params, state, transient, max_period, patience=PATIENCE)
         row = _row(value, direction, found)
         rows.append(row)
         if progress is not None:

@@ -1,10 +1,14 @@
 """Statistics of motions that do not recur: they must not depend on when the observation begins."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled
 from orbits.simulation import find_attractor, simulate, sweep
+from orbits.simulation.contract import HOLD
+from orbits.simulation.observation import lasting, observe
 
 # strongly modulated: the oscillator grows without impacts for tens of periods, then the absorber brakes it
 MODULATED = Coupled(
@@ -65,3 +69,42 @@ def test_motions_that_recur_are_followed_over_one_cycle(monkeypatch):
     assert row.periods == 1 and lengths == [1]
     seen = simulate(machine, row.detail.state, periods=row.periods, frequency=1.01).sample(per_period=20_000)
     assert row.measures["max_abs_q1"] == pytest.approx(np.abs(seen.cavity).max(), rel=1e-6)
+
+
+def test_a_weakly_damped_motion_is_waited_for():
+    """Free oscillations fade as exp(-damping eps Psi / 2), to 1/e in 160 periods: not chaos, only slow."""
+    machine = Coupled(
+        damping=0.4,
+        mass_ratio=0.005,
+        restitution=0.7,
+        friction=0.1,
+        gravity=0.25,
+        frequency=1.01,
+        forcing=0.8,
+    )
+    orbit = machine.orbit("tt", 1)
+    assert orbit.real and orbit.stable
+    for transient in (100, 130, 200):
+        (row,) = sweep(machine, "forcing", [0.8], transient=transient)
+        assert (row.attractor, row.periods) == ("sliding", 1)
+        assert row.measures["max_abs_q1"] == pytest.approx(orbit.measure("max_abs_q1"), rel=2e-2)
+
+
+def test_a_rare_contact_is_no_chatter_whenever_it_comes():
+    """This motion rests on a wall once in some 150 periods: chaos from every start; often enough would be chatter."""
+    machine = Coupled(
+        damping=0.8,
+        mass_ratio=0.01,
+        restitution=0.3,
+        friction=0.05,
+        gravity=0.25,
+        frequency=1.0,
+        forcing=0.95,
+    )
+    for transient in (200, 230, 260, 300):
+        (row,) = sweep(machine, "forcing", [0.95], transient=transient)
+        run = simulate(machine, row.detail.state, periods=3000)
+        assert 0 < np.count_nonzero(run.codes == HOLD) < 3000 / 32
+        assert (row.attractor, row.periods) == ("chaotic", 0)
+    seen = observe(row.detail)
+    assert lasting(row.detail, replace(seen, contacts=int(seen.periods / 10))).kind == "chatter"
