@@ -77,8 +77,8 @@ class SweepSection(Section):
     """`[sweep]`, optional: the brute-force simulation of `contvines sweep`."""
 
     within: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    count: Annotated[int, Field(ge=2)] = 400
-    transient: Annotated[int, Field(ge=0)] = 200
+    count: Annotated[int, Field(ge=2, le=1_000_000)] = 400
+    transient: Annotated[int, Field(ge=0, le=1_000_000)] = 200
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 

@@ -1,6 +1,5 @@
 """`contvines sweep`: brute-force simulation over the continuation parameter."""
 
-import csv
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -8,8 +7,7 @@ import typer
 
 if TYPE_CHECKING:
     from contvines.command.study import Study
-
-COLUMNS = ("value", "direction", "attractor", "word", "periods", "impacts")
+    from contvines.command.sweep_rows import Kept
 
 
 def sweep(
@@ -32,7 +30,7 @@ def sweep(
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
-    """Simulate over the parameter, carrying the state on; tell the attractor at each value."""
+    """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
     from contvines.command.compose import beside, say
     from contvines.command.study import read_study
     from contvines.export import check_target
@@ -44,13 +42,9 @@ def sweep(
     check_target(target, "csv")
     graph: Any = None
     if over is not None:
-        from contvines.store import load
+        from contvines.command.sweep_picture import graph_beneath
 
-        graph = load(over)
-        if graph.parameter != read.parameter:
-            raise ValueError(
-                f"{over} continues in {graph.parameter}, the study sweeps over {read.parameter}."
-            )
+        graph = graph_beneath(over, read)
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
     if plot is not None:
@@ -62,25 +56,19 @@ def sweep(
     if not quiet:
         typer.echo(_summary(rows, read.parameter))
     if plot is not None:
+        from contvines.command.sweep_picture import picture
         from contvines.plots.style import save_figure
-        from contvines.plots.sweep import plot_sweep
 
-        peaks = (
-            bool(rows) and "max_abs_q1" in rows[0].measures
-        )  # the coupled machine: what a frequency response shows
-        if peaks:
-            points = [(row.value, row.measures["max_abs_q1"]) for row in rows]
-        else:
-            points = [(row.value, b) for row in rows for b in _impacts(row)]
-        save_figure(plot_sweep(points, read.parameter, graph, "max_abs_q1" if peaks else "B"), plot)
+        save_figure(picture(rows, read, graph), plot)
         say(f"drawn in {plot}", quiet)
 
 
-def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any]:
-    """All rows, each written to the file as soon as it is there."""
+def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Kept]":
+    """All rows, each written to the file as soon as it is there; those of an unfinished run are not repeated."""
     import numpy as np
 
-    from contvines.command.compose import Interrupted, loose, machine
+    from contvines.command.compose import Interrupted, loose, machine, say
+    from contvines.command.sweep_rows import FIRST, Rows, kept
     from orbits.simulation.sweep import measure_names
     from orbits.simulation.sweep import sweep as simulate
 
@@ -88,37 +76,37 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> list[Any
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
     others: dict[str, Any] = {k: v for k, v in loose(study).items() if k != study.parameter}
-    names = [n for n in measure_names(model) if n not in COLUMNS]
-    rows: list[Any] = []
-    with target.open("w", newline="", encoding="utf-8") as file, _counter(len(values), quiet) as count:
-        writer = csv.writer(file)
-        writer.writerow([*COLUMNS, *names])
+    names = [n for n in measure_names(model) if n not in FIRST]
+    with Rows(target, study, down, names) as file, _counter(len(values), quiet) as count:
+        done = len(file.rows)
+        if done:
+            say(f"{target} is unfinished: going on after {done} of {len(values)} values.", quiet)
+        count(done)
 
         def keep(row: Any) -> None:
-            kind = "periodic" if row.attractor == "sliding" else row.attractor
-            first = [repr(row.value), row.direction, kind, row.word, row.periods, row.impacts]
-            writer.writerow(first + [repr(float(row.measures[n])) for n in names])
-            file.flush()
-            rows.append(row)
+            file.keep(kept(row, "down" if down else "up", names))
             count()
 
         try:
-            simulate(
-                model,
-                study.parameter,
-                values,
-                transient=study.sweep.transient,
-                max_period=study.sweep.max_period,
-                progress=keep,
-                **others,
-            )
+            if done < len(values):
+                simulate(
+                    model,
+                    study.parameter,
+                    values[done:],
+                    start=np.array(file.rows[-1].state) if done else None,
+                    transient=study.sweep.transient,
+                    max_period=study.sweep.max_period,
+                    progress=keep,
+                    **others,
+                )
         except KeyboardInterrupt:
-            left = [low, high] if not rows else [low, rows[-1].value] if down else [rows[-1].value, high]
+            then = (
+                "the same command goes on from there, from the state reached" if file.lasting else "no more"
+            )
             raise Interrupted(
-                f"{len(rows)} of {len(values)} values are kept in {target}; "
-                f"[sweep] within = {left} with another -o does the rest"
+                f"{len(file.rows)} of {len(values)} values are kept in {target}; {then}"
             ) from None
-    return rows
+    return file.rows
 
 
 class _counter:
@@ -140,16 +128,16 @@ class _counter:
             self.task = self.progress.add_task("sweep", total=self.total)
         return self
 
-    def __call__(self) -> None:
+    def __call__(self, values: int = 1) -> None:
         if self.progress is not None:
-            self.progress.advance(self.task)
+            self.progress.advance(self.task, values)
 
     def __exit__(self, *_: object) -> None:
         if self.progress is not None:
             self.progress.stop()
 
 
-def _summary(rows: list[Any], parameter: str) -> str:
+def _summary(rows: "list[Kept]", parameter: str) -> str:
     """Runs of equal attractors, one line each."""
     lines = []
     first = 0
@@ -163,19 +151,5 @@ def _summary(rows: list[Any], parameter: str) -> str:
     return "\n".join(lines)
 
 
-def _kind(row: Any) -> tuple[Any, ...]:
+def _kind(row: "Kept") -> tuple[Any, ...]:
     return row.attractor, row.word, row.periods
-
-
-def _impacts(row: Any) -> list[float]:
-    """B = (B+ - B-)/2, positive away from the wall, at every impact of the motion.
-
-    B = v' - w', and v' does not change at an impact: B is half the jump of -w'.
-    """
-    from orbits.simulation.contract import RATE
-    from orbits.simulation.sweep import follow
-
-    run = follow(row.detail)
-    hits = run.codes < 2
-    away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
-    return list(0.5 * away * (run.rows[hits, 3] - run.states[1:][hits, RATE]))

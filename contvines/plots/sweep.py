@@ -1,6 +1,7 @@
 """A brute-force sweep as dots, over the continued branches if there are any."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,36 +9,49 @@ from .diagram import plot_diagram
 from .style import axis_label, new_axes, styled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..graph.graph import Graph
 
+Dots = Sequence[tuple[float, float]]
+
 
 def plot_sweep(
-    points: list[tuple[float, float]], parameter: str, graph: "Graph | None" = None, measure: str = "B"
+    points: Dots,
+    parameter: str,
+    graph: "Graph | None" = None,
+    measure: str = "B",
+    *,
+    others: Dots = (),
+    wandering: Dots = (),
 ) -> "Figure":
     """Draw the attractors of a sweep.
 
     Parameters
     ----------
-    points : (parameter value, measure), for B as many as there are impacts.
+    points : (parameter value, measure) of motions that recur; B at every impact, or over branches at the impact
+        that their lines show.
     parameter : name of the parameter.
     graph : branches drawn beneath, with the same measure (B at their first impact).
     measure : name of the measure.
+    others : the same at other impacts, drawn lighter.
+    wandering : the same of motions that do not recur (modulated, chaotic).
     """
-    values = np.array(points, float).reshape(-1, 2)
+    at = ("B at every impact" if graph is None else "B at the first impact") if measure == "B" else ""
+    size = 2.4 if measure == "B" else 3.0
     with styled():
         figure, axes = new_axes(None)
-        axes.plot(
-            values[:, 0],
-            values[:, 1],
-            linestyle="none",
-            marker=".",
-            markersize=2.4 if measure == "B" else 3.0,
-            color="0.45" if measure == "B" else "black",
-            label="simulated: B at every impact" if measure == "B" else "simulated",
-            zorder=2 if measure == "B" else 3.5,
-        )
+        above = 3.5 if measure != "B" or graph is not None else 2.0
+        dark = "0.45" if measure == "B" and graph is None else "black"
+        told = f"simulated: {at or 'periodic'}"
+        lost = {"markersize": 1.5} if measure == "B" else {"marker": "o", "markersize": 2.6, "mfc": "none"}
+        _dots(axes, wandering, "simulated: not periodic", color="#d95f02", zorder=1.8, **lost)
+        _dots(axes, others, "simulated: B at other impacts", color="0.72", zorder=1.9, markersize=size)
+        _dots(axes, points, told, color=dark, zorder=above, markersize=size)
+        if not any(len(dots) for dots in (points, others, wandering)):
+            what = "no impacts" if measure == "B" else "nothing"
+            axes.plot([], [], linestyle="none", label=f"simulated: {what}")
         if graph is not None:
             plot_diagram(graph, x=parameter, y=measure, axes=axes)
         else:
@@ -45,3 +59,10 @@ def plot_sweep(
         axes.set_xlabel(axis_label(parameter))
         axes.set_ylabel("$B$ at the impacts" if measure == "B" else axis_label(measure))
     return figure
+
+
+def _dots(axes: "Axes", dots: Dots, label: str, **style: Any) -> None:
+    """One kind of dots; none, and no entry in the legend, where there are none."""
+    if len(dots):
+        values = np.array(dots, float).reshape(-1, 2)
+        axes.plot(values[:, 0], values[:, 1], **{"linestyle": "none", "marker": ".", "label": label, **style})

@@ -25,8 +25,8 @@ class Attractor:
         Parameter vector.
     kind : str
         ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts
-        pile up into persistent contact, periodically or not) or ``chaotic`` (nothing recurs within the
-        periods looked at).
+        pile up into persistent contact, in every cycle or every 32 periods on average) or ``chaotic`` (nothing
+        recurs within the periods looked at).
     periods : int
         Forcing periods k until the motion recurs; 0 if it does not.
     codes, modes : ndarray of int8, shape (n,)
@@ -43,7 +43,8 @@ class Attractor:
     state : ndarray, shape (S,)
         A state on the attractor, from which a simulation goes on.
     impacts_per_period, impact_speed : float
-        Impacts per forcing period and fastest approach |w'-|, over the motion looked at.
+        Impacts per forcing period and fastest approach |w'-|, over the motion looked at: the cycle, or what
+        `orbits.simulation.observation` needs where nothing recurs.
     """
 
     model: Any

@@ -10,6 +10,7 @@ import numpy as np
 from orbits.simulation.attractor import Attractor, cyclic_distance
 from orbits.simulation.contract import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine
 from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
+from orbits.simulation.observation import lasting
 from orbits.simulation.polish import first_event, is_symmetric, polish, root_length, rotate
 from orbits.simulation.return_map import nodes_of
 from orbits.simulation.trajectory import TWO_PI
@@ -63,7 +64,7 @@ def find_attractor(
     params = model.vector(parameters)
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
-    return settle(model, engine, params, state, transient, max_period, tolerance, patience)
+    return lasting(settle(model, engine, params, state, transient, max_period, tolerance, patience))
 
 
 def settle(

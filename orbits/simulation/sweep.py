@@ -12,8 +12,12 @@ import numpy as np
 from orbits.simulation.attractor import Attractor
 from orbits.simulation.contract import MODE, RATE
 from orbits.simulation.driver import SimulationError, collect, first_state, machine
+from orbits.simulation.observation import Observation, lasting, observe
 from orbits.simulation.recurrence import find_attractor, settle
 from orbits.simulation.trajectory import Trajectory
+
+PATIENCE = 2
+"""How often the transient is prolonged fourfold before a motion is said not to recur: weakly damped ones settle late."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ def measure_names(model: Any) -> tuple[str, ...]:
 
     ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
     ``max_abs_q1``: largest displacement of the cavity; in the reduced model ``C2``: squared amplitude of its motion.
+    Motions that do not recur are looked at until these numbers settle; see `orbits.simulation.observation`.
     """
     own = ("C2",) if "amplitude" in model.parameter_names else ("max_abs_q1",)
     return (*own, "max_abs_w", "impact_speed", "impacts_per_period")
@@ -119,7 +124,7 @@ def sweep(
         if nudge and state[MODE] != 0.0:
             state[RATE] += nudge * np.sign(state[MODE])
         engine.launch(state, params)
-        found = settle(model, engine, params, state, transient, max_period, patience=1)
+        found = settle(model, engine, params, state, transient, max_period, patience=PATIENCE)
         row = _row(value, direction, found)
         rows.append(row)
         if progress is not None:
@@ -128,6 +133,8 @@ def sweep(
 
 
 def _row(value: float, direction: str, found: Attractor) -> SweepRow:
+    seen = observe(found)
+    found = lasting(found, seen)
     return SweepRow(
         value=value,
         direction=direction,
@@ -135,27 +142,26 @@ def _row(value: float, direction: str, found: Attractor) -> SweepRow:
         word=found.text,
         periods=found.periods,
         impacts=found.impacts,
-        measures=measures(found),
+        measures=_named(found, seen),
         detail=found,
     )
 
 
 def measures(found: Attractor) -> dict[str, float]:
     """The measures of an attractor, by name; see `measure_names`."""
+    return _named(found, observe(found))
+
+
+def _named(found: Attractor, seen: Observation) -> dict[str, float]:
     model, params = found.model, found.params
-    run = follow(found)
-    reach = np.append(run.states[:, 1], run.end[1])
-    if model.friction_acceleration(params) == 0.0:  # turns are no events there
-        reach = np.append(reach, run.sample().w)
     known = {
-        "max_abs_w": min(1.0, float(np.abs(reach).max())),
-        "impact_speed": found.impact_speed,
-        "impacts_per_period": found.impacts_per_period,
+        "max_abs_q1": seen.max_abs_q1,
+        "max_abs_w": seen.max_abs_w,
+        "impact_speed": seen.impact_speed,
+        "impacts_per_period": seen.impacts_per_period,
     }
     if "C2" in measure_names(model):
         known["C2"] = float(params[model.parameter_names.index("amplitude")]) ** 2
-    else:
-        known["max_abs_q1"] = run.peak_cavity()
     return {name: known[name] for name in measure_names(model)}
 
 

@@ -160,9 +160,13 @@ class Trajectory:
         seen = self.sample(marks)
         speed = seen.v_rate + eps * seen.w_rate
         turn = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
+        high = np.abs(seen.cavity)
+        peak = float(high.max())
+        steep = np.maximum(np.abs(speed[turn]), np.abs(speed[turn + 1])) / (1.0 + eps)
+        rise = steep * (marks[turn + 1] - marks[turn])  # q1' changes its sign there: q1 can gain no more
+        turn = turn[np.maximum(high[turn], high[turn + 1]) + rise >= peak]
         lo, hi = marks[turn], marks[turn + 1]
         below = speed[turn]
-        peak = float(np.abs(seen.cavity).max())
         for _ in range(
             30 if turn.size else 0
         ):  # bisection, all at once; the peak's error is the interval's squared

@@ -1,0 +1,140 @@
+"""A sweep's picture from its rows: which graph may lie beneath, and which dots its lines stand for."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from contvines.command.study import Study
+    from contvines.command.sweep_rows import Kept
+
+
+def graph_beneath(path: Path, study: "Study") -> Any:
+    """The graph of a file, if it is one of the study's machine in the study's parameter.
+
+    Raises
+    ------
+    ValueError
+        With a sentence that names the fields that differ and their values.
+    """
+    from contvines.store import load
+
+    graph = load(path)
+    if graph.parameter != study.parameter:
+        raise ValueError(f"{path} continues in {graph.parameter}, the study sweeps over {study.parameter}.")
+    theirs, ours = _graph_machine(graph), _study_machine(study)
+    differing = [
+        f"{name} = {_shown(theirs[name])} there and {_shown(ours[name])} in the study"
+        for name in ours
+        if name != study.parameter and name in theirs and not _same(theirs[name], ours[name])
+    ]
+    if differing:
+        raise ValueError(
+            f"--over {path}: this is the graph of another machine: {'; '.join(differing)}; "
+            f"make the graph of this one first: contvines diagram {study.path}."
+        )
+    return graph
+
+
+def _graph_machine(graph: Any) -> dict[str, Any]:
+    """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
+    from orbits.models import build
+
+    known = dict(graph.model)
+    for branch in graph.branches.values():
+        params = branch.description.get("params")
+        if params is None or known.get("name") not in ("absorber", "coupled"):
+            continue
+        return {"name": known["name"], **dict(zip(build(known).parameter_names, params))}
+    return known
+
+
+def _study_machine(study: "Study") -> dict[str, Any]:
+    from contvines.command.compose import loose, machine
+
+    model = machine(study)
+    vector = model.vector({**loose(study), study.parameter: study.parameters[study.parameter]})
+    return {"name": study.name, **dict(zip(model.parameter_names, vector.tolist()))}
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b
+    return math.isclose(a, b, rel_tol=1e-12, abs_tol=1e-300)
+
+
+def _shown(value: Any) -> str:
+    return repr(value) if isinstance(value, str) else f"{value:.15g}"
+
+
+def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
+    """The attractors of a sweep as dots, over a graph if there is one."""
+    from contvines.plots.sweep import plot_sweep
+
+    wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
+    steady = [row for row in rows if row.recurrent]
+    if study.name == "coupled":  # what a frequency response shows
+        points = [(row.value, dot) for row in steady for dot in row.dots]
+        return plot_sweep(points, study.parameter, graph, "max_abs_q1", wandering=wandering)
+    first: list[tuple[float, float]] = []
+    others: list[tuple[float, float]] = []
+    lines = _lines(graph) if graph is not None else []
+    for row in steady:
+        place = _drawn_impact(row, lines) if graph is not None else None
+        for i, dot in enumerate(row.dots):
+            (first if graph is None or i == place else others).append((row.value, dot))
+    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering)
+
+
+def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:
+    """Word, parameter values and B at the word's first impact of every branch that has one."""
+    from contvines.plots.diagram import measured
+    from orbits.words import Word
+
+    found = []
+    for branch in graph.branches.values():
+        about = branch.description
+        if about.get("events") and len(branch) > 1:
+            word = Word(tuple(about["events"]), tuple(about["modes"]), about["frictionless"])
+            if word.impacts:
+                found.append((word, branch.values, measured(branch, "B")))
+    return found
+
+
+def _drawn_impact(row: "Kept", lines: list[tuple[Any, Any, Any]]) -> int | None:
+    """Which of a motion's impacts is the first one of its branch's word, whose B the branch's line shows.
+
+    Where a rotation or the mirror image of the word is the word again, several impacts may be: the mirror
+    image of an asymmetric orbit is the same orbit, and the line shows the nearest. None if no branch has the word.
+    """
+    import numpy as np
+
+    from orbits.words import Word, WordError
+
+    candidates: list[tuple[float, int]] = []
+    for word, values, heights in lines:
+        try:
+            own = Word.parse(row.word, word.frictionless)
+        except WordError:
+            continue
+        if len(own.events) != len(word.events):
+            continue
+        inside = np.flatnonzero((values[:-1] - row.value) * (values[1:] - row.value) <= 0.0)
+        if not len(inside):
+            continue
+        width = values[inside + 1] - values[inside]
+        share = np.divide(
+            row.value - values[inside], width, out=np.zeros_like(width), where=np.abs(width) > 0.0
+        )
+        there = heights[inside] + share * (heights[inside + 1] - heights[inside])
+        lead = next(i for i, letter in enumerate(word.events) if letter in "LR")
+        places = [i for i, letter in enumerate(own.events) if letter in "LR"]
+        for shift in range(len(own.events)):
+            turned = own.rotate(shift)
+            if word in (turned, turned.mirror()):
+                place = places.index((shift + lead) % len(own.events))
+                if place < len(row.dots):
+                    candidates.append((float(np.abs(there - row.dots[place]).min()), place))
+    return min(candidates)[1] if candidates else None

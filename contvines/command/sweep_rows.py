@@ -1,0 +1,174 @@
+"""The rows of a sweep: the CSV, and beside it the journal from which an unfinished sweep goes on."""
+
+import csv
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import gettempdir
+from typing import IO, TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from contvines.command.study import Study
+
+FIRST = ("value", "direction", "attractor", "word", "periods", "impacts")
+LAST = ("symmetric", "nodes")
+
+
+@dataclass(frozen=True)
+class Kept:
+    """One value of a sweep as it is kept.
+
+    Attributes
+    ----------
+    cells : text of the CSV's columns.
+    attractor : kind of the motion, `sliding` told from `periodic`.
+    recurrent : whether the motion recurs.
+    dots : what a picture shows: the largest |q1|, or B at every impact (from the word's first on, where there is one).
+    state : state reached, from which the next value goes on.
+    """
+
+    cells: list[str]
+    attractor: str
+    recurrent: bool
+    dots: list[float]
+    state: list[float]
+
+    @property
+    def value(self) -> float:
+        return float(self.cells[0])
+
+    @property
+    def word(self) -> str:
+        return self.cells[3]
+
+    @property
+    def periods(self) -> int:
+        return int(self.cells[4])
+
+
+def kept(row: Any, direction: str, names: list[str]) -> Kept:
+    """A row of `orbits.simulation.sweep` as it is kept; `names` are the measures in the CSV's order."""
+    found = row.detail
+    kind = "periodic" if row.attractor == "sliding" else row.attractor
+    cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
+    cells += [repr(float(row.measures[n])) for n in names]
+    cells.append(str(int(found.symmetric)) if found.recurrent else "")
+    cells.append(_nodes(found))
+    dots = [float(row.measures["max_abs_q1"])] if "max_abs_q1" in row.measures else _impacts(found)
+    return Kept(cells, row.attractor, found.recurrent, dots, [float(x) for x in found.state])
+
+
+def _nodes(found: Any) -> str:
+    """The nodes as a study's `guess` takes them; empty where no word describes the motion."""
+    from orbits.words import Word
+
+    if found.word is None:
+        return ""
+    if not len(found.word):
+        return "[]"  # stuck
+    orbit, read = found.orbit, Word.parse(found.text, found.word.frictionless)
+    turns = [k for k in range(len(read)) if orbit.word.rotate(k) == read]  # "tt" says no direction
+    if turns and turns[0]:
+        orbit = orbit.rotate(turns[0])
+    return json.dumps([[float(x) for x in node] for node in orbit.nodes])
+
+
+def _impacts(found: Any) -> list[float]:
+    """B = (B+ - B-)/2, positive away from the wall, at every impact: from the word's first on.
+
+    B = v' - w', and v' does not change at an impact: B is half the jump of -w'.
+    """
+    import numpy as np
+
+    from orbits.simulation.sweep import follow
+
+    run = follow(found)
+    hits = run.codes < 2
+    away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
+    jumps = 0.5 * away * (run.rows[hits, 3] - run.rows[hits, 4])
+    if found.periods and len(found.nodes):
+        since = run.phases[hits] - found.nodes[0, 0] + 1e-4
+        jumps = jumps[np.argsort(since % (2.0 * np.pi * found.periods))]
+    return [float(b) for b in jumps]
+
+
+class Rows:
+    """The rows of a sweep on disk, each kept as soon as it is there.
+
+    The CSV is for the user. The journal beside it (`FILE.csv.unfinished`) also has the states, one JSON text a line,
+    and goes when the sweep is finished.
+    """
+
+    def __init__(self, target: Path, study: "Study", down: bool, names: list[str]) -> None:
+        self.target, self.names = target, names
+        self.journal = target.with_name(target.name + ".unfinished")
+        self.header = {"contvines": "unfinished sweep", "of": _digest(study, down)}
+        self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
+        self.rows: list[Kept] = []
+        self.files: list[IO[str]] = []
+
+    def __enter__(self) -> "Rows":
+        try:
+            self.rows = self._found()
+            table = self.target.open("w", newline="", encoding="utf-8")
+            self.files.append(table)
+            self.writer = csv.writer(table)
+            self.writer.writerow([*FIRST, *self.names, *LAST])
+            self.writer.writerows(row.cells for row in self.rows)
+            table.flush()
+            if self.lasting:
+                self.files.append(self.journal.open("w", encoding="utf-8"))
+                self._note(self.header)
+                for row in self.rows:
+                    self._note(vars(row))
+        except OSError as error:
+            self._close()
+            raise ValueError(
+                f"{self.target}: cannot be written there ({error.strerror}); "
+                f"choose another place with -o, for example -o {Path(gettempdir()) / self.target.name}."
+            ) from None
+        return self
+
+    def keep(self, row: Kept) -> None:
+        """Write one more row."""
+        self.writer.writerow(row.cells)
+        self.files[0].flush()
+        if self.lasting:
+            self._note(vars(row))
+        self.rows.append(row)
+
+    def __exit__(self, kind: Any, *_: object) -> None:
+        self._close()
+        if kind is None and self.lasting:
+            self.journal.unlink(missing_ok=True)
+
+    def _note(self, data: dict[str, Any]) -> None:
+        self.files[1].write(json.dumps(data) + "\n")
+        self.files[1].flush()
+
+    def _close(self) -> None:
+        for file in self.files:
+            file.close()
+
+    def _found(self) -> list[Kept]:
+        """Rows of an unfinished run of the same sweep; a line cut short by a kill is left out."""
+        if not (self.target.is_file() and self.journal.is_file()):
+            return []
+        lines = self.journal.read_text(encoding="utf-8", errors="replace").split("\n")
+        found: list[Kept] = []
+        try:
+            if json.loads(lines[0]) != self.header:
+                return []
+            found.extend(Kept(**json.loads(line)) for line in lines[1:-1])
+        except (ValueError, TypeError):
+            pass
+        return found
+
+
+def _digest(study: "Study", down: bool) -> str:
+    """What decides a sweep's rows: two runs that must give the same CSV share it."""
+    text = json.dumps(
+        {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}, sort_keys=True
+    )
+    return hashlib.sha256(text.encode()).hexdigest()
