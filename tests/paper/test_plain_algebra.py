@@ -90,7 +90,7 @@ def both(problem, u, p, within, **settings):
 
 @pytest.mark.parametrize("times", [1, 2, 8, 17])
 def test_the_symmetric_orbit_written_many_times(times):
-    """Up to 34 nodes: in one chain, in two, in lanes with nodes left over."""
+    """Up to 34 nodes: in one chain, in two, in lanes with two nodes left over."""
     orbit = ABSORBER.symmetric_orbit(0.55).repeat(times)
     problem = orbit.problem("amplitude", symmetric=False)
     kinds = both(problem, *orbit.seed(problem), within=(0.2, 0.9), max_step=0.02)
