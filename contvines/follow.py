@@ -16,9 +16,7 @@ from .events.leaps import ends_branch
 from .events.watch import Watch
 from .half import Half, Piece, piece_of, single
 
-SHORTER = (
-    0.125  # steps with which a gap between two branches is approached again, of the step that leapt over it
-)
+SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 
 
 def follow(
@@ -73,9 +71,10 @@ def follow(
         status, count = chunk.status, len(chunk)
         retrace = None
         if events and events[-1].kind == "leap":
-            leap = events.pop()
-            status, count = Status.RUNNING, int(leap.position) + 1
-            retrace = Retrace(count, SHORTER * leap.error)
+            i = int(events.pop().position)
+            change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
+            status, count = Status.RUNNING, i + 1
+            retrace = Retrace(count, SHORTER * engine.norm(engine.join(change[0], float(change[1]))))
         elif events and ends_branch(events[-1]):
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:

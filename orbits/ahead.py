@@ -18,7 +18,8 @@ from numba import config, typeof
 
 from orbits import compiled, lane_links
 from orbits.models import build
-from orbits.multipliers.periodic_qr import periodic_multipliers, scratch_size
+from orbits.multipliers.factors import scratch_size
+from orbits.multipliers.periodic_qr import periodic_multipliers
 
 SMALL: dict[str, dict[str, float]] = {
     "absorber": {"restitution": 0.5, "friction": 0.1, "gravity": 0.1, "mass_ratio": 0.01},

@@ -22,6 +22,7 @@ from orbits import kernel as compiling
 from orbits.kernel import inlined_kernel, stored_kernel
 from orbits.models.base import Model
 from orbits.multipliers import (
+    factors,
     periodic_qr,
     periodic_schur,
     product_of_any,
@@ -182,6 +183,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         lane_links.__file__,
         lanes.__file__,
         trigonometry.__file__,
+        factors.__file__,
         periodic_schur.__file__,
         product_of_any.__file__,
         product_of_two.__file__,

@@ -60,11 +60,13 @@ def first_orbit(study: "Study") -> Any:
         If the word cannot be, or no orbit with it is found; the sentence names the study.
     """
     from orbits.ahead import compile_ahead
+    from orbits.start import StartWarning
 
     compile_ahead(study.name, "contvines.events.scan:prepare")
     try:
         with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", UserWarning)
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("always", StartWarning)
             orbit = machine(study).orbit(study.word, study.periods, guess=study.guess, **loose(study))
         for warning in caught:
             print(f"contvines: {study.path}: [start] {warning.message}.", file=sys.stderr)

@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import gettempdir
@@ -111,6 +112,8 @@ class Rows:
     def __enter__(self) -> "Rows":
         try:
             self.rows = self._found()
+            if self.lasting:
+                self._renew()
             table = self.target.open("w", newline="", encoding="utf-8")
             self.files.append(table)
             self.writer = csv.writer(table)
@@ -118,10 +121,7 @@ class Rows:
             self.writer.writerows(row.cells for row in self.rows)
             table.flush()
             if self.lasting:
-                self.files.append(self.journal.open("w", encoding="utf-8"))
-                self._note(self.header)
-                for row in self.rows:
-                    self._note(vars(row))
+                self.files.append(self.journal.open("a", encoding="utf-8"))
         except OSError as error:
             self._close()
             raise ValueError(
@@ -142,6 +142,13 @@ class Rows:
         self._close()
         if kind is None and self.lasting:
             self.journal.unlink(missing_ok=True)
+
+    def _renew(self) -> None:
+        """A journal of the rows so far takes the old one's place in one step: a kill loses none of them."""
+        draft = self.journal.with_name(self.journal.name + ".new")
+        lines = [self.header, *map(vars, self.rows)]
+        draft.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+        os.replace(draft, self.journal)
 
     def _note(self, data: dict[str, Any]) -> None:
         self.files[1].write(json.dumps(data) + "\n")

@@ -28,7 +28,7 @@ class Located(NamedTuple):
     kind : str
         fold, branch-point, period-doubling, symmetry-breaking, neimark-sacker, hopf, a border, user; "meets" where a
         branch comes back to the fixed space of a symmetry; "plain" for a point between two special points;
-        "leap" for the point before a step to another branch, with the length of the step in place of the error.
+        "leap" for the point before a step to another branch.
     index : int
         Which multiplier, margin, symmetry or user function.
     point : Solved

@@ -34,7 +34,7 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     if not (any(_inexact(segment, e) for e in found[: stop + 1]) or _unaccounted(segment, found, stop)):
         return None
     ends = (segment.a.p, segment.b.p)
-    return Located(0.0, "leap", 0, segment.a, ends, segment.length)
+    return Located(0.0, "leap", 0, segment.a, ends, 0.0)
 
 
 def ends_branch(event: Located) -> bool:

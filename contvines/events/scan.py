@@ -31,7 +31,7 @@ NONE, MAP, FLOW = 0, 1, 2
 KINDS = {"none": NONE, "map": MAP, "flow": FLOW}
 
 
-def sweep(
+def mark_segments(
     points,
     values,
     slopes,
@@ -198,7 +198,7 @@ def _compiled() -> Callable[..., Any]:
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
     return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(
-        copy_with(sweep, f"_{digest}", dips=inner)
+        copy_with(mark_segments, f"_{digest}", dips=inner)
     )
 
 
@@ -231,7 +231,7 @@ class Scanner:
     def __init__(self, engine: Engine, symmetries: list[SymmetryTest]) -> None:
         self.engine = engine
         self.kind = KINDS[engine.problem.spectrum]
-        self.sweep = _compiled() if engine.problem.kernels.compiled else sweep
+        self.mark = _compiled() if engine.problem.kernels.compiled else mark_segments
         columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
         affine = [test.affine for test in symmetries if test.affine is not None]
         self.left_out = [test for test in symmetries if test.affine is None]
@@ -255,7 +255,7 @@ class Scanner:
         """Scan at least one point; arrays as those of a chunk."""
         engine, n = self.engine, len(values)
         flags, smallest = np.zeros(max(n - 1, 0), np.int64), np.empty(n)
-        self.sweep(
+        self.mark(
             points,
             values,
             np.ascontiguousarray(tangents[:, -1]),

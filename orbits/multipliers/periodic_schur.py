@@ -19,7 +19,8 @@ from llvmlite.binding import add_symbol
 from numba import types
 
 from orbits.kernel import kernel
-from orbits.multipliers.periodic_qr import periodic_multipliers, scratch_size
+from orbits.multipliers.factors import scratch_size
+from orbits.multipliers.periodic_qr import periodic_multipliers
 from orbits.multipliers.product_of_any import product_of_any
 from orbits.multipliers.product_of_two import CERTAIN, UNCERTAIN, UNDEFINED, dominant_of_two, product_of_two
 

@@ -3,7 +3,7 @@
 import math
 
 from orbits.kernel import kernel
-from orbits.multipliers.periodic_qr import (
+from orbits.multipliers.factors import (
     LARGE,
     SMALL,
     UNIT_ROUNDOFF,
@@ -14,6 +14,17 @@ from orbits.multipliers.periodic_qr import (
 )
 from orbits.multipliers.product_of_two import CERTAIN, CERTIFIED, UNCERTAIN, UNDEFINED
 from orbits.multipliers.small_eigenvalues import eigenvalues
+
+
+@kernel
+def _rescaled(N, norm):
+    """Divide a matrix by the power of two next to its norm; returns the exponent."""
+    shift = math.frexp(norm)[1]
+    factor = math.ldexp(1.0, -shift)
+    for r in range(N.shape[0]):
+        for c in range(N.shape[1]):
+            N[r, c] *= factor
+    return shift
 
 
 @kernel
@@ -48,12 +59,7 @@ def product_of_any(A, D, twist, re, im, scratch):
         if not SMALL < norm < LARGE:
             if norm == 0.0 or not norm < math.inf:
                 return UNCERTAIN
-            shift = math.frexp(norm)[1]
-            factor = math.ldexp(1.0, -shift)
-            for r in range(n):
-                for c in range(n):
-                    N[r, c] *= factor
-            power += shift
+            power += _rescaled(N, norm)
         P, N = N, P
     # from the other end: bound on the rounding of the product, in units of 2^power
     own = 0.0
@@ -99,12 +105,7 @@ def product_of_any(A, D, twist, re, im, scratch):
                 return UNCERTAIN
             if norm == 0.0:
                 break
-            shift = math.frexp(norm)[1]
-            factor = math.ldexp(1.0, -shift)
-            for r in range(n):
-                for c in range(n):
-                    N[r, c] *= factor
-            back += shift
+            back += _rescaled(N, norm)
         P, N = N, P
     error = own
     for r in range(n):

@@ -3,7 +3,7 @@
 import math
 
 from orbits.kernel import kernel
-from orbits.multipliers.periodic_qr import LARGE, SMALL, UNIT_ROUNDOFF, scaled
+from orbits.multipliers.factors import LARGE, SMALL, UNIT_ROUNDOFF, scaled
 
 CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted
 EXCESS = (

@@ -18,7 +18,7 @@ def cascade(**options):
     return cv.diagram(problem, within=(2.4, 3.5), depth=2, settings={"max_step": 0.1}, **options)
 
 
-def same(a, b):
+def assert_same(a, b):
     assert a.to_dict() == b.to_dict()
     for one, other in zip(a, b):
         for name in ("points", "values", "tangents", "multipliers", "margin", "stable"):
@@ -30,7 +30,7 @@ def same(a, b):
 
 
 def test_deterministic():
-    same(cascade(), cascade())
+    assert_same(cascade(), cascade())
 
 
 class Killed(Exception):
@@ -63,7 +63,7 @@ def test_resume_after_an_interruption_at_each_record():
             cascade(journal=Fragile(entries, survive))
         assert len(entries) == survive
         resumed = Fragile(entries, total - survive)
-        same(cascade(journal=resumed), undisturbed)
+        assert_same(cascade(journal=resumed), undisturbed)
         assert list(resumed.entries) == list(whole.entries)
 
 
@@ -75,7 +75,7 @@ def test_resume_one_record_at_a_time():
         except Killed:
             continue
         break
-    same(graph, cascade())
+    assert_same(graph, cascade())
 
 
 def test_interrupt_keeps_a_checkpoint_and_says_how_to_go_on():
@@ -88,7 +88,7 @@ def test_interrupt_keeps_a_checkpoint_and_says_how_to_go_on():
     with pytest.raises(KeyboardInterrupt):
         cascade(journal=journal, progress=stop)
     assert not journal.graph.finished and "again" in journal.graph.message and "B1" in journal.graph
-    same(cascade(journal=journal), cascade())
+    assert_same(cascade(journal=journal), cascade())
     assert journal.graph.finished
 
 

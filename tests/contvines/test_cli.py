@@ -1,6 +1,5 @@
 """The command line on files that are there already, and on bad input: sentences, exit statuses, untouched files."""
 
-import importlib.util
 import json
 import subprocess
 import sys
@@ -10,11 +9,7 @@ import pytest
 
 from contvines.command.cli import main
 from contvines.store import Store, save
-
-_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
-assert _spec is not None and _spec.loader is not None
-fakes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(fakes)
+from tests.contvines import fakes
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "friction.toml"
 

@@ -12,15 +12,11 @@ import contvines as cv
 from contvines.command.cli import main
 from contvines.graph.persistence import same_graph
 from contvines.store import load
+from tests.contvines.studies import PAPER_MACHINE
 
-STUDY = """
-[model]
-name = "absorber"
-restitution = 0.76
-friction = 0.5
-gravity = 0.211
-mass_ratio = 0.006
-[start]
+STUDY = (
+    PAPER_MACHINE
+    + """[start]
 word = "LR"
 periods = 1
 amplitude = 0.55
@@ -30,6 +26,7 @@ within = [0.2, 1.2]
 depth = {depth}
 virtual = {virtual}
 """
+)
 
 
 @pytest.fixture(scope="module")

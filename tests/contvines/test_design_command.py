@@ -11,15 +11,11 @@ from typer.testing import CliRunner
 
 from contvines.command.design import design, machine
 from contvines.command.study import StudyError, check_study
+from tests.contvines.studies import PAPER_MACHINE
 
-STUDY = """
-[model]
-name = "absorber"
-restitution = 0.76
-friction = 0.5
-gravity = 0.211
-mass_ratio = 0.006
-
+STUDY = (
+    PAPER_MACHINE
+    + """
 [start]
 word = "LR"
 periods = 1
@@ -29,6 +25,7 @@ amplitude = 0.55
 parameter = "amplitude"
 within = [0.2, 1.3]
 """
+)
 
 
 @pytest.fixture

@@ -127,7 +127,7 @@ def test_a_scan_is_what_numpy_says(seed, real):
     engine = Engine(Scanned(), (-100.0, 100.0), Settings())
     scanner = Scanner(engine, [SymmetryTest(s, 2, None) for s in engine.problem.symmetries])
     found = [scanner(points, values, tangents, rows, signs, real)]
-    scanner.sweep = _compiled()
+    scanner.mark = _compiled()
     found.append(scanner(points, values, tangents, rows, signs, real))
     smallest = np.fmin(np.fmin.reduce(rows[:, 4:], axis=1), np.inf)
     numbers = counts(rows[:, 0:4:2] + 1j * rows[:, 1:4:2], "map")

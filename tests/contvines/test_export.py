@@ -1,10 +1,8 @@
 """Exports: read back with independent readers, number for number."""
 
 import csv
-import importlib.util
 import json
 import math
-from pathlib import Path
 
 import networkx
 import numpy as np
@@ -12,11 +10,7 @@ import pytest
 from scipy.io import loadmat
 
 from contvines.export import export, json_text
-
-_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
-assert _spec is not None and _spec.loader is not None
-fakes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(fakes)
+from tests.contvines import fakes
 
 
 @pytest.fixture

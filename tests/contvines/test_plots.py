@@ -1,7 +1,6 @@
 """Pictures: what is drawn, in which style, and what the legend says of it."""
 
 import dataclasses
-import importlib.util
 import itertools
 from pathlib import Path
 
@@ -13,11 +12,7 @@ from contvines.graph.graph import Switch
 from contvines.plots import plot_diagram, plot_multipliers, plot_network, plot_portrait, save_figure
 from contvines.plots.style import LINES, MARKS, STYLE, check_picture
 from contvines.special import PREFIXES
-
-_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
-assert _spec is not None and _spec.loader is not None
-fakes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(fakes)
+from tests.contvines import fakes
 
 
 @pytest.fixture

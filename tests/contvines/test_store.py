@@ -1,6 +1,5 @@
 """The store: identity of save and load, the journal, and the files that are refused and left untouched."""
 
-import importlib.util
 import sqlite3
 import struct
 from pathlib import Path
@@ -10,11 +9,7 @@ import pytest
 
 from contvines.graph.persistence import same_graph
 from contvines.store import APPLICATION_ID, VERSION, Store, StoreError, load, save
-
-_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
-assert _spec is not None and _spec.loader is not None
-fakes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(fakes)
+from tests.contvines import fakes
 
 
 def folder(path: Path) -> dict[str, bytes]:

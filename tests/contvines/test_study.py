@@ -7,15 +7,11 @@ from pathlib import Path
 import pytest
 
 from contvines.command.study import StudyError, check_study, read_study
+from tests.contvines.studies import PAPER_MACHINE
 
-GOOD = """
-[model]
-name = "absorber"
-restitution = 0.76
-friction = 0.5
-gravity = 0.211
-mass_ratio = 0.006
-[start]
+GOOD = (
+    PAPER_MACHINE
+    + """[start]
 word = "LR"
 periods = 1
 amplitude = 0.55
@@ -23,6 +19,7 @@ amplitude = 0.55
 parameter = "amplitude"
 within = [0.2, 1.3]
 """
+)
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 

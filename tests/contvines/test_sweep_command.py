@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 
 from contvines.command.cli import main
+from tests.contvines.studies import PAPER_MACHINE
 
-REDUCED = """
-[model]
-name = "absorber"
-restitution = 0.76
-friction = 0.5
-gravity = 0.211
-mass_ratio = 0.006
-[start]
+REDUCED = (
+    PAPER_MACHINE
+    + """[start]
 word = "{word}"
 periods = {periods}
 amplitude = {value}
@@ -30,6 +26,7 @@ within = {within}
 count = {count}
 transient = 100
 """
+)
 COUPLED = """
 [model]
 name = "coupled"

@@ -7,15 +7,11 @@ from contvines.command.compose import first_orbit, run_diagram
 from contvines.command.study import read_study
 from contvines.command.sweep import _simulate
 from contvines.command.sweep_picture import picture
+from tests.contvines.studies import PAPER_MACHINE
 
-REDUCED = """
-[model]
-name = "absorber"
-restitution = 0.76
-friction = 0.5
-gravity = 0.211
-mass_ratio = 0.006
-[start]
+REDUCED = (
+    PAPER_MACHINE
+    + """[start]
 word = "LR"
 amplitude = 0.55
 [continue]
@@ -26,6 +22,7 @@ depth = 2
 within = {within}
 count = 12
 """
+)
 MODULATED = """
 [model]
 name = "coupled"

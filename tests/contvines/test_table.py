@@ -1,17 +1,11 @@
 """The table that people read: names, short words."""
 
-import importlib.util
 import itertools
-from pathlib import Path
 
 import pytest
 
 from contvines.graph.shortening import short_word, short_words
-
-_spec = importlib.util.spec_from_file_location("fakes", Path(__file__).with_name("fakes.py"))
-assert _spec is not None and _spec.loader is not None
-fakes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(fakes)
+from tests.contvines import fakes
 
 
 @pytest.mark.parametrize(

@@ -44,8 +44,12 @@ def test_one_process_compiles_what_is_missing_wherever_it_is_started(monkeypatch
 
 
 def test_other_sources_are_not_compiled(monkeypatch):
-    monkeypatch.setattr(ahead, "compile_now", lambda *names: pytest.fail("compiled for nobody"))
+    compiled_now = []
+    monkeypatch.setattr(ahead, "compile_now", lambda *names: compiled_now.append(names))
     ahead.compile_as("another digest", "absorber")
+    assert compiled_now == []
+    ahead.compile_as(kernels().digest, "absorber", "a:b")
+    assert compiled_now == [("absorber", "a:b")]
 
 
 def test_waiting_ends_with_the_process_or_with_patience(monkeypatch):
