@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits import chains, cyclic, lane_links, lanes, trigonometry
+from orbits import chains, cyclic, lane_links, lanes, path, trigonometry
 from orbits import kernel as compiling
 from orbits.kernel import inlined_kernel, stored_kernel
 from orbits.models.base import Model
@@ -182,6 +182,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         cyclic.__file__,
         lane_links.__file__,
         lanes.__file__,
+        path.__file__,
         trigonometry.__file__,
         factors.__file__,
         periodic_schur.__file__,

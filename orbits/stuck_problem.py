@@ -10,6 +10,7 @@ import numpy as np
 
 from orbits import measures as measuring
 from orbits.models.base import Model
+from orbits.path import along
 from orbits.stuck import EMPTY, StuckOrbit, linear_response, multipliers, reserve
 
 
@@ -24,13 +25,8 @@ class StuckProblem:
     word, periods, symmetric = EMPTY, 1, True
 
     def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
-        if parameter not in model.parameter_names:
-            raise ValueError(
-                f"parameter = {parameter!r} is unknown to the model {model.name!r}; choose one of "
-                + ", ".join(model.parameter_names)
-            )
         self.model, self.parameter, self.params = model, parameter, np.array(params, dtype=float)
-        self.index = model.parameter_names.index(parameter)
+        self.path = model.path(parameter, self.params)
         self.dimension = 1 if model.node == 2 else 2
         self.n_multipliers = 0 if model.node == 2 else 2
         self.data = self
@@ -49,9 +45,11 @@ class StuckProblem:
 
     def values(self, p: float) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
-        params = self.params.copy()
-        params[self.index] = p
-        return params
+        return along(self.path, self.params, p)
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return self.model.amount(self.parameter, params)
 
     def margin_kind(self, j: int) -> str:
         """The one border is the slip."""
