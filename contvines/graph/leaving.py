@@ -10,7 +10,7 @@ import numpy as np
 from ..branch import Branch
 from ..continuation.engine import Engine, Solved
 from ..normal_forms import criticality, crossing_speed
-from ..problem import rebuild
+from ..problems.protocol import rebuild
 from ..special import BORDERS, SpecialPoint
 from ..switching import departures
 from .pending import Pending

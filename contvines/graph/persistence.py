@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..branch import Branch
-from ..problem import rebuild
+from ..problems.protocol import rebuild
 from ..special import SpecialPoint
 from .graph import Graph, Switch
 
