@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from orbits import Coupled
-from orbits.cyclic import workspace
-from orbits.models.coupled_flow import first_zero, wave
-from orbits.models.coupled_kernels import linearise, margins
-from orbits.path import single
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.coupled.flow import first_zero, wave
+from orbits.machines.coupled.maps import linearise, margins
+from orbits.machines.path import single
 
 L, R, T, S, U = range(5)
 # arriving event and the modes: every kind of segment
