@@ -98,7 +98,7 @@ class StuckProblem:
             result[name] = np.array(
                 [self._measure(name, row, self.values(value)) for row, value in zip(u, p)]
             )
-        return result
+        return measuring.gauged(self.model, self.values(p), result)
 
     def _measure(self, name: str, u: np.ndarray, params: np.ndarray) -> float:
         name = measuring.MEANS.get(name, name)  # its period is the forcing's
