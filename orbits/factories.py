@@ -6,5 +6,6 @@ code that it names is run only with ``trust``.
 
 FACTORIES = {
     "orbits.problem:rebuild": "orbits.problem:rebuild",
-    "orbits.stuck_problem:rebuild": "orbits.stuck_problem:rebuild",
+    "orbits.cycles.stuck_problem:rebuild": "orbits.cycles.stuck_problem:rebuild",
+    "orbits.stuck_problem:rebuild": "orbits.cycles.stuck_problem:rebuild",
 }
