@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -142,8 +142,8 @@ class StuckProblem:
         }
 
 
-def rebuild(description: dict[str, Any]) -> StuckProblem:
-    """The problem that `StuckProblem.describe` described."""
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> StuckProblem:
+    """The problem that `StuckProblem.describe` described; it holds data only, so `trust` has no meaning here."""
     from orbits.machines.catalogue import build
 
     return StuckProblem(
