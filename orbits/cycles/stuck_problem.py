@@ -43,7 +43,7 @@ class StuckProblem:
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
-    def values(self, p: float) -> np.ndarray:
+    def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
         return along(self.path, self.params, p)
 
