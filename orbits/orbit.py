@@ -222,25 +222,26 @@ class Orbit:
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
         table = self.events
+        long, fast = (float(self.model.gauge(kind, self.params)) for kind in ("length", "velocity"))
         nodes = []
         for i, letter in enumerate(self.word.events):
             entry = {
                 "event": letter,
                 "phase": float(table.phase[i]),
-                "B_pre": float(table.B_pre[i]),
-                "B_post": float(table.B_post[i]),
-                "w": float(table.w[i]),
-                "w_rate": float(table.rate_post[i]),
+                "B_pre": float(table.B_pre[i]) * fast,
+                "B_post": float(table.B_post[i]) * fast,
+                "w": float(table.w[i]) * long,
+                "w_rate": float(table.rate_post[i]) * fast,
             }
             if self.model.node == 4:
-                entry |= {"v": float(table.v[i]), "v_rate": float(table.v_rate[i])}
+                entry |= {"v": float(table.v[i]) * long, "v_rate": float(table.v_rate[i]) * fast}
             nodes.append(entry)
         return {
             "word": self.word.text,
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,
-            "parameters": self.parameters,
+            **self.model.described(self.params),
             "nodes": nodes,
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],

@@ -89,8 +89,8 @@ def plot_diagram(
             )
             special.append((point.label, px, py))
         axes.margins(0.04)
-        axes.set_xlabel(axis_label(x))
-        axes.set_ylabel(axis_label(y))
+        axes.set_xlabel(axis_label(x, graph.units.get(x)))
+        axes.set_ylabel(axis_label(y, graph.units.get(y)))
         _legend(axes, states, used, undrawn(graph, x, y))
         if labels:
             settle(figure)

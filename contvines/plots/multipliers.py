@@ -27,6 +27,7 @@ def plot_multipliers(branch: "Branch") -> "Figure":
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
     flow = getattr(branch.problem, "spectrum", "map") == "flow"
     size = np.real(spectrum) if flow else np.abs(spectrum)
+    unit = (branch.description.get("units") or {}).get(branch.parameter)
     with styled():
         figure = new_figure(figsize=(8.6, 4.0))
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
@@ -46,7 +47,7 @@ def plot_multipliers(branch: "Branch") -> "Figure":
             left.set_ylim(
                 max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5
             )  # a graze sends a multiplier to infinity
-        left.set_xlabel(axis_label(branch.parameter))
+        left.set_xlabel(axis_label(branch.parameter, unit))
         left.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
         left.set_title(f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size")
         if flow:
@@ -66,7 +67,7 @@ def plot_multipliers(branch: "Branch") -> "Figure":
             right.set_ylim(-reach, reach)
             right.set_aspect("equal")
         bar = figure.colorbar(dots, ax=right, shrink=0.85)
-        bar.set_label(axis_label(branch.parameter))
+        bar.set_label(axis_label(branch.parameter, unit))
         right.set_xlabel(r"Re $\lambda$")
         right.set_ylabel(r"Im $\lambda$")
         hidden = int((~shown).sum())

@@ -1,5 +1,6 @@
 """The one style of all pictures, the marks of special points, and how a figure is made and saved."""
 
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -73,9 +74,30 @@ SYMBOLS = {
 }
 
 
-def axis_label(name: str) -> str:
-    """The label of an axis that shows `name`."""
-    return SYMBOLS.get(name, name.replace("_", " "))
+# the same in words, for axes that have a unit
+WORDS = {
+    "max_abs_q1": "largest displacement of the oscillator",
+    "max_abs_w": "largest relative displacement",
+    "amplitude": "amplitude",
+    "impact_speed": "fastest impact",
+    "half_width": "half-width of the cavity (clearance to either side)",
+    "frequency": "excitation frequency",
+    "base_amplitude": "amplitude of the base",
+    "force_amplitude": "amplitude of the force",
+}
+
+
+def axis_label(name: str, unit: str | None = None) -> str:
+    """The label of an axis that shows `name`, counted in `unit` if it has one."""
+    if not unit:
+        return SYMBOLS.get(name, name.replace("_", " "))
+    words = WORDS.get(name) or SYMBOLS.get(name, name.replace("_", " "))
+    return f"{words} [{pretty(unit)}]"
+
+
+def pretty(unit: str) -> str:
+    """A unit as it is printed: m/s^2 with its exponent raised."""
+    return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
 
 @contextmanager

@@ -267,7 +267,7 @@ def _random(model: Model, word: Word, periods: int, params: np.ndarray) -> Orbit
     if model.node != 2 or len(word) > LONG:
         return None
     generator = np.random.default_rng(7)
-    amplitude, omega = float(params[0]), float(params[-1])
+    amplitude, omega = float(params[0]), float(params[5])
     fallback = None
     for _ in range(300):
         phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
