@@ -6,7 +6,7 @@ breaking (there a multiplier of the half map passes -1), and a classification th
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -308,8 +308,8 @@ class OrbitProblem:
         }
 
 
-def rebuild(description: dict[str, Any]) -> OrbitProblem:
-    """The problem that `OrbitProblem.describe` described."""
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem:
+    """The problem that `OrbitProblem.describe` described; it holds data only, so `trust` has no meaning here."""
     from orbits.machines.catalogue import build
 
     word = Word(tuple(description["events"]), tuple(description["modes"]), description["frictionless"])
