@@ -62,7 +62,7 @@ def orbit(
 ) -> None:
     """One orbit: its events, multipliers and margins."""
     if plot is not None:
-        from contvines.plots.style import check_picture
+        from contvines.plots.figures import check_picture
 
         check_picture(plot)
     found = _orbit(file, label)
@@ -74,8 +74,8 @@ def orbit(
         typer.echo(_describe(found))
     if plot is not None:
         from contvines.command.compose import say
+        from contvines.plots.figures import save_figure
         from contvines.plots.portrait import plot_portrait
-        from contvines.plots.style import save_figure
 
         save_figure(plot_portrait(found), plot)
         say(f"drawn in {plot}")
@@ -95,7 +95,7 @@ def plot(
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
     from contvines.command.compose import beside
-    from contvines.plots.style import check_picture, save_figure
+    from contvines.plots.figures import check_picture, save_figure
     from contvines.store import load
 
     _refuse_ignored(kind, {"-x": x, "-y": y, "--branch": branch})
