@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from orbits import measures as measuring
-from orbits.compiled import assemble
-from orbits.identity import is_symmetric, root_orbit
-from orbits.models.base import Model
-from orbits.monitors import Margin, named_margins
+from orbits.cycles import measures as measuring
+from orbits.cycles.identity import is_symmetric, root_orbit
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import Margin, named_margins
+from orbits.machines.base import Model
 from orbits.problem import OrbitProblem
 from orbits.words import Word
 
@@ -132,7 +132,7 @@ class Orbit:
         return bool(np.all(np.abs(self.multipliers) < 1.0))
 
     def measure(self, name: str) -> float:
-        """One measure of the orbit; names: `orbits.measures.COMMON` and the machine's own."""
+        """One measure of the orbit; names: `orbits.cycles.measures.COMMON` and the machine's own."""
         return float(self.measures(name)[name])
 
     def measures(self, *wanted: str) -> dict[str, float]:
@@ -202,14 +202,14 @@ class Orbit:
 
     # ------------------------------------------------------------------ seeing and proving
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """Positions and velocities over one period; see `orbits.sampling.sample`."""
-        from orbits.sampling import sample
+        """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
+        from orbits.cycles.sampling import sample
 
         return sample(self, points)
 
     def replay(self) -> float:
-        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.following`."""
-        from orbits.following import replay_error
+        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.simulation.deviation`."""
+        from orbits.simulation.deviation import replay_error
 
         return replay_error(self)
 

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from orbits import measures as measuring
-from orbits.compiled import assemble
-from orbits.cyclic import workspace
-from orbits.handing import Embedding, Symmetry
-from orbits.models.base import Model
-from orbits.monitors import PER_NODE, border_kind
+from orbits.cycles import measures as measuring
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import PER_NODE, border_kind
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.base import Model
+from orbits.protocol import Embedding, Symmetry
 from orbits.words import Word
 
 
@@ -234,7 +234,7 @@ class OrbitProblem:
         Rotations of the word, shifts by whole forcing periods, the mirror image and repetitions of a shorter orbit
         are one orbit.
         """
-        from orbits.identity import canonical
+        from orbits.cycles.identity import canonical
 
         return canonical(self.word, self.periods, self.expand(u))
 
@@ -243,7 +243,7 @@ class OrbitProblem:
 
         At a border one motion has several words, so that `canonical` cannot tell.
         """
-        from orbits.borders.motion import SAME, distance
+        from orbits.borders.distance import SAME, distance
 
         if not isinstance(other, OrbitProblem):
             return False
@@ -304,7 +304,7 @@ class OrbitProblem:
 
 def rebuild(description: dict[str, Any]) -> OrbitProblem:
     """The problem that `OrbitProblem.describe` described."""
-    from orbits.models import build
+    from orbits.machines.catalogue import build
 
     word = Word(tuple(description["events"]), tuple(description["modes"]), description["frictionless"])
     return OrbitProblem(

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
 
 from .dense import KERNELS, DenseWork, dense_workspace
-from .derivatives import Differentiated, address, import_address
+from .derivatives import Differentiated, import_addresses
+from .images import image_map
+from .parameters import ParameterSet
 from .protocol import ProblemDefaults, Symmetry
 
 
@@ -21,17 +24,17 @@ class AlgebraicProblem(ProblemDefaults):
         (u of shape (N,), p) -> N numbers.
     u0 : array_like, shape (N,) or scalar
         A start; it need not be exact.
-    p0 : float
-        Parameter value of the start.
+    p0 : float, or mapping of str to float
+        Parameter value of the start, or the values of several parameters by name: ``F(u, p)`` then reads ``p.name``.
     parameter : str
-        Name of the parameter.
+        Name of the parameter that varies; of several the first one, if it is left out.
     jacobian : callable, optional
         (u, p) -> dF/du of shape (N, N). Else the complex step, where F allows it, or sixth-order differences.
-    derivative : callable, optional
-        (u, p) -> dF/dp of shape (N,).
+    derivative : callable, or mapping of str to callable, optional
+        (u, p) -> dF/dp of shape (N,); of several parameters by name.
     spectrum : {"none", "flow"}
         "flow": stability and Hopf points from the eigenvalues of dF/du.
-    mirror : callable, optional
+    mirror : callable, matrix or permutation, optional
         u -> image of u that solves the same equations; branch points on its fixed space are symmetry breakings and one
         of the two mirror images is traced.
     name : str, optional
@@ -47,34 +50,61 @@ class AlgebraicProblem(ProblemDefaults):
         self,
         F: Callable,
         u0: Sequence[float] | np.ndarray | float,
-        p0: float = 0.0,
+        p0: float | Mapping[str, float] = 0.0,
         parameter: str = "p",
         jacobian: Callable | None = None,
-        derivative: Callable | None = None,
+        derivative: Callable | Mapping[str, Callable] | None = None,
         spectrum: str = "none",
-        mirror: Callable | None = None,
+        mirror: Any = None,
         name: str = "algebraic",
     ) -> None:
         if spectrum not in ("none", "flow"):
             raise ValueError(f'spectrum = {spectrum!r} must be "none" or "flow"; for maps use MapProblem')
         self.u0 = np.array(u0, dtype=float).reshape(-1)
-        self.p0 = float(p0)
-        self.parameter, self.spectrum, self.name = parameter, spectrum, name
+        self.values = ParameterSet(p0, parameter)
+        self.spectrum, self.name = spectrum, name
         self.dimension = len(self.u0)
         self.n_multipliers = self.dimension if spectrum == "flow" else 0
-        value = np.asarray(F(self.u0.copy(), self.p0), dtype=float).reshape(-1)
+        value = np.asarray(F(self.u0.copy(), self.values.at(self.p0)), dtype=float).reshape(-1)
         if len(value) != self.dimension:
             raise ValueError(
                 f"F returns {len(value)} numbers for {self.dimension} unknowns; as many are needed"
             )
         if not np.all(np.isfinite(value)):
-            raise ValueError(f"F is not finite at the start u0 = {self.u0}, {parameter} = {self.p0}")
-        self.functions = Differentiated(F, jacobian, derivative, self.u0, self.p0)
-        self.mirror = mirror
-        if mirror is not None:
-            self.symmetries = (Symmetry("symmetry-breaking", lambda u: np.asarray(mirror(u), dtype=float)),)
+            raise ValueError(f"F is not finite at the start u0 = {self.u0}, {self.parameter} = {self.p0}")
+        self.functions = Differentiated(F, jacobian, derivative, self.u0, self.values)
+        self.given_mirror = mirror
+        self.mirror = None if mirror is None else image_map(mirror, self.dimension)
+        if self.mirror is not None:
+            self.symmetries = (Symmetry("symmetry-breaking", self.mirror),)
         self.kernels = KERNELS
         self.data = self
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter that varies."""
+        return self.values.varying
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name; of the one that varies the value at the start."""
+        return dict(self.values.values)
+
+    @property
+    def p0(self) -> float:
+        """Value of the varying parameter at the start."""
+        return self.values.start
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> AlgebraicProblem:
+        """The same equations with another parameter varying, and with other values of some parameters.
+
+        Cheap: nothing is evaluated.
+        """
+        other = copy(self)
+        other.values = self.values.against(parameter, values)
+        other.functions = self.functions.against(other.values)
+        other.data = other
+        return other
 
     def workspace(self) -> DenseWork:
         """Arrays for the kernels."""
@@ -92,7 +122,7 @@ class AlgebraicProblem(ProblemDefaults):
         """Of u and its mirror image the one that comes first in dictionary order."""
         u = np.asarray(u, dtype=float)
         if self.mirror is not None:
-            image = np.asarray(self.mirror(u), dtype=float)
+            image = self.mirror(u)
             different = np.flatnonzero(np.abs(image - u) > 1e-7 * (1.0 + np.abs(u)))
             if len(different) and image[different[0]] < u[different[0]]:
                 u = image
@@ -100,28 +130,13 @@ class AlgebraicProblem(ProblemDefaults):
 
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again if F can be imported."""
-        where = {
-            key: None if f is None else address(f)
-            for key, f in (
-                ("F", self.functions.f),
-                ("jacobian", self.functions.given_jacobian),
-                ("derivative", self.functions.given_derivative),
-                ("mirror", self.mirror),
-            )
-        }
-        given = (
-            self.functions.f,
-            self.functions.given_jacobian,
-            self.functions.given_derivative,
-            self.mirror,
-        )
-        importable = all(f is None or address(f) is not None for f in given)
+        where, importable = self.functions.addresses(mirror=self.given_mirror)
         return {
             "name": self.name,
             "parameter": self.parameter,
             "spectrum": self.spectrum,
             "u0": self.u0.tolist(),
-            "p0": self.p0,
+            "p0": self.values.given(),
             "callables": where,
             "factory": "contvines.problems.algebraic:from_description" if importable else None,
         }
@@ -129,7 +144,7 @@ class AlgebraicProblem(ProblemDefaults):
 
 def from_description(description: dict[str, Any]) -> AlgebraicProblem:
     """Build an AlgebraicProblem from what ``describe()`` returned."""
-    functions = {key: import_address(where) for key, where in description["callables"].items()}
+    functions = import_addresses(description["callables"])
     F = functions.pop("F")
     assert F is not None
     return AlgebraicProblem(

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from copy import copy
+from typing import Any
 
 import numpy as np
+
+from .parameters import ParameterSet
 
 COMPLEX_STEP = 1e-40
 STEP = 6e-3  # roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
@@ -42,33 +46,42 @@ class Differentiated:
     jacobian : callable, optional
         (u, p) -> (n, n).
     derivative : callable, optional
-        (u, p) -> (n,), with respect to p.
-    u, p
-        A point at which the complex step is tried, and compared with differences, before it is trusted.
+        (u, p) -> (n,), with respect to p; of several parameters a mapping of such callables by name.
+    u : ndarray, shape (n,)
+        Where the complex step is tried, and compared with differences, before it is trusted.
+    parameters : ParameterSet
     """
 
     def __init__(
         self,
         f: Callable,
         jacobian: Callable | None,
-        derivative: Callable | None,
+        derivative: Callable | Mapping[str, Callable] | None,
         u: np.ndarray,
-        p: float,
+        parameters: ParameterSet,
     ) -> None:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
+        self.parameters = parameters
+        p = parameters.start
         self.complex_step = (
             self._complex_step_works(u, p) if jacobian is None or derivative is None else False
         )
 
+    def against(self, parameters: ParameterSet) -> Differentiated:
+        """The same callable with other parameters."""
+        other = copy(self)
+        other.parameters = parameters
+        return other
+
     def value(self, u: np.ndarray, p: float) -> np.ndarray:
         """f(u, p) as float array."""
-        return np.asarray(self.f(u, p), dtype=float).reshape(-1)
+        return np.asarray(self.f(u, self.parameters.at(p)), dtype=float).reshape(-1)
 
     def jacobian(self, u: np.ndarray, p: float) -> np.ndarray:
         """df/du, shape (n, n)."""
         n = len(u)
         if self.given_jacobian is not None:
-            return np.asarray(self.given_jacobian(u, p), dtype=float).reshape(n, n)
+            return np.asarray(self.given_jacobian(u, self.parameters.at(p)), dtype=float).reshape(n, n)
         result = np.empty((n, n))
         for j in range(n):
             direction = np.zeros(n)
@@ -81,14 +94,38 @@ class Differentiated:
 
     def derivative(self, u: np.ndarray, p: float) -> np.ndarray:
         """df/dp, shape (n,)."""
-        if self.given_derivative is not None:
-            return np.asarray(self.given_derivative(u, p), dtype=float).reshape(-1)
+        given = self.given_derivative
+        if isinstance(given, Mapping):
+            given = given.get(self.parameters.varying)
+        if given is not None:
+            return np.asarray(given(u, self.parameters.at(p)), dtype=float).reshape(-1)
         if self.complex_step:
             return self._imaginary(u.astype(complex), p + 1j * COMPLEX_STEP)
         return along(lambda t: self.value(u, p + t), 1.0 + abs(p))
 
+    def addresses(self, **others: Any) -> tuple[dict[str, Any], bool]:
+        """Where the callables can be imported from, by name, and whether all of them can."""
+        given = {
+            "F": self.f,
+            "jacobian": self.given_jacobian,
+            "derivative": self.given_derivative,
+            **others,
+        }
+        where: dict[str, Any] = {}
+        flat: list[tuple[Callable, str | None]] = []
+        for key, f in given.items():
+            if isinstance(f, Mapping):
+                where[key] = {name: address(part) for name, part in f.items()}
+                flat += [(part, where[key][name]) for name, part in f.items()]
+            elif f is not None and not callable(f):
+                where[key] = np.asarray(f).tolist()
+            else:
+                where[key] = None if f is None else address(f)
+                flat += [] if f is None else [(f, where[key])]
+        return where, all(found is not None for _, found in flat)
+
     def _imaginary(self, u: np.ndarray, p: complex) -> np.ndarray:
-        return np.imag(np.asarray(self.f(u, p)).reshape(-1)) / COMPLEX_STEP
+        return np.imag(np.asarray(self.f(u, self.parameters.at(p))).reshape(-1)) / COMPLEX_STEP
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         rng = np.random.default_rng(0)
@@ -111,6 +148,16 @@ def address(f: Callable) -> str | None:
     if not module or module == "__main__" or "<" in name or not name:
         return None
     return f"{module}:{name}"
+
+
+def import_addresses(where: Mapping[str, Any]) -> dict[str, Any]:
+    """The callables that :meth:`Differentiated.addresses` has named."""
+    return {
+        key: {name: import_address(part) for name, part in found.items()}
+        if isinstance(found, Mapping)
+        else (import_address(found) if found is None or isinstance(found, str) else found)
+        for key, found in where.items()
+    }
 
 
 def import_address(where: str | None) -> Callable | None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from functools import cmp_to_key
 from typing import Any
 
 import numpy as np
 
 from .dense import KERNELS, DenseWork, dense_workspace
-from .derivatives import Differentiated, address, import_address
+from .derivatives import Differentiated, import_addresses
+from .images import image_map
+from .parameters import ParameterSet
 from .protocol import Embedding, ProblemDefaults, Symmetry
 
 
@@ -21,13 +25,17 @@ class MapProblem(ProblemDefaults):
         (x of shape (d,), p) -> d numbers.
     u0 : array_like, shape (n, d), (n d,) or (d,)
         The points of the cycle; for ``cycle`` > 1 a single point is iterated to get the others.
-    p0 : float
+    p0 : float, or mapping of str to float
+        Parameter value, or the values of several parameters by name: ``f(x, p)`` then reads ``p.name``.
     cycle : int
         Length n of the cycle.
     parameter : str
     jacobian, derivative : callable, optional
         (x, p) -> df/dx of shape (d, d), df/dp of shape (d,). Else the complex step, where f allows it, or sixth-order
         differences.
+    mirror : callable, matrix or permutation, optional
+        x -> R x with f(R x, p) = R f(x, p). Bifurcations to less symmetric cycles are symmetry breakings, of two mirror
+        images one is traced.
     name : str
     dimension : int, optional
         d, where u0 leaves it open (a flat u0 of n d numbers is otherwise read with d = len(u0) / n).
@@ -45,13 +53,14 @@ class MapProblem(ProblemDefaults):
         self,
         f: Callable,
         u0: Sequence[float] | np.ndarray | float,
-        p0: float,
+        p0: float | Mapping[str, float],
         cycle: int = 1,
         parameter: str = "p",
         jacobian: Callable | None = None,
-        derivative: Callable | None = None,
+        derivative: Callable | Mapping[str, Callable] | None = None,
         name: str = "map",
         dimension: int | None = None,
+        mirror: Any = None,
     ) -> None:
         if not (isinstance(cycle, (int, np.integer)) and cycle >= 1):
             raise ValueError(f"cycle = {cycle!r} must be a whole number of at least 1")
@@ -64,14 +73,15 @@ class MapProblem(ProblemDefaults):
                 d = len(flat)
         else:
             d = int(dimension)
-        self.p0, self.cycle, self.parameter, self.name = float(p0), int(cycle), parameter, name
-        value = np.asarray(f(flat[:d].copy(), self.p0), dtype=float).reshape(-1)
+        self.values = ParameterSet(p0, parameter)
+        self.cycle, self.name = int(cycle), name
+        value = np.asarray(f(flat[:d].copy(), self.values.at(self.p0)), dtype=float).reshape(-1)
         if len(value) != d or not np.all(np.isfinite(value)):
             raise ValueError(f"the map must return {d} finite numbers for {d} at the start, not {value}")
         if len(flat) == d and cycle > 1:
             nodes = [flat]
             for _ in range(cycle - 1):
-                nodes.append(np.asarray(f(nodes[-1], self.p0), dtype=float).reshape(-1))
+                nodes.append(np.asarray(f(nodes[-1], self.values.at(self.p0)), dtype=float).reshape(-1))
             flat = np.concatenate(nodes)
         if len(flat) != d * cycle:
             raise ValueError(
@@ -81,11 +91,46 @@ class MapProblem(ProblemDefaults):
         self.node = d
         self.dimension = d * self.cycle
         self.n_multipliers = d
-        self.functions = Differentiated(f, jacobian, derivative, flat[:d], self.p0)
+        self.functions = Differentiated(f, jacobian, derivative, flat[:d], self.values)
         self.kernels = KERNELS
         self.data = self
-        if self.cycle % 2 == 0:
-            self.symmetries = (Symmetry("period-doubling", self._shift_by_half, self._root),)
+        self.given_mirror = mirror
+        self.mirror = None if mirror is None else image_map(mirror, d)
+        self._find_symmetries()
+
+    def _find_symmetries(self) -> None:
+        """Images of a cycle that solve the same equations: half a cycle on, mirrored, and both at once."""
+        even = self.cycle % 2 == 0
+        found = [Symmetry("period-doubling", self._shift_by_half, self._root)] if even else []
+        if self.mirror is not None:
+            found.append(Symmetry("symmetry-breaking", self._mirrored))
+            if even:
+                found.append(Symmetry("symmetry-breaking", lambda u: self._mirrored(self._shift_by_half(u))))
+        self.symmetries = tuple(found)
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter that varies."""
+        return self.values.varying
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name; of the one that varies the value at the start."""
+        return dict(self.values.values)
+
+    @property
+    def p0(self) -> float:
+        """Value of the varying parameter at the start."""
+        return self.values.start
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> MapProblem:
+        """The same cycles with another parameter varying, and with other values of some parameters."""
+        other = copy(self)
+        other.values = self.values.against(parameter, values)
+        other.functions = self.functions.against(other.values)
+        other.data = other
+        other._find_symmetries()
+        return other
 
     def workspace(self) -> DenseWork:
         """Arrays for the kernels."""
@@ -121,17 +166,22 @@ class MapProblem(ProblemDefaults):
     def _shift_by_half(self, u: np.ndarray) -> np.ndarray:
         return np.roll(u, self.dimension // 2)
 
+    def _mirrored(self, u: np.ndarray) -> np.ndarray:
+        assert self.mirror is not None
+        return np.concatenate([self.mirror(x) for x in np.asarray(u, dtype=float).reshape(-1, self.node)])
+
     def _sibling(self, u: np.ndarray, p: float, cycle: int) -> MapProblem:
         return MapProblem(
             self.functions.f,
             u,
-            p,
+            self.values.against(self.parameter, {self.parameter: p}).given(),
             cycle,
             self.parameter,
             self.functions.given_jacobian,
             self.functions.given_derivative,
             self.name,
             self.node,
+            self.given_mirror,
         )
 
     def _root(self, u: np.ndarray) -> tuple[MapProblem, np.ndarray]:
@@ -149,7 +199,7 @@ class MapProblem(ProblemDefaults):
         return [Embedding(self._sibling(doubled, p, 2 * self.cycle), doubled, direction, kind)]
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
-        """The shortest cycle of which u is a repetition, begun at its smallest point."""
+        """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
         nodes = np.asarray(u, dtype=float).reshape(self.cycle, self.node)
         n = self.cycle
         scale = 1e-7 * (1.0 + np.abs(nodes).max())
@@ -157,8 +207,11 @@ class MapProblem(ProblemDefaults):
             if n % root == 0 and np.abs(nodes - np.roll(nodes, root, axis=0)).max() <= scale:
                 break
         nodes = nodes[:root]
-        first = int(np.argmin(nodes[:, 0]))
-        return ("cycle", root, self.node), np.roll(nodes, -first, axis=0).reshape(-1)
+        forms = [nodes]
+        if self.mirror is not None:
+            forms.append(self._mirrored(nodes.reshape(-1)).reshape(root, self.node))
+        turned = [np.roll(form, -first, axis=0).reshape(-1) for form in forms for first in range(root)]
+        return ("cycle", root, self.node), min(turned, key=_in_order(scale))
 
     @property
     def measure_names(self) -> tuple[str, ...]:
@@ -195,9 +248,7 @@ class MapProblem(ProblemDefaults):
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""
-        given = (self.functions.f, self.functions.given_jacobian, self.functions.given_derivative)
-        where = [None if f is None else address(f) for f in given]
-        importable = all(f is None or a is not None for f, a in zip(given, where))
+        where, importable = self.functions.addresses(mirror=self.given_mirror)
         return {
             "name": self.name,
             "word": f"{self.cycle}-cycle",
@@ -206,7 +257,7 @@ class MapProblem(ProblemDefaults):
             "dimension": self.node,
             "parameter": self.parameter,
             "u0": self.u0.tolist(),
-            "p0": self.p0,
+            "p0": self.values.given(),
             "callables": where,
             "factory": "contvines.problems.maps:from_description" if importable else None,
         }
@@ -214,7 +265,8 @@ class MapProblem(ProblemDefaults):
 
 def from_description(description: dict[str, Any]) -> MapProblem:
     """Build a MapProblem from what ``describe()`` returned."""
-    f, jacobian, derivative = (import_address(where) for where in description["callables"])
+    functions = import_addresses(description["callables"])
+    f = functions.pop("F")
     assert f is not None
     return MapProblem(
         f,
@@ -222,8 +274,17 @@ def from_description(description: dict[str, Any]) -> MapProblem:
         description["p0"],
         description["cycle"],
         description["parameter"],
-        jacobian,
-        derivative,
-        description["name"],
-        description["dimension"],
+        name=description["name"],
+        dimension=description["dimension"],
+        **functions,
     )
+
+
+def _in_order(scale: float) -> Any:
+    """A key of dictionary order, in which differences at roundoff do not count."""
+
+    def compare(a: np.ndarray, b: np.ndarray) -> int:
+        different = np.flatnonzero(np.abs(a - b) > scale)
+        return 0 if not len(different) else (-1 if a[different[0]] < b[different[0]] else 1)
+
+    return cmp_to_key(compare)

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from orbits import Coupled
-from orbits.cyclic import workspace
-from orbits.models.coupled_flow import first_zero, wave
-from orbits.models.coupled_kernels import linearise, margins
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.coupled.flow import first_zero, wave
+from orbits.machines.coupled.maps import linearise, margins
 
 L, R, T, S, U = range(5)
 # arriving event and the modes: every kind of segment
