@@ -96,12 +96,7 @@ def between(
             continue
         s = (np.arange(1, counts[i] + 1) / (counts[i] + 1))[:, None]
         chord = z[i + 1] - z[i]
-        length = np.linalg.norm(chord)
-        ends = []
-        for tangent in slopes[i : i + 2]:
-            size = np.linalg.norm(tangent)
-            forward = size > 0.0 and tangent @ chord > 0.5 * size * length
-            ends.append(tangent * (length / size) if forward else chord)
+        ends = _ends(slopes[i], slopes[i + 1], chord)
         # cubic Hermite basis on [0, 1]
         rows.append(
             (1 + 2 * s) * (1 - s) ** 2 * z[i]
@@ -112,6 +107,24 @@ def between(
         new.append(np.ones(int(counts[i]), bool))
     joined = np.concatenate(rows)
     return joined[:, :-1], joined[:, -1], np.concatenate(new)
+
+
+def _ends(first: np.ndarray, last: np.ndarray, chord: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives at both ends of an arc with these directions: those of the parabola where there is one.
+
+    A quadratic arc z(s), s in [0, 1], has z'(0) + z'(1) = 2 chord; its lengths follow by least squares.
+    """
+    length = np.linalg.norm(chord)
+    sizes = np.linalg.norm(first), np.linalg.norm(last)
+    if not (min(sizes) > 0.0 and min(first @ chord / sizes[0], last @ chord / sizes[1]) > 0.3 * length):
+        return chord, chord  # a kink, or points that do not follow one another: a straight line
+    one, two = first / sizes[0], last / sizes[1]
+    lengths = np.array([length, length])
+    if one @ two < 0.9999:
+        found = np.linalg.lstsq(np.column_stack([one, two]), 2.0 * chord, rcond=None)[0]
+        if np.all((found > 0.2 * length) & (found < 5.0 * length)):
+            lengths = found
+    return lengths[0] * one, lengths[1] * two
 
 
 def _strands(

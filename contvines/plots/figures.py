@@ -29,7 +29,7 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
         The name of a matplotlib style, the path of a style sheet, or rcParams.
     """
     import matplotlib as mpl
-    import matplotlib.style
+    from matplotlib.style import context
 
     default = mpl.rcParamsDefault
     own = {
@@ -40,7 +40,7 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     chosen: list[Any] = ["default", HOUSE, own]
     if style is not None:
         chosen.append(dict(style) if isinstance(style, Mapping) else style)
-    with mpl.style.context(chosen):
+    with context(chosen):
         yield
 
 
@@ -66,17 +66,15 @@ def new_figure(figsize: tuple[float, float] | None = None, **options: Any) -> Fi
 
     width = (figsize or mpl.rcParams["figure.figsize"])[0]
     smaller = max(SMALLEST, min(1.0, width / FULL_WIDTH))
-    mpl.rcParams.update(  # inside `styled`, which puts everything back
-        {
-            name: mpl.rcParams[name] * smaller
-            for name in ("font.size", "lines.linewidth", "lines.markersize", "axes.linewidth")
-        }
-        | {
-            name: mpl.rcParams[name] * smaller
-            for name in ("axes.labelsize", "axes.titlesize", "legend.fontsize")
-            if isinstance(mpl.rcParams[name], int | float)
-        }
-    )
+    changed: dict[Any, Any] = {
+        name: mpl.rcParams[name] * smaller
+        for name in ("font.size", "lines.linewidth", "lines.markersize", "axes.linewidth")
+    } | {
+        name: mpl.rcParams[name] * smaller
+        for name in ("axes.labelsize", "axes.titlesize", "legend.fontsize")
+        if isinstance(mpl.rcParams[name], int | float)
+    }
+    mpl.rcParams.update(changed)  # inside `styled`, which puts everything back
     if windows():
         return sys.modules["matplotlib.pyplot"].figure(figsize=figsize, **options)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -134,6 +132,26 @@ def save_figure(figure: Figure, path: str | Path) -> None:
             figure.savefig(path)
         except OSError as error:
             raise ValueError(f"{path}: the picture cannot be written ({error.strerror}).") from None
+
+
+def check_style(style: str | None) -> None:
+    """Refuse, before any work, a style that matplotlib does not know.
+
+    Raises
+    ------
+    ValueError
+        With the names that would do.
+    """
+    if style is None:
+        return
+    import matplotlib.style
+
+    known = ["default", *matplotlib.style.available]
+    if style not in known and not Path(style).is_file():
+        shown = ", ".join(name for name in known if not name.startswith("_"))
+        raise ValueError(
+            f"--style {style}: matplotlib has no such style and there is no such file; it has {shown}."
+        )
 
 
 def check_picture(path: str | Path) -> None:

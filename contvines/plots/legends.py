@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -128,7 +128,7 @@ def _below(figure: Figure, axes: Axes, key: Key, entries: dict[str, Any]) -> Non
     figure.legend(
         handles=list(entries.values()),
         labels=list(entries),
-        loc="outside lower center",
+        loc=cast(Any, "outside lower center"),  # a place that the stubs do not know
         ncols=columns,
         fontsize=size,
         handlelength=1.8,

@@ -58,11 +58,13 @@ def plot_multipliers(
             size = figsize or (8.6, 4.0)
             figure = new_figure(figsize=size)
             narrow = size[0] < NARROW
-            shape = {"height_ratios": (1, 1.25)} if narrow else {"width_ratios": (1.25, 1)}
-            left, right = figure.subplots(*((2, 1) if narrow else (1, 2)), **shape)
+            if narrow:
+                left, right = figure.subplots(2, 1, height_ratios=(1, 1.25))
+            else:
+                left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
         else:
             left, right = axes
-            figure = left.get_figure(root=True)  # type: ignore[assignment]
+            figure: Any = left.get_figure(root=True)
         _sizes(left, branch, spectrum, flow)
         _plane(right, branch, spectrum, flow)
     return figure

@@ -45,7 +45,7 @@ def plot_network(
     with styled(style):
         figure, axes = new_axes(axes, figsize=figsize or needed)
         room = axes.get_window_extent().width / figure.dpi / needed[0]
-        compact = room < 0.8  # boxes with labels alone
+        compact = room < 0.8 and (figsize is not None or figure.axes != [axes])  # boxes with labels alone
         size = 8.0 if not compact else 6.0
         axes.set_axis_off()
         boxes: dict[str, Any] = {}

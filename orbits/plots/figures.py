@@ -18,14 +18,14 @@ QUIET = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends with
 def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     """Draw in the house's style; what the user has set, and `style`, come before it; settings stay as they were."""
     import matplotlib as mpl
-    import matplotlib.style
+    from matplotlib.style import context
 
     now, default = mpl.rcParams, mpl.rcParamsDefault
     own = {n: v for n, v in now.items() if not n.startswith("backend") and n in default and v != default[n]}
     chosen: list[Any] = ["default", str(files("orbits.plots") / "house.mplstyle"), own]
     if style is not None:
         chosen.append(dict(style) if isinstance(style, Mapping) else style)
-    with mpl.style.context(chosen):
+    with context(chosen):
         yield
 
 

@@ -97,7 +97,7 @@ def portrait(
                 raise ValueError(
                     f"show = {panels!r} needs {2 if panels == 'both' else 1} axes, not {len(drawn)}"
                 )
-            figure = drawn[0].get_figure(root=True)  # type: ignore[assignment]
+            figure: Any = drawn[0].get_figure(root=True)
         if panels != "history":
             _phase(drawn[0], orbit, motion)
         if panels != "phase":
