@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -83,7 +83,8 @@ def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: n
     assert figure is not None
     options: dict[str, Any] = {"handles": list(known.values()), "labels": list(known), "handlelength": 2.4}
     if isinstance(where, str) and where not in PLACES:
-        axes.legend(loc=where, **options)
+        options["loc"] = where
+        axes.legend(**options)
         return
     narrow = figure.get_size_inches()[0] < NARROW
     if where == "below" or (where is True and narrow and own):
@@ -125,10 +126,11 @@ def _below(figure: Figure, axes: Axes, key: Key, entries: dict[str, Any]) -> Non
     old = axes.get_legend()
     if old is not None:
         old.remove()
+    options: dict[str, Any] = {"loc": "outside lower center"}  # a place that the stubs do not know
     figure.legend(
         handles=list(entries.values()),
         labels=list(entries),
-        loc=cast(Any, "outside lower center"),  # a place that the stubs do not know
+        **options,
         ncols=columns,
         fontsize=size,
         handlelength=1.8,

@@ -21,6 +21,7 @@ from orbits.compiling import decorators as compiling
 from orbits.compiling import trigonometry
 from orbits.compiling.decorators import inlined_kernel, stored_kernel
 from orbits.elimination import block_cyclic, by_address, two_unknowns, vectorised
+from orbits.machines import path
 from orbits.machines.base import Model
 from orbits.multipliers import (
     factors,
@@ -183,6 +184,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         block_cyclic.__file__,
         by_address.__file__,
         vectorised.__file__,
+        path.__file__,
         trigonometry.__file__,
         factors.__file__,
         periodic_schur.__file__,
