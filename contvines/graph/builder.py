@@ -15,6 +15,7 @@ from ..events.watch import Watch
 from ..finish import filled, make_branch
 from ..follow import follow
 from ..half import Half
+from ..interrupts import listening, take
 from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
@@ -57,23 +58,25 @@ def work(run: Run) -> None:
     """Work until the queue is empty."""
     graph = run.graph
     graph.finished = False
-    try:
-        while run.queue:
-            if len(graph.branches) >= run.settings.max_branches:
-                graph.message = (
-                    f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
-                    "the graph is not complete; raise max_branches, or lower depth"
-                )
-                break
-            trace_pending(run, run.queue.popleft())
-    except KeyboardInterrupt:
-        graph.message = "interrupted; run the same command again to go on"
+    with listening():
+        try:
+            while run.queue:
+                if len(graph.branches) >= run.settings.max_branches:
+                    graph.message = (
+                        f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
+                        "the graph is not complete; raise max_branches, or lower depth"
+                    )
+                    break
+                trace_pending(run, run.queue.popleft())
+            tie_borders(run)
+        except KeyboardInterrupt:
+            take()
+            graph.message = "interrupted; run the same command again to go on"
+            run.journal.checkpoint(graph)
+            raise
+        graph.finished = True
+        graph.message = graph.message or "finished"
         run.journal.checkpoint(graph)
-        raise
-    tie_borders(run)
-    graph.finished = True
-    graph.message = graph.message or "finished"
-    run.journal.checkpoint(graph)
     run.tell(graph.message, float("nan"))
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..interrupts import HELD
 from .header import APPLICATION_ID, VERSION, StoreError, check_header, pending
 from .packing import digest_of, packed, split, unpacked
 
@@ -220,14 +221,18 @@ class Store:
     @contextmanager
     def transaction(self) -> Iterator[None]:
         """All or nothing, whatever ends the process."""
-        with self._guard():
-            self._db.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-            except BaseException:
+        with HELD, self._guard():
+            if self._db.in_transaction:  # an interrupt has cut one short
                 self._db.execute("ROLLBACK")
+            try:
+                self._db.execute("BEGIN IMMEDIATE")
+                yield
+                self._db.execute("COMMIT")
+            except BaseException:
+                self._kept.clear()  # what was written last is not sure any more
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
                 raise
-            self._db.execute("COMMIT")
 
     def put(self, kind: str, key: str, content: Mapping[str, Any]) -> None:
         """Write one entry, replacing one of the same kind and key; call inside `transaction`."""
