@@ -82,10 +82,20 @@ def work(run: Run) -> None:
 
 def trace_pending(run: Run, pending: Pending) -> None:
     """Trace a branch unless it is known, and queue what leaves it."""
-    engine, watch = run.engine(pending.problem)
-    first = first_point(run, engine, pending)
+    first = first_point(run, run.engine(pending.problem)[0], pending)
+    shorter = None if first is None else pending.problem.root(first.u, first.p)
+    if first is not None and shorter is not None:
+        # a solution that only repeats a shorter one is followed as that one
+        pending.problem, pending.u = shorter
+        pending.kind, pending.p, pending.tangent = (
+            "root" if pending.kind == "switch" else pending.kind,
+            first.p,
+            None,
+        )
+        first = first_point(run, run.engine(pending.problem)[0], pending)
     if first is None:
         return
+    engine, watch = run.engine(pending.problem)
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
