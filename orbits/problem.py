@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from orbits.cycles import measures as measuring
+from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE, border_kind
 from orbits.elimination.block_cyclic import workspace
@@ -169,6 +170,14 @@ class OrbitProblem:
                 )
             )
         return tuple(found)
+
+    def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
+        """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
+        word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u))
+        if len(word) == len(self.word):
+            return None
+        found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes))
+        return found, found.reduce(nodes)
 
     def _mirror_places(self) -> int:
         """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""

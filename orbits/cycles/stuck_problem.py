@@ -110,6 +110,9 @@ class StuckProblem:
         """The solution as an orbit without events."""
         return StuckOrbit(self.model, self.values(p), np.array(u, dtype=float))
 
+    def root(self, u: np.ndarray, p: float) -> None:
+        """No motion without events repeats a shorter one."""
+
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest relative displacement in a simulation of one period from the stuck state."""
         return self.orbit(u, p).replay()
