@@ -19,6 +19,7 @@ import numpy as np
 
 from orbits import chains, cyclic, lane_links, lanes, trigonometry
 from orbits import kernel as compiling
+from orbits.events import CODES
 from orbits.kernel import inlined_kernel, stored_kernel
 from orbits.models.base import Model
 from orbits.multipliers import (
@@ -29,6 +30,8 @@ from orbits.multipliers import (
     product_of_two,
     small_eigenvalues,
 )
+
+STICK = CODES["s"]
 
 # filled in per model by `specialise`
 linearise: Any = None
@@ -43,6 +46,14 @@ def _inspect(data, u, p, work, row):
     """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
     unpin(data, work)
     A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
+    events, length = data[0], A.shape[0]
+    for i in range(length):
+        # Nothing later depends on when a stick began: w' = 0 there and v'' is the same before and after. That phase moves
+        # with 1/w'', which grows without bound where the stick vanishes, so it is held instead.
+        if events[(i + 1) % length] == STICK:
+            A[i, 0, :] = 0.0
+            D[i, 0, :] = 0.0
+            D[i, 0, 0] = 1.0
     multipliers(A, D, data[4], re, im, scratch)
     n = re.size
     count = n
