@@ -29,7 +29,6 @@ Satisfied by structure: nothing has to be imported or inherited. :class:`Problem
 from __future__ import annotations
 
 import hashlib
-import importlib
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -232,21 +231,3 @@ class ProblemDefaults:
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         return None
-
-
-def rebuild(description: dict[str, Any]) -> Any:
-    """The problem that ``describe()`` described, or None when it came from callables that cannot be named.
-
-    Parameters
-    ----------
-    description : dict
-        With "factory": "module:function"; the function is called with the dict.
-    """
-    factory = description.get("factory")
-    if not factory:
-        return None
-    module, _, name = factory.partition(":")
-    build = importlib.import_module(module)
-    for part in name.split("."):
-        build = getattr(build, part)
-    return build(description)  # type: ignore[operator]

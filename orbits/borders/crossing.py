@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from orbits.borders.growing import REAL, SIZES, Grown, grown, margins_of, proposals, turned
-from orbits.borders.motion import CLOSE, distance, tends_to
-from orbits.borders.reading import read_alike
-from orbits.borders.resting import FOLLOWED, to_rest
+from orbits.borders.alignment import read_alike
+from orbits.borders.distance import CLOSE, distance, tends_to
+from orbits.borders.neighbours import REAL, SIZES, Grown, grown, margins_of, proposals, turned
 from orbits.borders.rewriting import edits_at
-from orbits.compiled import assemble
-from orbits.handing import Seed
-from orbits.monitors import PER_NODE
+from orbits.borders.sticking import FOLLOWED, to_rest
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import PER_NODE
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
+from orbits.protocol import Seed
 
 ROUNDS = 8  # up to so many rounds of a cycle are joined to one at a border
 NEARER = (
@@ -192,11 +192,11 @@ def _simulated(
     problem: OrbitProblem, u: np.ndarray, p: float
 ) -> Iterator[tuple[OrbitProblem, np.ndarray, float, None, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
-    from orbits.identity import canonical, is_symmetric
+    from orbits.attractors.recurrence import settle
+    from orbits.cycles.identity import canonical, is_symmetric
     from orbits.simulation.driver import machine
-    from orbits.simulation.recurrence import settle
     from orbits.simulation.return_map import state_of
-    from orbits.start import polish
+    from orbits.starts.find import polish
 
     orbit = problem.orbit(u, p)
     engine = machine(problem.model.name)
@@ -217,13 +217,9 @@ def _simulated(
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
             continue
-        if (
-            abs(
-                found.measure("friction_loss") / found.periods
-                - orbit.measure("friction_loss") / orbit.periods
-            )
-            > 0.05
-        ):
+        if abs(
+            found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods
+        ) > 0.05 * problem.model.gauge("energy", params):
             continue
         if distance(orbit, found) > CLOSE:
             continue
