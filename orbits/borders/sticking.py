@@ -42,9 +42,7 @@ def from_rest(problem: Any, point: Any) -> list[Seed]:
 
 def problem_response(problem: Any, p: float) -> np.ndarray:
     """Unknowns of the stuck motion at parameter value `p`."""
-    from orbits.cycles.stuck import linear_response
-
-    return np.linalg.solve(*linear_response(problem.model, problem.values(p)))
+    return np.linalg.solve(*problem.model.rest.equations(problem.values(p)))
 
 
 def to_rest(problem: OrbitProblem, point: Any) -> list[Seed]:

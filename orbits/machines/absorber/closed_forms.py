@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from orbits.machines.base import ParameterError
+from orbits.machines.parameters import ParameterError
 
 
 def restitution_ratio(restitution: ArrayLike) -> np.ndarray:

@@ -16,13 +16,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from orbits.machines.base import POSITIVE, Model
+from orbits.machines.base import Model
+from orbits.machines.parameters import POSITIVE, Parameter
 from orbits.machines.path import along
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent
 
 HEAVY = 0.5  # share of the oscillator's mass from which on an absorber is none
-EXCITATIONS = {"exact": 1.0, "truncated": 0.0}
 
 
 def tables(model: type[Model]) -> ModuleType:
@@ -80,8 +80,8 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
             raise QuantityError(
                 f"{section}{key} = {value!r}: the machine {name!r} has no such quantity; it has {', '.join(known)}"
             )
-        if key == "excitation" and isinstance(value, str):
-            value = EXCITATIONS.get(value, value)
+        if isinstance(value, str) and key in base.parameter_names:
+            value = base.parameter(key).words.get(value, value)
         counted[key] = units.read(known[key], value, section)
         values[key] = units.si(known[key], *counted[key])
         if not unusual:
@@ -152,8 +152,7 @@ def _class_of(base: type[Model]) -> Any:
         "__annotations__": dict.fromkeys(table.SCALES, float),
         "__module__": __name__,
         "__doc__": base.__doc__,
-        "parameter_names": (*base.parameter_names, *table.SCALES),
-        "limits": {**base.limits, **dict.fromkeys(table.SCALES, POSITIVE)},
+        "table": (*base.table, *(Parameter(name, "a scale", POSITIVE, name) for name in table.SCALES)),
         "tables": table,
     }
     made = type(f"Physical{base.__name__}", (Physical, base), body)
