@@ -15,8 +15,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import lapack
+from scipy.linalg import get_lapack_funcs
 
+(_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
 TINY = 1e-300
 LONGEST = 1e3  # clock of one flight: Newton's method has lost its way beyond it
@@ -146,15 +147,15 @@ def bordered(
     matrix[size] = border
     if not np.all(np.isfinite(matrix)):
         return 0.0
-    # dgesv: unlike dgetrs it does not wake other threads for a matrix of a few rows
-    factors, pivots, solution, singular = lapack.dgesv(matrix, sides)
+    # gesv: unlike getrs it does not wake other threads for a matrix of a few rows
+    factors, pivots, solution, singular = _gesv(matrix, sides)
     diagonal = np.diagonal(factors)
     flips = np.count_nonzero(pivots != np.arange(size + 1)) + np.count_nonzero(diagonal < 0.0)
     sign = -1.0 if flips % 2 else 1.0
     if singular:
         sign = 0.0
         nearby = matrix + 1e-16 * np.abs(matrix).max() * np.eye(size + 1)
-        _, _, solution, singular = lapack.dgesv(nearby, sides)
+        _, _, solution, singular = _gesv(nearby, sides)
         if singular:
             return 0.0
     step[:], tangent[:] = solution[:, 0], solution[:, 1]
