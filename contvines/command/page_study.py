@@ -86,7 +86,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
     elif not low < high:
         wrong.append(f"[continue] within = {go.within!r} is empty or reversed; low < high would do.")
     else:
-        first = given.get(go.parameter, machine.parameters[go.parameter])
+        first = {**machine.parameters, **given}[go.parameter]
         if not low <= first <= high:
             wrong.append(
                 f"[start] {go.parameter} = {first!r} lies outside [continue] within = [{low!r}, {high!r}]; "
@@ -119,5 +119,6 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
         ),
         "sweep": file.sweep,
         "machine": machine,
+        "loose": {**machine.parameters, **given},
         "state": file.start.state,
     }

@@ -56,7 +56,15 @@ class DeclaredAttractor:
         """Forcing periods of the orbit; 0 where there is none."""
         return 0 if self.orbit is None else self.orbit.periods
 
-    def _needed(self) -> DeclaredOrbit:
+    @property
+    def found(self) -> DeclaredOrbit:
+        """The orbit.
+
+        Raises
+        ------
+        ValueError
+            If the attractor is no periodic orbit.
+        """
         if self.orbit is None:
             why = {
                 "chatter": "impacts pile up on it, so no finite word describes it",
@@ -77,11 +85,11 @@ class DeclaredAttractor:
         ValueError
             If the attractor is no periodic orbit.
         """
-        return self._needed().problem(parameter, symmetric)
+        return self.found.problem(parameter, symmetric)
 
     def seed(self, problem: DeclaredProblem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value in `problem`."""
-        return self._needed().seed(problem)
+        return self.found.seed(problem)
 
     def __repr__(self) -> str:
         what = f"word {self.orbit.word.text!r}, periods {self.orbit.periods}" if self.orbit else self.kind

@@ -31,6 +31,7 @@ def _heyoka() -> Any:
             "declared machines need heyoka, which is not installed: pip install 'contvines[machines]' (Linux), "
             "or conda install heyoka.py -c conda-forge (macOS, Windows)"
         ) from error
+    heyoka.set_logger_level_error()  # a flow that runs away is reported by what it returns
     return heyoka
 
 
