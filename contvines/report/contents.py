@@ -8,7 +8,7 @@ import numpy as np
 
 from ..graph.shortening import short_word
 from ..plots.diagram import default_measure
-from ..plots.style import MARKS, PLAIN, SYMBOLS
+from ..plots.style import MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
     from ..branch import Branch
@@ -48,7 +48,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "finished": graph.finished,
         "message": graph.message,
         "axes": {"x": graph.parameter, "y": y},
-        "names": {name: _plain(SYMBOLS.get(name, name.replace("_", " "))) for name in _measures(graph, y)},
+        "names": {name: _plain(axis_label(name, unit=graph.units.get(name))) for name in _measures(graph, y)},
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
         "special": [_point(point) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],

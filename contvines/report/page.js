@@ -83,6 +83,22 @@
     Plotly.react("diagram", traces(), layout({ xaxis: axis(data.names[$("x").value], range("xaxis")), yaxis: axis(data.names[$("y").value], range("yaxis")) }), options);
   }
 
+  /* labels that would cover one another at this zoom are left out; the hover names every mark */
+  function thin() {
+    const picture = $("diagram"), full = picture._fullLayout;
+    const k = picture.data.findIndex((t) => t.mode === "markers+text");
+    if (k < 0 || !full.xaxis) return;
+    const names = picture.data[k].customdata.map((c) => c[2]), kept = [];
+    const text = names.map((name, i) => {
+      const x = full.xaxis.d2p(picture.data[k].x[i]), y = full.yaxis.d2p(picture.data[k].y[i]), w = 4 + 4 * name.length;
+      const inside = x >= 0 && y >= 0 && x <= full.xaxis._length && y <= full.yaxis._length;
+      if (!inside || kept.some(([a, b, v]) => Math.abs(a - x) < w + v && Math.abs(b - y) < 15)) return "";
+      kept.push([x, y, w]);
+      return name;
+    });
+    if (JSON.stringify(text) !== JSON.stringify(picture.data[k].text)) Plotly.restyle(picture, { text: [text] }, [k]);
+  }
+
   // ------------------------------------------------------------------ one orbit
   function nearest(branch, index) {
     const known = data.orbits[branch] ? Object.keys(data.orbits[branch]).map(Number) : [];
@@ -97,11 +113,12 @@
     $("orbit-title").textContent = special ? `${special.label}: ${special.name} on ${branch}` : `${branch}, point ${index}`;
     const value = about.measures[data.parameter][index];
     const sizes = (special ? special.multipliers : about.multipliers[index]) || [];
-    const shown = sizes.map(([re, im]) => (Math.abs(im) < 1e-15 ? number(re, 8) : `${number(re, 6)} ${im < 0 ? "−" : "+"} ${number(Math.abs(im), 6)}i`));
+    const shown = sizes.filter(([re]) => re !== null).map(([re, im]) => (Math.abs(im) < 1e-15 ? number(re, 8) : `${number(re, 6)} ${im < 0 ? "−" : "+"} ${number(Math.abs(im), 6)}i`));
     const facts = [`${data.parameter} = ${number(special ? special.value[data.parameter] : value, 12)}`];
     if (about.word !== null) facts.unshift(`word ${about.word || "(stuck)"}`, `k = ${about.periods}`);
     facts.push(about.real ? (about.stable_points[index] ? "stable" : "unstable") : "virtual: no machine can follow it");
     if (shown.length) facts.push(`multipliers ${shown.join(", ")}`);
+    else if (sizes.length) facts.push("multipliers not defined at a graze");
     if (about.margin[index] !== null) facts.push(`smallest margin ${number(about.margin[index], 6)}`);
     if (special && special.criticality) facts.push(special.criticality);
     if (special && special.note) facts.push(special.note);
@@ -239,6 +256,8 @@
     setTimeout(() => { button.textContent = "copy"; }, 1200);
   }));
   draw(false);
+  $("diagram").on("plotly_afterplot", thin);
+  thin();
   $("diagram").on("plotly_click", (event) => {
     const found = event.points.find((p) => p.customdata);
     if (found) { started = true; choose(...found.customdata); }
@@ -253,7 +272,9 @@
     choose(labels[k], step[1] ? 0 : here.index + step[0]);
   });
   dark.addEventListener("change", () => (here ? choose(here.branch, here.index, here.label) : draw()));
-  const first = data.special.find((p) => p.kind !== "end" && p.index >= 0) || null;
+  const telling = ["symmetry-breaking", "period-doubling", "neimark-sacker", "hopf", "fold"];
+  const rank = (p) => (telling.includes(p.kind) ? telling.indexOf(p.kind) : telling.length);
+  const first = data.special.filter((p) => p.kind !== "end" && p.index >= 0).sort((a, b) => rank(a) - rank(b))[0] || null;
   if (first) choose(first.branch, first.index, first.label);
   else if (data.branches.length) choose(data.branches[0].label, 0);
   started = true;
