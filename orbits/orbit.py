@@ -233,24 +233,26 @@ class Orbit:
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
         table = self.events
+        long, fast = (float(self.model.gauge(kind, self.params)) for kind in ("length", "velocity"))
         nodes = []
         for i, letter in enumerate(self.word.events):
             entry = {
                 "event": letter,
                 "phase": float(table.phase[i]),
-                "B_pre": float(table.B_pre[i]),
-                "B_post": float(table.B_post[i]),
-                "w": float(table.w[i]),
-                "w_rate": float(table.rate_post[i]),
+                "B_pre": float(table.B_pre[i]) * fast,
+                "B_post": float(table.B_post[i]) * fast,
+                "w": float(table.w[i]) * long,
+                "w_rate": float(table.rate_post[i]) * fast,
             }
-            entry |= {name: float(getattr(table, name)[i]) for name in self.model.node_names[2:]}
+            for name in self.model.node_names[2:]:
+                entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
             nodes.append(entry)
         return {
             "word": self.word.text,
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,
-            "parameters": self.parameters,
+            **self.model.described(self.params),
             "nodes": nodes,
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],

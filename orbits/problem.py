@@ -313,6 +313,7 @@ class OrbitProblem:
             "impacts": self.word.impacts,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
+            **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
         }
 

@@ -146,7 +146,7 @@ class StuckOrbit:
             "periods": 1,
             "impacts": 0,
             "symmetric": True,
-            "parameters": self.parameters,
+            **self.model.described(self.params),
             "nodes": [],
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],

@@ -128,6 +128,7 @@ class StuckProblem:
             "impacts": 0,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
+            **({"units": self.model.units} if self.model.units else {}),
             "symmetric": True,
         }
 

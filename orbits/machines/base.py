@@ -247,6 +247,10 @@ class Model:
         """Units of parameters and measures by name; none here, where all are numbers."""
         return {}
 
+    def described(self, params: np.ndarray) -> dict[str, Any]:
+        """A parameter vector by name, ready for JSON."""
+        return {"parameters": dict(zip(self.parameter_names, (float(v) for v in params), strict=True))}
+
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
         return 1.0

@@ -192,17 +192,23 @@ class Physical(Model):
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of every quantity and measure; "" for plain numbers."""
+        """Units of quantities and measures by name; plain numbers have none."""
         from orbits.cycles.measures import KINDS, names
 
         gauges: dict[str, Quantity] = self.tables.GAUGES
         found = dict(zip(self.amount_names, self.said))
-        for name in (*names(self), "x", "impacts_per_period"):
+        for name in names(self):
             kind = KINDS.get(name, "")
             found.setdefault(
                 name, "rad" if kind == "angle" else units.unit_of(gauges[kind]) if kind in gauges else ""
             )
-        return found
+        return {name: unit for name, unit in found.items() if unit}
+
+    def described(self, params: np.ndarray) -> dict[str, Any]:
+        """The quantities with their units, and the numbers behind them."""
+        amounts = dict(zip(self.amount_names, (float(v) for v in self.amounts(params))))
+        numbers = dict(zip(self.parameter_names, (float(v) for v in params)))
+        return {"parameters": amounts, "units": self.units, "numbers": numbers}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure is, in the unit that is shown; params (..., P), result (...)."""
@@ -267,12 +273,12 @@ class Physical(Model):
             q.name: (float(value) / units.si(q, 1.0, units_[q.name]), units_[q.name])
             for q, value in zip(chosen, ones.amounts_of(params))
         }
-        kept = {q: (self.quantities[q], self.units[q]) for q in self.amount_names}
+        kept = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
         return _assembled(self.base, self.tables, chosen, {**counted, **kept}, self.unusual)
 
     @property
     def _texts(self) -> dict[str, Any]:
-        return {name: units.text(value, self.units[name]) for name, value in self.quantities.items()}
+        return {name: units.text(value, self.units.get(name, "")) for name, value in self.quantities.items()}
 
     def settings(self) -> dict[str, Any]:
         """The machine's quantities as text, ready for JSON."""
