@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import design, look, run, sweep
+from contvines.command import design, look, report, run, sweep
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -54,6 +54,7 @@ app.command()(look.show)
 app.command()(look.orbit)
 app.command()(look.plot)
 app.command()(look.export)
+app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(design.design)
 

@@ -7,11 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import TrustOption
+from contvines.command.options import FileArgument, TrustOption
 
-FileArgument = Annotated[
-    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
-]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
 
 
