@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import design, look, run, sweep
+from contvines.command import design, look, report, run, sweep
 
 app = typer.Typer(
     name="contvines",
@@ -51,6 +51,7 @@ app.command()(look.show)
 app.command()(look.orbit)
 app.command()(look.plot)
 app.command()(look.export)
+app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(design.design)
 

@@ -7,12 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import TrustOption
+from contvines.command.options import FileArgument, TrustOption
 from contvines.graph.table import with_unit
 
-FileArgument = Annotated[
-    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
-]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
 
 
