@@ -267,9 +267,9 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
         )
     name, _, place = label.partition(":")
     thing = graph[name]
-    if thing.problem is None:
-        raise ValueError(without_problem(name, graph.branches[getattr(thing, "branch", name)].description))
     if hasattr(thing, "kind") and not place:
+        if thing.problem is None:
+            raise ValueError(without_problem(name, graph.branches[thing.branch].description))
         return thing.orbit
     if hasattr(thing, "kind"):
         raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
@@ -353,7 +353,7 @@ def _say_what_lacks(graph: Any) -> None:
     from contvines.problems.registry import without_problem
 
     for branch in graph.branches.values():
-        if branch.problem is None:
+        if branch.problem is None and branch.description.get("factory"):
             typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
             return
 

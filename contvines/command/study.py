@@ -6,7 +6,6 @@ all such sentences of one study are reported together.
 
 import hashlib
 import json
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +22,7 @@ from contvines.command.sentences import (
     unknown_field,
     would_do,
 )
+from contvines.command.toml_text import TomlError, toml_data
 from orbits.machines.catalogue import model_class
 
 
@@ -90,7 +90,7 @@ def read_study(path: str | Path) -> Study:
     """
     path = Path(path)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = toml_data(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise StudyError(f"{path}: there is no such file; give the path of a TOML study.") from None
     except IsADirectoryError:
@@ -102,8 +102,8 @@ def read_study(path: str | Path) -> Study:
             " It is a database: commands that take a study want the .toml file." if is_database(path) else ""
         )
         raise StudyError(f"{path}: this is not a TOML file (it is not text).{hint}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise StudyError(f"{path}: this is not valid TOML: {error}.") from None
+    except TomlError as error:
+        raise StudyError(f"{path}: {error}.") from None
     try:
         return check_study(data, path)
     except StudyError as error:
