@@ -46,6 +46,8 @@ def machine(study: "Study") -> Any:
 
     if study.machine is not None:
         return study.machine
+    if study.quantities:
+        return build(study.quantities)
     own = {k: v for k, v in study.parameters.items() if k not in loose(study)}
     return build({"name": study.name, **own})
 
@@ -56,6 +58,8 @@ def loose(study: "Study") -> dict[str, float]:
 
     if study.machine is not None:
         return study.loose
+    if study.quantities:
+        return {}
     own = model_class(study.name).field_names()
     return {k: v for k, v in study.parameters.items() if k not in own}
 
