@@ -14,7 +14,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, SweepSection
 from contvines.command.sentences import (
-    did_you_mean,
     refusal_of,
     sentence_of,
     together,
@@ -22,6 +21,7 @@ from contvines.command.sentences import (
     would_do,
 )
 from contvines.command.toml_text import TomlError, toml_data
+from contvines.hints import did_you_mean
 from orbits.machines.catalogue import model_class
 
 
