@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.options import FileArgument, TrustOption
+from contvines.graph.table import with_unit
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
 
@@ -287,6 +288,17 @@ def _plain(found: Any) -> dict[str, Any]:
     return {n: getattr(found, n) for n in names}
 
 
+# which measure's unit an event's number has
+EVENTS = {
+    "B_pre": "B_pre",
+    "B_post": "B_post",
+    "w": "max_abs_w",
+    "w_rate": "B",
+    "v": "max_abs_w",
+    "v_rate": "B",
+}
+
+
 def _describe(found: Any) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
     about = _plain(found)
@@ -296,12 +308,18 @@ def _describe(found: Any) -> str:
         lines.append(f"{about['word'] or 'stuck'}  k = {about['periods']}  ({nature})")
     parameters = about.get("parameters", {})
     if parameters:
-        lines.append("  " + "  ".join(f"{k} = {v:.10g}" for k, v in parameters.items()))
+        units = about.get("units", {})
+        lines.append(
+            "  " + "  ".join(f"{k} = {v:.10g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+        )
     nodes = about.get("nodes", [])
     if nodes:
         names = list(nodes[0])
         table = [
-            names,
+            [
+                with_unit(name, EVENTS.get(name) and about.get("units", {}).get(EVENTS[name]))
+                for name in names
+            ],
             *[[_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
         ]
         widths = [max(len(row[i]) for row in table) for i in range(len(names))]

@@ -96,11 +96,16 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
-class StudyFile(Section):
-    model: ModelSection  # type: ignore[valid-type]
+class StudySections(Section):
+    """What every study has beside its machine."""
+
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+
+
+class StudyFile(StudySections):
+    model: ModelSection  # type: ignore[valid-type]
 
 
 PARAMETERS: dict[str, dict[str, Any]] = {
