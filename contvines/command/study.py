@@ -17,7 +17,6 @@ from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
 from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, StudySections, SweepSection
 from contvines.command.sentences import (
-    did_you_mean,
     refusal_of,
     sentence_of,
     together,
@@ -25,6 +24,7 @@ from contvines.command.sentences import (
     would_do,
 )
 from contvines.command.toml_text import TomlError, toml_data
+from contvines.hints import did_you_mean
 from orbits.machines.catalogue import model_class
 
 
