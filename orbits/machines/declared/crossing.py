@@ -83,12 +83,27 @@ def proposals(
     problem: DeclaredProblem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[DeclaredProblem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the rules propose."""
+    first = problem
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
     for edit in edits_at(orbit, index):
         found = grown(problem, orbit, p, [edit])
         if found is not None:
-            yield (*found, edit.note)
+            yield (*_read_alike(first, problem, edit, found), edit.note)
+
+
+def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Edit, found: Found) -> Found:
+    """The orbit found, read from the event from which the border orbit was read before it was turned."""
+    other, v, q, tangent = found
+    ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
+    places = ahead + len(edit.events) - (edit.stop - edit.start)
+    if ahead == 0 or ahead < edit.stop or not len(other.word) or places <= 0:
+        return found
+    orbit = other.orbit(v, q).rotate(places)
+    again = other.sibling(orbit.word, other.periods, other.symmetric)
+    direction = other.expand_direction(tangent[:-1])
+    direction = np.roll(direction, -places, axis=0)[: again.length]
+    return again, again.reduce(orbit.nodes), q, np.append(direction.ravel(), tangent[-1])
 
 
 def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:

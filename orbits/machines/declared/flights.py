@@ -36,6 +36,7 @@ class Work(NamedTuple):
     last_rates: np.ndarray
     end: np.ndarray
     numbers: np.ndarray
+    drift: np.ndarray
 
 
 def workspace(length: int, states: int, numbers: int) -> Work:
@@ -52,6 +53,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
         np.zeros((L, n)),
         np.zeros(L),
         np.zeros((L, numbers)),
+        np.zeros(n),
     )
 
 
@@ -127,6 +129,10 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         else:
             own[places, :, 0] = by_end
         derivative[places] = (slopes @ moved[:, :, None])[:, :, 0] + along
+    for j in data.pinned:  # the motion may be shifted along this state: half way between the last and the first node is zero
+        work.drift[j] = residual[-1, 1 + j]
+        residual[-1, 1 + j] = 0.5 * (nodes[-1, 1 + j] + nodes[0, 1 + j])
+        derivative[-1, 1 + j] = 0.0
     size = float(np.abs(residual).max())
     return size if math.isfinite(size) else math.inf
 
@@ -165,13 +171,25 @@ def bordered(
 def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
     """The blocks of F_u in a dense matrix."""
     d, length = data.size + 1, data.length
-    for i in range(length):
+    last_own, last_following = closing(data, work)
+    for i in range(length - 1):
         rows = slice(i * d, (i + 1) * d)
         matrix[rows, i * d : (i + 1) * d] += work.own[i]
-        if i + 1 < length:
-            matrix[rows, (i + 1) * d : (i + 2) * d] += work.following[i]
-        else:
-            matrix[rows, :d] += work.following[i] * data.turned
+        matrix[rows, (i + 1) * d : (i + 2) * d] += work.following[i]
+    rows = slice((length - 1) * d, length * d)
+    matrix[rows, rows] += last_own
+    matrix[rows, :d] += last_following
+
+
+def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
+    """The blocks of the last row, closed by the mirror or the pin."""
+    own, following = work.own[-1], work.following[-1] * data.turned
+    if data.pinned:
+        own = own.copy()
+        for j in data.pinned:
+            own[1 + j], following[1 + j] = 0.0, 0.0
+            own[1 + j, 1 + j] = following[1 + j, 1 + j] = 0.5
+    return own, following
 
 
 def _sparse(
@@ -182,10 +200,9 @@ def _sparse(
 
     size = data.dimension
     rows, columns = data.sparsity
-    last = work.following[-1] * data.turned
-    entries = np.concatenate(
-        [work.own.ravel(), work.following[:-1].ravel(), last.ravel(), work.derivative.ravel(), border]
-    )
+    own, following = closing(data, work)
+    blocks = [work.own[:-1].ravel(), own.ravel(), work.following[:-1].ravel(), following.ravel()]
+    entries = np.concatenate([*blocks, work.derivative.ravel(), border])
     if not np.all(np.isfinite(entries)):
         return 0.0
     matrix = csc_matrix((entries, (rows, columns)), shape=(size + 1, size + 1))
@@ -260,7 +277,7 @@ def multipliers(data: Any, work: Work) -> Any:
     else:
         values = _periodic(chain, size)
     values = values[np.argsort(-np.abs(values), kind="stable")]
-    if data.loose is not None:  # a motion that may be shifted as a whole
+    for _ in data.loose:  # a motion that may be shifted as a whole
         values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
     return values[: data.n_multipliers]
 
