@@ -18,12 +18,13 @@ from orbits.machines.declared.orbit import REAL, DeclaredOrbit
 from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.sampling import lengths
 from orbits.machines.declared.solving import SOLVED, examined, newton
-from orbits.machines.declared.words import Word
+from orbits.machines.declared.words import SLIP, STICK, Word
 from orbits.protocol import Seed
 
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))  # of what grows beyond the border
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
 NEAR = 0.02  # change of the parameter, relative, beyond which an orbit is not next to the border
+GROWING = 1e-4  # least growth of the margins with the distance from a border
 SAME = 1e-5  # largest difference of states, at equal clocks, of one and the same motion
 CLOSE = 0.05  # of one that goes on from the border
 Found = tuple[DeclaredProblem, np.ndarray, float, np.ndarray]
@@ -93,17 +94,30 @@ def proposals(
 
 
 def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Edit, found: Found) -> Found:
-    """The orbit found, read from the event from which the border orbit was read before it was turned."""
-    other, v, q, tangent = found
+    """The orbit found, read from the event from which the border orbit was read before it was turned; never from a slip."""
     ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
     places = ahead + len(edit.events) - (edit.stop - edit.start)
-    if ahead == 0 or ahead < edit.stop or not len(other.word) or places <= 0:
+    if ahead == 0 or ahead < edit.stop or places <= 0:
+        places = 0
+    return _unslipped(_rotated(found, places))
+
+
+def _rotated(found: Found, places: int) -> Found:
+    """The same orbit and direction, read `places` events further on."""
+    other, v, q, tangent = found
+    if places == 0 or not len(other.word):
         return found
     orbit = other.orbit(v, q).rotate(places)
     again = other.sibling(orbit.word, other.periods, other.symmetric)
-    direction = other.expand_direction(tangent[:-1])
-    direction = np.roll(direction, -places, axis=0)[: again.length]
+    direction = np.roll(other.expand_direction(tangent[:-1]), -places, axis=0)[: again.length]
     return again, again.reduce(orbit.nodes), q, np.append(direction.ravel(), tangent[-1])
+
+
+def _unslipped(found: Found) -> Found:
+    """Read from the stick before a slip that would come first."""
+    word = found[0].word
+    slips = len(word) > 1 and word.letter(0).kind == SLIP and word.letter(-1).kind == STICK
+    return _rotated(found, len(word) - 1) if slips else found
 
 
 def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
@@ -239,8 +253,8 @@ def _beside(other: DeclaredProblem, guess: np.ndarray, p: float) -> Found | None
     if not residual < SOLVED:
         return None
     tangent = tangent / np.linalg.norm(tangent)
-    best, most = None, REAL
     for length in (1e-3, 1e-4, 1e-5, 1e-6):
+        best, most = None, GROWING * length
         for sign in (1.0, -1.0):
             v, r, residual, along = newton(
                 other, u + sign * length * tangent[:-1], q + sign * length * tangent[-1], tangent

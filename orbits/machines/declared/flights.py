@@ -95,7 +95,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         if values is None:  # the strobe of a motion without events: at phase zero
             residual[0, 0] = end[0] - data.shift
             residual[0, 1:] = arrival[0] - onward[0]
-            own[0], following[0] = 0.0, 0.0
+            own[0], following[0] = 0.0, data.minus
             own[0, 1:, 1:] = by_state[0]
             own[0, 1:, 0] = -by_state[0] @ work.first_rates[0]
             following[0, 0, 0] = 1.0

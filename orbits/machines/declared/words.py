@@ -149,7 +149,7 @@ class Word:
             text = self._written(signed, noted)
             try:
                 read = parse(text, self.alphabet, _absent(self.modes[0]))
-                places = range(len(self)) if read.events == self.events and not noted else (0,)
+                places = range(max(1, len(self))) if read.events == self.events and not noted else (0,)
                 if any(read.rotate(k) == self for k in places):
                     return text  # the same cycle, even where the text leaves open from which event it is read
             except WordError:
