@@ -131,7 +131,7 @@ def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.
         modes[change.start : change.stop] = change.modes
         rows[change.start : change.stop] = list(change.nodes)
     if not events:  # nothing is left: the motion is looked at when the phase is zero
-        return Word((), (word.modes[-1],), word.alphabet), nodes[:1], 0
+        return Word((), (word.modes[min(e.start for e in edits) - 1],), word.alphabet), nodes[:1], 0
     return Word(tuple(events), tuple(modes), word.alphabet), np.array(rows), min(e.start for e in edits)
 
 

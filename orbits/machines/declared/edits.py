@@ -138,6 +138,8 @@ def _at_guard(orbit: Any, place: int, j: int) -> list[Edit]:
             ]
         modes = (with_mode(mode, j, sign), mode)
         return [Edit(insert, insert, (slip, stick), modes, pair, "gap", "friction gives way for a moment")]
+    if len(word) and length < SHORT * 100:
+        return _pair(orbit, place)
     away, back = alphabet.text_of(j, SWITCH, -mode[j]), alphabet.text_of(j, SWITCH, mode[j])
     modes = (with_mode(mode, j, -mode[j]), mode)
     early[0], late[0] = node[0] - 0.5 * FIRST, node[0] + 0.5 * FIRST

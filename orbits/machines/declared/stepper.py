@@ -215,8 +215,15 @@ class Stepper:
         watch.move(self.state, self.clock, end, numbers)
         begin, self.clock = self.clock, end
         values, _, guards = self._guards(self.modes)
-        if any(value < 0.0 and guard.kind == HIT for value, guard in zip(values, guards)):
-            self.state, self.clock = before, begin
+        for value, guard in zip(values, guards):
+            if value < 0.0 and guard.kind == HIT:
+                self.state, self.clock = before, begin
+                return
+        for value, guard in zip(values, guards):
+            if value < 0.0 and guard.kind == SWITCH:  # the surface was only touched: the flow stays on its side
+                self.state, self.clock = before, begin
+                self.modes = self._with(guard.contact, -self.modes[guard.contact])
+                return
 
     def _rebase(self) -> None:
         if self.machine.forced:
