@@ -255,7 +255,7 @@ def _modes(
         if free is not None and not _spreads(events, after):
             place, value = free
             after[place] = value
-    if all(mode is None for mode in after):  # only turns: take the first flight to the right
+    if all(mode is None for mode in after):  # only turns: the first flight goes to the left
         after = [-1 if place % 2 else 1 for place in range(n)]
     modes = tuple(int(mode) for mode in after if mode is not None)
     if len(modes) != n:
