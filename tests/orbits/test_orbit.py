@@ -235,7 +235,7 @@ def test_a_stick_slip_motion_is_pinned_in_the_middle_from_whichever_event_it_is_
         moved = turned.nodes + [0.0, 0.05]
         found = SLIDING.orbit("ss", amplitude=0.115, guess=moved)
         assert found.word == turned.word
-        assert found.nodes == pytest.approx(turned.nodes, abs=1e-12)
+        assert found.nodes[:, 1] == pytest.approx(turned.nodes[:, 1], abs=1e-12)
         assert sum(found.nodes[:, 1]) == pytest.approx(0.0, abs=1e-13)
 
 
