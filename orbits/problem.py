@@ -6,7 +6,7 @@ breaking (there a multiplier of the half map passes -1), and a classification th
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -102,6 +102,16 @@ class OrbitProblem:
     def workspace(self) -> tuple[np.ndarray, ...]:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters of the machine by name; of the one that varies the starting value."""
+        return {name: float(value) for name, value in zip(self.model.parameter_names, self.params)}
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> OrbitProblem:
+        """The same orbits against another parameter, with other values of some parameters."""
+        params = self.model.vector(self.parameters | dict(values or {}))
+        return OrbitProblem(self.model, self.word, self.periods, parameter, params, self.symmetric)
 
     def values(self, p: float) -> np.ndarray:
         """The parameter vector at parameter value `p`."""

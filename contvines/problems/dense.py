@@ -74,4 +74,22 @@ def inspect(data: Any, u: np.ndarray, p: float, work: DenseWork, row: np.ndarray
     row[1 : 2 * len(spectrum) : 2] = spectrum.imag
 
 
-KERNELS = Kernels(linearise, bordered, inspect, compiled=False)
+def assign(data: Any, index: int, value: float) -> None:
+    """Set parameter number ``index`` of the problem in place."""
+    data.values.assign(index, value)
+
+
+def flip(data: Any, work: DenseWork, sign: float) -> None:
+    """Turn the closure of a cycle round (sign = -1), and back (sign = 1); see the protocol."""
+    data.turn_closure(work.jacobian, sign)
+
+
+def transpose(data: Any, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
+    """The transposed Jacobian, with another last column, into another workspace."""
+    other.jacobian[:] = work.jacobian.T
+    other.derivative[:] = column
+
+
+KERNELS = Kernels(
+    linearise, bordered, inspect, compiled=False, assign=assign, flip=flip, transpose=transpose, column=2
+)
