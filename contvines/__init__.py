@@ -30,6 +30,7 @@ _HOME = {
     "Symmetry": ".problems.protocol",
     "diagram": ".graph.automatic",
     "load": ".store",
+    "register": ".problems.registry",
     "resume": ".store",
     "save": ".store",
     "switch": ".graph.automatic",
@@ -52,6 +53,7 @@ __all__ = [
     "Symmetry",
     "diagram",
     "load",
+    "register",
     "resume",
     "save",
     "switch",
@@ -81,5 +83,6 @@ if TYPE_CHECKING:
     from .problems.algebraic import AlgebraicProblem
     from .problems.maps import MapProblem
     from .problems.protocol import Embedding, Kernels, Seed, Symmetry
+    from .problems.registry import register
     from .special import SpecialPoint
     from .store import load, resume, save

@@ -72,7 +72,7 @@ class Orbit:
         kernels = assemble(self.model)
         row = np.empty(2 * problem.n_multipliers + problem.n_margins)
         work = problem.workspace()
-        value = float(self.params[problem.index])
+        value = problem.value(self.params)
         residual = kernels.examine(problem.data, problem.reduce(self.nodes), value, work, row)
         spectrum = row[: 2 * problem.n_multipliers : 2] + 1j * row[1 : 2 * problem.n_multipliers : 2]
         margins = row[2 * problem.n_multipliers :]
@@ -107,7 +107,7 @@ class Orbit:
         row = np.empty(2 * problem.n_multipliers + problem.n_margins)
         work = problem.workspace()
         assemble(self.model).examine(
-            problem.data, problem.reduce(self.nodes), float(self.params[problem.index]), work, row
+            problem.data, problem.reduce(self.nodes), problem.value(self.params), work, row
         )
         return row[: 2 * problem.n_multipliers : 2] + 1j * row[1 : 2 * problem.n_multipliers : 2]
 
@@ -198,7 +198,7 @@ class Orbit:
 
     def seed(self, problem: OrbitProblem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
-        return problem.reduce(self.nodes), float(self.params[problem.index])
+        return problem.reduce(self.nodes), problem.value(self.params)
 
     # ------------------------------------------------------------------ seeing and proving
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:

@@ -26,7 +26,7 @@ import math
 FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
 
 # entries of `data`
-FIRST, SECOND, PLACE_P, PLACE_Q, KIND, WHICH, MULTIPLIERS, FLOW = range(8)
+FIRST, SECOND, KIND, WHICH, MULTIPLIERS, FLOW = range(6)
 
 # entries of `work`
 (
@@ -72,7 +72,7 @@ def inspect(data, u, p, work, row):
     raise TypeError("kernels are put in by contvines.loci.binding")
 
 
-def assign(data, index, value):
+def assign(data, other, value):
     """Placeholder for the problem's kernel."""
     raise TypeError("kernels are put in by contvines.loci.binding")
 
@@ -140,7 +140,7 @@ def tests(data, work, u, p, q, values):
     F, Q, lines, borders, solutions = work[TRIAL_F], work[TRIAL_Q], work[LINES], work[BORDERS], work[SOLUTIONS]
     n = F.shape[0]
     kind = data[KIND]
-    assign(first, data[PLACE_Q], q)
+    assign(first, data[SECOND], q)
     residual = linearise(first, u, p, trial)
     if not residual < 1e300:
         return residual
@@ -183,13 +183,13 @@ def locus_linearise(data, U, q, work):
     for i in range(size):
         point[i] = U[i]
     point[size] = q
-    assign(second, data[PLACE_P], p)
+    assign(second, first, p)
     largest = linearise(second, u, q, base)
     if not largest < 1e300:
         return math.inf
     for i in range(n):
         columns[1, i] = Q[i]
-    assign(first, data[PLACE_Q], q)
+    assign(first, data[SECOND], q)
     largest = linearise(first, u, p, base)
     if not largest < 1e300:
         return math.inf

@@ -20,9 +20,9 @@ def inspect(data, u, p, work, row):
     kernel(data, u, p, work, row)
 
 
-def assign(data, index, value):
+def assign(data, other, value):
     """See the protocol."""
-    kernel(data, index, value)
+    kernel(data, other, value)
 
 
 def flip(data, work, sign):

@@ -142,8 +142,6 @@ class LocusProblem(ProblemDefaults):
         self.data = (
             self.first.data,
             self.second.data,
-            names.index(self.inner),
-            names.index(over),
             self.condition,
             self.index,
             self.n_multipliers,

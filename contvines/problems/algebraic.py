@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from .dense import KERNELS, DenseWork, dense_workspace
-from .derivatives import Differentiated, import_addresses
+from .derivatives import Differentiated
 from .images import image_map
 from .parameters import ParameterSet
 from .protocol import ProblemDefaults, Symmetry
+from .registry import find_callables
 
 
 class AlgebraicProblem(ProblemDefaults):
@@ -79,6 +80,7 @@ class AlgebraicProblem(ProblemDefaults):
             self.symmetries = (Symmetry("symmetry-breaking", self.mirror),)
         self.kernels = KERNELS
         self.data = self
+        self.describe()  # its callables are known by their addresses from now on
 
     @property
     def parameter(self) -> str:
@@ -142,11 +144,12 @@ class AlgebraicProblem(ProblemDefaults):
         }
 
 
-def from_description(description: dict[str, Any]) -> AlgebraicProblem:
-    """Build an AlgebraicProblem from what ``describe()`` returned."""
-    functions = import_addresses(description["callables"])
+def from_description(description: Mapping[str, Any], trust: bool = False) -> AlgebraicProblem | None:
+    """An AlgebraicProblem from what ``describe()`` returned; None where its callables are not at hand."""
+    functions = find_callables(description["callables"], trust)
+    if functions is None:
+        return None
     F = functions.pop("F")
-    assert F is not None
     return AlgebraicProblem(
         F,
         description["u0"],

@@ -74,9 +74,9 @@ def inspect(data: Any, u: np.ndarray, p: float, work: DenseWork, row: np.ndarray
     row[1 : 2 * len(spectrum) : 2] = spectrum.imag
 
 
-def assign(data: Any, index: int, value: float) -> None:
-    """Set parameter number ``index`` of the problem in place."""
-    data.values.assign(index, value)
+def assign(data: Any, other: Any, value: float) -> None:
+    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+    data.values.assign(other.parameter, value)
 
 
 def flip(data: Any, work: DenseWork, sign: float) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .parameters import ParameterSet
+from .registry import address
 
 COMPLEX_STEP = 1e-40
 STEP = 6e-3  # roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
@@ -104,7 +105,7 @@ class Differentiated:
         return along(lambda t: self.value(u, p + t), 1.0 + abs(p))
 
     def addresses(self, **others: Any) -> tuple[dict[str, Any], bool]:
-        """Where the callables can be imported from, by name, and whether all of them can."""
+        """Where the callables can be found again, by name, and whether all of them can."""
         given = {
             "F": self.f,
             "jacobian": self.given_jacobian,
@@ -140,34 +141,3 @@ class Differentiated:
         return bool(
             np.all(np.isfinite(exact)) and np.all(np.abs(exact - near) <= 1e-6 * (1.0 + np.abs(near).max()))
         )
-
-
-def address(f: Callable) -> str | None:
-    """ "module:name" under which a callable can be imported again, or None."""
-    module, name = getattr(f, "__module__", None), getattr(f, "__qualname__", "")
-    if not module or module == "__main__" or "<" in name or not name:
-        return None
-    return f"{module}:{name}"
-
-
-def import_addresses(where: Mapping[str, Any]) -> dict[str, Any]:
-    """The callables that :meth:`Differentiated.addresses` has named."""
-    return {
-        key: {name: import_address(part) for name, part in found.items()}
-        if isinstance(found, Mapping)
-        else (import_address(found) if found is None or isinstance(found, str) else found)
-        for key, found in where.items()
-    }
-
-
-def import_address(where: str | None) -> Callable | None:
-    """The callable at "module:name"; None for None."""
-    if where is None:
-        return None
-    from importlib import import_module
-
-    module, _, name = where.partition(":")
-    found = import_module(module)
-    for part in name.split("."):
-        found = getattr(found, part)
-    return found  # type: ignore[return-value]

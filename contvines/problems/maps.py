@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from .dense import KERNELS, DenseWork, dense_workspace
-from .derivatives import Differentiated, import_addresses
+from .derivatives import Differentiated
 from .images import image_map
 from .parameters import ParameterSet
 from .protocol import Embedding, ProblemDefaults, Symmetry
+from .registry import find_callables
 
 
 class MapProblem(ProblemDefaults):
@@ -97,6 +98,7 @@ class MapProblem(ProblemDefaults):
         self.given_mirror = mirror
         self.mirror = None if mirror is None else image_map(mirror, d)
         self._find_symmetries()
+        self.describe()  # its callables are known by their addresses from now on
 
     def _find_symmetries(self) -> None:
         """Images of a cycle that solve the same equations: half a cycle on, mirrored, and both at once."""
@@ -268,11 +270,12 @@ class MapProblem(ProblemDefaults):
         }
 
 
-def from_description(description: dict[str, Any]) -> MapProblem:
-    """Build a MapProblem from what ``describe()`` returned."""
-    functions = import_addresses(description["callables"])
+def from_description(description: Mapping[str, Any], trust: bool = False) -> MapProblem | None:
+    """A MapProblem from what ``describe()`` returned; None where its callables are not at hand."""
+    functions = find_callables(description["callables"], trust)
+    if functions is None:
+        return None
     f = functions.pop("F")
-    assert f is not None
     return MapProblem(
         f,
         description["u0"],

@@ -78,9 +78,9 @@ class ParameterSet:
         """Value of the parameter that varies, where the problem starts."""
         return self.values[self.varying]
 
-    def assign(self, index: int, value: float) -> None:
-        """Give parameter number `index` another value, in place."""
-        self.values[list(self.values)[index]] = float(value)
+    def assign(self, name: str, value: float) -> None:
+        """Give a parameter another value, in place."""
+        self.values[name] = float(value)
 
     def at(self, p: Any) -> Any:
         """What the user's functions get as their second argument when the varying parameter is `p`."""

@@ -17,8 +17,8 @@ The contract, in words:
        ``row[2 m:]`` are the margins. A margin is positive on a real solution, +inf where it does not apply.
    Loci against a second parameter need four more, optional, entries:
 
-   ``assign(data, index, value) -> None``
-       sets parameter number ``index`` of ``parameters`` in place.
+   ``assign(data, other, value) -> None``
+       gives the parameter that varies in the problem of ``other`` (from ``against``) a value in ``data``, in place.
    ``column``
        place of F_p in ``work`` (as work[0] that of F; any C-contiguous shape with N entries); it may be overwritten
        between the calls, and ``bordered`` then takes that column.
@@ -41,7 +41,6 @@ Satisfied by structure: nothing has to be imported or inherited. :class:`Problem
 from __future__ import annotations
 
 import hashlib
-import importlib
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -251,21 +250,3 @@ class ProblemDefaults:
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         return None
-
-
-def rebuild(description: dict[str, Any]) -> Any:
-    """The problem that ``describe()`` described, or None when it came from callables that cannot be named.
-
-    Parameters
-    ----------
-    description : dict
-        With "factory": "module:function"; the function is called with the dict.
-    """
-    factory = description.get("factory")
-    if not factory:
-        return None
-    module, _, name = factory.partition(":")
-    build = importlib.import_module(module)
-    for part in name.split("."):
-        build = getattr(build, part)
-    return build(description)  # type: ignore[operator]

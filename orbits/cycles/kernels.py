@@ -21,6 +21,7 @@ from orbits.compiling import decorators as compiling
 from orbits.compiling import trigonometry
 from orbits.compiling.decorators import inlined_kernel, stored_kernel
 from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
+from orbits.machines import path
 from orbits.machines.base import Model
 from orbits.multipliers import (
     factors,
@@ -110,12 +111,6 @@ helpers: dict[str, subprocess.Popen[bytes]] = {}
 PATIENCE = 60.0  # seconds to wait for one of them
 
 
-@inlined_kernel
-def assign(data, index, value):
-    """Set parameter number `index` of the machine in place."""
-    data[2][index] = value
-
-
 def specialise(function: Callable, name: str, inline: bool = False, **known: Any) -> Any:
     """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`."""
     qualified = f"{function.__name__.strip('_')}_{name}"
@@ -144,8 +139,8 @@ class Kernels:
     newton, examine : compiled functions
         `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, `examine(data, u, p, work, row)`.
     assign, flip, transpose : compiled functions
-        What loci against a second parameter need: `assign(data, index, value)` sets a parameter in place, `flip(data, work,
-        sign)` and `transpose(data, work, column, other)` are those of `orbits.elimination.rearranged`.
+        What loci against a second parameter need: `assign(data, other, value)` of `orbits.machines.path`, `flip(data, work,
+        sign)` and `transpose(data, work, column, other)` of `orbits.elimination.rearranged`.
     column : int
         Place of F_p in a workspace.
     compiled : bool
@@ -162,7 +157,7 @@ class Kernels:
     ) -> None:
         self.name, self.digest = name, digest
         self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
-        self.assign, self.flip, self.transpose = assign, flip, transpose
+        self.assign, self.flip, self.transpose = path.assign, flip, transpose
         self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
         self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
 
@@ -198,6 +193,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         block_cyclic.__file__,
         by_address.__file__,
         vectorised.__file__,
+        path.__file__,
         trigonometry.__file__,
         factors.__file__,
         periodic_schur.__file__,

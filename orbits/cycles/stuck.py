@@ -131,12 +131,12 @@ class StuckOrbit:
 
     def seed(self, problem: StuckProblem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value."""
-        return self.u.copy(), float(self.params[problem.index])
+        return self.u.copy(), problem.value(self.params)
 
     def measure(self, name: str) -> float:
         """One measure."""
         problem = self.problem()
-        return float(problem.measures([name], self.u[None], np.array([self.params[problem.index]]))[name][0])
+        return float(problem.measures([name], self.u[None], np.array([problem.value(self.params)]))[name][0])
 
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
         """Positions and velocities over one forcing period; keys as in `orbits.cycles.sampling.sample`."""

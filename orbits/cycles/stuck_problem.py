@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from orbits.cycles import measures as measuring
 from orbits.cycles.stuck import EMPTY, StuckOrbit, linear_response, multipliers, reserve
 from orbits.machines.base import Model
+from orbits.machines.path import along
 
 
 class StuckProblem:
@@ -24,13 +25,8 @@ class StuckProblem:
     word, periods, symmetric = EMPTY, 1, True
 
     def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
-        if parameter not in model.parameter_names:
-            raise ValueError(
-                f"parameter = {parameter!r} is unknown to the model {model.name!r}; choose one of "
-                + ", ".join(model.parameter_names)
-            )
         self.model, self.parameter, self.params = model, parameter, np.array(params, dtype=float)
-        self.index = model.parameter_names.index(parameter)
+        self.path = model.path(parameter, self.params)
         self.dimension = 1 if model.node == 2 else 2
         self.n_multipliers = 0 if model.node == 2 else 2
         self.data = self
@@ -49,9 +45,11 @@ class StuckProblem:
 
     def values(self, p: float) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
-        params = self.params.copy()
-        params[self.index] = p
-        return params
+        return along(self.path, self.params, p)
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return self.model.amount(self.parameter, params)
 
     def margin_kind(self, j: int) -> str:
         """The one border is the slip."""
@@ -144,8 +142,8 @@ class StuckProblem:
         }
 
 
-def rebuild(description: dict[str, Any]) -> StuckProblem:
-    """The problem that `StuckProblem.describe` described."""
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> StuckProblem:
+    """The problem that `StuckProblem.describe` described; it holds data only, so `trust` has no meaning here."""
     from orbits.machines.catalogue import build
 
     return StuckProblem(
@@ -158,7 +156,7 @@ def _linearise(data: StuckProblem, u: np.ndarray, p: float, work: tuple[np.ndarr
     K, f = linear_response(data.model, data.values(p))
     J[:] = K
     F[:] = K @ u - f
-    h = 1e-6 * max(1.0, abs(p))
+    h = 1e-6 * (abs(p) or 1.0)  # whatever the unit of p
     ahead, f_ahead = linear_response(data.model, data.values(p + h))
     behind, f_behind = linear_response(data.model, data.values(p - h))
     Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)

@@ -33,7 +33,7 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
     tuple
         ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im,
         order, trial)`` with shapes ``(L, n)``,
-        ``(L, n, n)`` twice, ``(L, n)``, ``(P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
+        ``(L, n, n)`` twice, ``(L, n)``, ``(2 P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
         ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.multipliers.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
         ``(L n,)``; then those of `orbits.elimination.vectorised`, and ``(L + 1,)`` twice.
     """
@@ -52,7 +52,7 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         A,
         D,
         Q,
-        np.zeros(parameters),
+        np.zeros(2 * parameters),
         np.zeros((length + 1, 8)),
         np.zeros((length, n, 3 * n + 2)),
         np.zeros((2 * n, 3 * n + 2)),

@@ -21,6 +21,8 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from orbits.machines.path import single
+
 # what may be said of a value, and the test for it
 POSITIVE = ("above 0", lambda value: value > 0.0)
 NOT_NEGATIVE = ("0 or above", lambda value: value >= 0.0)
@@ -97,6 +99,44 @@ class Model:
     def coded(self, name: str, value: Any) -> float:
         """The number that stands for a parameter's value in the parameter vector."""
         return self.check(name, value)
+
+    # ------------------------------------------------------------------ the parameter that varies
+    @property
+    def amount_names(self) -> tuple[str, ...]:
+        """Names of all parameters that may vary, in the order of `amounts`; here the numbers themselves."""
+        return self.parameter_names
+
+    def amounts(self, params: np.ndarray) -> np.ndarray:
+        """Values of all parameters that may vary, shape (Q,)."""
+        return params
+
+    def amount(self, name: str, params: np.ndarray) -> float:
+        """The value of one of them."""
+        return float(self.amounts(params)[self.place_of(name)])
+
+    def path(self, name: str, params: np.ndarray) -> np.ndarray:
+        """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.path`."""
+        return single(params.size, self.place_of(name))
+
+    @property
+    def law(self) -> np.ndarray:
+        """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
+        return np.zeros((0, len(self.parameter_names)))
+
+    def place_of(self, name: str) -> int:
+        """Place of a parameter among `amount_names`.
+
+        Raises
+        ------
+        ParameterError
+            If there is none of this name.
+        """
+        if name not in self.amount_names:
+            raise ParameterError(
+                f"parameter = {name!r} is unknown to the model {self.name!r}; choose one of "
+                + ", ".join(self.amount_names)
+            )
+        return self.amount_names.index(name)
 
     def friction_acceleration(self, params: np.ndarray) -> float:
         """a = (1 + eps) mu g, the friction's relative acceleration (dimensionless)."""

@@ -39,7 +39,7 @@ def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     border = np.zeros(problem.dimension + 1)
     border[-1] = 1.0
     step, tangent = np.empty_like(border), np.empty_like(border)
-    value = float(orbit.params[problem.index])
+    value = problem.value(orbit.params)
     residual, _, _ = assemble(orbit.model).newton(
         problem.data, u, value, problem.workspace(), border, step, tangent, TOLERANCE, limit
     )

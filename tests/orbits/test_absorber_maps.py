@@ -51,7 +51,7 @@ def dense(problem, u, p):
 def test_derivatives_are_those_of_finite_differences(text, periods, symmetric, parameter):
     params = MACHINE.vector({"amplitude": 0.6})
     problem = OrbitProblem(MACHINE, Word.parse(text), periods, parameter, params, symmetric)
-    u, p, h = some_nodes(problem, 3), params[problem.index], 1e-5
+    u, p, h = some_nodes(problem, 3), problem.value(params), 1e-5
     _, J, _ = dense(problem, u, p)
     for j in range(problem.dimension + 1):
 

@@ -18,10 +18,9 @@ from orbits.compiling.decorators import kernel
 from orbits.compiling.trigonometry import sines_cosines
 from orbits.machines.absorber import margins as _margins
 from orbits.machines.absorber.margins import margins as margins
+from orbits.machines.path import place
 
 SOURCES = (_margins.__file__,)
-
-AMPLITUDE, RESTITUTION, FRICTION, GRAVITY, MASS_RATIO, FREQUENCY = range(6)
 
 
 @kernel
@@ -31,11 +30,11 @@ def linearise(data, u, p, work):
     Parameters
     ----------
     data : tuple
-        ``(events, modes, params, ip, twist, shift, pinned)``.
+        ``(events, modes, params, path, twist, shift, pinned, ...)``.
     u : float array (2 L,)
         Nodes, node-major.
     p : float
-        Value of the parameter with index `ip`.
+        Value of the parameter that varies; what it moves: `orbits.machines.path`.
     work : tuple
         From `orbits.elimination.block_cyclic.workspace`; F, A, D, Q are filled.
 
@@ -44,24 +43,19 @@ def linearise(data, u, p, work):
     float
         Largest residual, infinity where the maps cannot be evaluated.
     """
-    events, modes, params, ip, twist, shift, pinned = data
+    events, modes, twist, shift, pinned = data[0], data[1], data[4], data[5], data[6]
     F, A, D, Q, par = work[0], work[1], work[2], work[3], work[4]
     sines, cosines = work[22], work[23]
     length = F.shape[0]
-    for j in range(6):
-        par[j] = params[j]
-    par[ip] = p
+    place(data[2], data[3], p, par)
     C, r, mu, g, eps, omega = par[0], par[1], par[2], par[3], par[4], par[5]
+    slope = par[data[2].shape[0] :]
+    d_C, d_r, d_Omega = slope[0], slope[1], slope[5]
     a = (1.0 + eps) * mu * g
-    da = 0.0
-    if ip == FRICTION:
-        da = (1.0 + eps) * g
-    elif ip == GRAVITY:
-        da = (1.0 + eps) * mu
-    elif ip == MASS_RATIO:
-        da = mu * g
+    da = (1.0 + eps) * (mu * slope[3] + g * slope[2]) + mu * g * slope[4]
     by_omega = 1.0 / omega
     speed = C * omega
+    d_speed = d_C * omega + C * d_Omega
     largest = 0.0
     sines_cosines(u, 2, length, sines, cosines)
     sines[length] = twist * sines[0]
@@ -93,12 +87,7 @@ def linearise(data, u, p, work):
             D[i, 0, 1] = 0.0
             D[i, 1, 0] = 0.0
             D[i, 1, 1] = -1.0
-            q = after * da
-            if ip == AMPLITUDE:
-                q = omega * omega * s1
-            elif ip == FREQUENCY:
-                q = 2.0 * speed * s1
-            Q[i, 0] = q
+            Q[i, 0] = after * da + (d_speed * omega + speed * d_Omega) * s1
             Q[i, 1] = 0.0
         else:
             sa = mode * a
@@ -109,16 +98,14 @@ def linearise(data, u, p, work):
                 beta_psi = 0.0
                 beta_y = 1.0
                 w0_y = 0.0
-                beta_C = 0.0
-                beta_omega = 0.0
+                beta_p = 0.0
             else:
                 w0 = y0
                 beta = speed * c0
                 beta_psi = -speed * s0
                 beta_y = 0.0
                 w0_y = 1.0
-                beta_C = omega * c0
-                beta_omega = C * c0
+                beta_p = d_speed * c0
             pull = beta + sa * d
             V = speed * c1 - pull
             W = w0 + C * (s1 - s0) - (beta + 0.5 * sa * d) * d
@@ -128,16 +115,9 @@ def linearise(data, u, p, work):
             W_psi0 = pull * by_omega - C * c0 - beta_psi * d
             W_y0 = w0_y - beta_y * d
             W_psi1 = V * by_omega
-            if ip == AMPLITUDE:
-                V_p = omega * c1 - beta_C
-                W_p = s1 - s0 - beta_C * d
-            elif ip == FREQUENCY:
-                d_omega = -d * by_omega
-                V_p = C * c1 - beta_omega - sa * d_omega
-                W_p = -beta_omega * d - pull * d_omega
-            else:
-                V_p = -mode * da * d
-                W_p = -0.5 * mode * da * d * d
+            d_p = -d * by_omega * d_Omega
+            V_p = d_speed * c1 - beta_p - mode * da * d - sa * d_p
+            W_p = d_C * (s1 - s0) - (beta_p + 0.5 * mode * da * d) * d - pull * d_p
             if arrival < 2:
                 F[i, 0] = y1 - speed * c1 - r * V
                 F[i, 1] = W - (1.0 - 2.0 * arrival)
@@ -149,14 +129,7 @@ def linearise(data, u, p, work):
                 D[i, 0, 1] = 1.0
                 D[i, 1, 0] = W_psi1
                 D[i, 1, 1] = 0.0
-                q = -r * V_p
-                if ip == AMPLITUDE:
-                    q -= omega * c1
-                elif ip == FREQUENCY:
-                    q -= C * c1
-                elif ip == RESTITUTION:
-                    q -= V
-                Q[i, 0] = q
+                Q[i, 0] = -r * V_p - d_speed * c1 - d_r * V
                 Q[i, 1] = W_p
             else:
                 if event >= 2:
@@ -166,21 +139,16 @@ def linearise(data, u, p, work):
                     sine, cosine = np.sin(middle), np.cos(middle)
                     if abs(half) > 1e-3:
                         ratio = np.sin(half) / half
-                        slope = (np.cos(half) - ratio) / half
+                        turn = (np.cos(half) - ratio) / half
                     else:
                         ratio = 1.0 - half * half / 6.0
-                        slope = half * (half * half / 30.0 - 1.0 / 3.0)
+                        turn = half * (half * half / 30.0 - 1.0 / 3.0)
                     peak = speed * omega
                     V = -peak * sine * ratio - sa
-                    V_psi0 = -0.5 * peak * (cosine * ratio - sine * slope)
-                    V_psi1 = -0.5 * peak * (cosine * ratio + sine * slope)
+                    V_psi0 = -0.5 * peak * (cosine * ratio - sine * turn)
+                    V_psi1 = -0.5 * peak * (cosine * ratio + sine * turn)
                     V_y0 = 0.0
-                    if ip == AMPLITUDE:
-                        V_p = -omega * omega * sine * ratio
-                    elif ip == FREQUENCY:
-                        V_p = -2.0 * speed * sine * ratio
-                    else:
-                        V_p = -mode * da
+                    V_p = -(d_speed * omega + speed * d_Omega) * sine * ratio - mode * da
                 F[i, 0] = V
                 F[i, 1] = W - y1
                 A[i, 0, 0] = V_psi0

@@ -17,7 +17,7 @@ def margins(data, u, p, work, out):
     shaking over friction, reserve of friction, rate at which friction gives way), 2 the wall (1 - |w| away from impacts),
     3 the duration of the segment. Infinity where there is nothing to watch.
     """
-    events, modes, params, ip, twist, shift, pinned = data
+    events, modes, twist, shift = data[0], data[1], data[4], data[5]
     par, sines, cosines = work[4], work[22], work[23]
     length = events.shape[0]
     C, mu, g, eps, omega = par[0], par[2], par[3], par[4], par[5]

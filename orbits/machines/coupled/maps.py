@@ -34,40 +34,27 @@ from orbits.machines.coupled import flow as _flow
 from orbits.machines.coupled import margins as _margins
 from orbits.machines.coupled.flow import harmonic, rates, transition
 from orbits.machines.coupled.margins import margins as margins
+from orbits.machines.path import place
 
 SOURCES = (_flow.__file__, _margins.__file__)
 """Files whose compiled functions are part of these kernels: what is kept on disk depends on them too."""
 
-FORCING, FREQUENCY, DAMPING, MASS_RATIO, RESTITUTION, FRICTION, GRAVITY, EXCITATION = range(8)
-
 
 @kernel
-def _response(par, ip, mass):
-    """X, Y, alpha, beta of the oscillator with the given mass, and their derivatives with respect to parameter `ip`."""
-    G, omega, lam, eps, chi = par[0], par[1], par[2], par[3], par[7]
+def _response(par, slope, mass, d_mass):
+    """X, Y, alpha, beta of the oscillator with the given mass, and their derivatives along `slope`."""
+    omega, lam, eps, chi = par[1], par[2], par[3], par[7]
     rate = eps * lam
+    d_rate = slope[3] * lam + eps * slope[2]
     drag = rate * omega
+    d_drag = d_rate * omega + rate * slope[1]
     stiffness = 1.0 - mass * omega * omega
-    force = eps * G
+    d_stiffness = -(d_mass * omega + 2.0 * mass * slope[1]) * omega
+    force = eps * par[0]
+    d_force = slope[3] * par[0] + eps * slope[0]
+    d_chi = slope[7]
     X, Y = harmonic(force, chi, drag, stiffness)
     alpha, beta = rates(mass, rate)
-    d_force = d_drag = d_stiffness = d_chi = d_rate = d_mass = 0.0
-    if ip == FORCING:
-        d_force = eps
-    elif ip == FREQUENCY:
-        d_drag = rate
-        d_stiffness = -2.0 * mass * omega
-    elif ip == DAMPING:
-        d_rate = eps
-        d_drag = eps * omega
-    elif ip == MASS_RATIO:
-        d_force = G
-        d_rate = lam
-        d_drag = lam * omega
-        d_mass = 1.0 if mass != 1.0 else 0.0
-        d_stiffness = -d_mass * omega * omega
-    elif ip == EXCITATION:
-        d_chi = 1.0
     # (K + i c)(X + i Y) = f (1 + i chi c)
     real = d_force - X * d_stiffness + Y * d_drag
     imag = d_force * chi * drag + force * (d_chi * drag + chi * d_drag) - Y * d_stiffness - X * d_drag
@@ -86,11 +73,11 @@ def linearise(data, u, p, work):
     Parameters
     ----------
     data : tuple
-        ``(events, modes, params, ip, twist, shift, pinned)``.
+        ``(events, modes, params, path, twist, shift, pinned, ...)``.
     u : float array (4 L,)
         Nodes, node-major.
     p : float
-        Value of the parameter with index `ip`.
+        Value of the parameter that varies; what it moves: `orbits.machines.path`.
     work : tuple
         From `orbits.elimination.block_cyclic.workspace`; F, A, D, Q, the parameters and the sines and cosines are filled.
 
@@ -99,27 +86,28 @@ def linearise(data, u, p, work):
     float
         Largest residual, infinity where the maps cannot be evaluated (undamped resonance, overdamped oscillator).
     """
-    events, modes, params, ip, twist, shift, pinned = data
+    events, modes, twist, shift, pinned = data[0], data[1], data[4], data[5], data[6]
     F, A, D, Q, par, trig = work[0], work[1], work[2], work[3], work[4], work[5]
     length = F.shape[0]
-    for j in range(8):
-        par[j] = params[j]
-    par[ip] = p
+    place(data[2], data[3], p, par)
+    slope = par[data[2].shape[0] :]
     G, omega, lam, eps, r, mu, g, chi = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
     whole = 1.0 + eps
     part = 1.0 / whole
     rate = eps * lam
     force = eps * G
     pull = mu * g  # acceleration of the absorber by friction
-    d_pull = g if ip == FRICTION else (mu if ip == GRAVITY else 0.0)
-    d_eps = 1.0 if ip == MASS_RATIO else 0.0
-    d_omega = 1.0 if ip == FREQUENCY else 0.0
+    d_pull = mu * slope[6] + g * slope[5]
+    d_omega, d_eps, d_r = slope[1], slope[3], slope[4]
+    d_rate = d_eps * lam + eps * slope[2]
+    d_force = d_eps * G + eps * slope[0]
+    d_lever = slope[7] * rate * omega + chi * (d_rate * omega + rate * d_omega)  # of chi eps lambda Omega
     by_omega = 1.0 / omega
-    slide = _response(par, ip, 1.0)
+    slide = _response(par, slope, 1.0, 0.0)
     stuck = slide
     for i in range(length):
         if modes[i] == 0:
-            stuck = _response(par, ip, whole)
+            stuck = _response(par, slope, whole, d_eps)
             break
     for i in range(length):
         trig[i, 0] = math.sin(u[4 * i])
@@ -185,15 +173,15 @@ def linearise(data, u, p, work):
         dd = -d * by_omega * d_omega
         dz = dq1 - dX * s0 - dY * c0 - d_offset
         dzr = dq1r - omega * (dX * c0 - dY * s0) - d_omega * (X * c0 - Y * s0)
-        slope = (d * C - S) / beta
+        lag = (d * C - S) / beta
         dQ1 = (
             T11 * dz + T12 * dzr + Zr * dd + dX * s1 + dY * c1 + d_offset
-            + d_alpha * (z * S - d * Z) + d_beta * ((zr + alpha * z) * slope - d * beta * z * S)
+            + d_alpha * (z * S - d * Z) + d_beta * ((zr + alpha * z) * lag - d * beta * z * S)
         )  # fmt: skip
         dQ1r = (
             T21 * dz + T22 * dzr + Zrr * dd + omega * (dX * c1 - dY * s1) + d_omega * (X * c1 - Y * s1)
             - d_alpha * (d * Zr + (zr + 2.0 * alpha * z) * S)
-            - d_beta * (d * beta * zr * S + (alpha * zr + kappa * z) * slope + 2.0 * beta * z * S)
+            - d_beta * (d * beta * zr * S + (alpha * zr + kappa * z) * lag + 2.0 * beta * z * S)
         )  # fmt: skip
         # derivatives with respect to the nodes: Psi_0, y_0, v_0, v_0', and Psi_1
         Q1_psi0 = -(T11 * q1_rate + T12 * q1_acceleration) * by_omega
@@ -267,9 +255,7 @@ def linearise(data, u, p, work):
             A[i, 1, 2] = f * Q1r_v + h * Q2r_v
             A[i, 1, 3] = f * Q1r_vr + h * Q2r_vr
             D[i, 1, 0] = f * Q1r_psi1 + h * Q2r_psi1
-            Q[i, 1] = f * dQ1r + h * dQ2r + d_eps * Q2r
-            if ip == RESTITUTION:
-                Q[i, 1] += Q1r - Q2r
+            Q[i, 1] = f * dQ1r + h * dQ2r + d_eps * Q2r + d_r * (Q1r - Q2r)
         else:
             F[i, 1] = Q1 - Q2 - y1
             A[i, 1, 0] = Q1_psi0 - Q2_psi0
@@ -286,18 +272,10 @@ def linearise(data, u, p, work):
                 A[i, 0, 2] = -Q1_v - rate * Q1r_v
                 A[i, 0, 3] = -Q1_vr - rate * Q1r_vr
                 D[i, 0, 0] = -Q1_psi1 - rate * Q1r_psi1 + force * (c1 - chi * rate * omega * s1)
-                q = -dQ1 - rate * dQ1r - after * (d_eps * pull + whole * d_pull)
-                if ip == FORCING:
-                    q += eps * base
-                elif ip == FREQUENCY:
-                    q += force * chi * rate * c1
-                elif ip == DAMPING:
-                    q += -eps * Q1r + force * chi * eps * omega * c1
-                elif ip == MASS_RATIO:
-                    q += -lam * Q1r + G * base + force * chi * lam * omega * c1
-                elif ip == EXCITATION:
-                    q += force * rate * omega * c1
-                Q[i, 0] = q
+                Q[i, 0] = (
+                    -dQ1 - rate * dQ1r - d_rate * Q1r + d_force * base + force * d_lever * c1
+                    - after * (d_eps * pull + whole * d_pull)
+                )  # fmt: skip
             elif event < 2 or mode == 0:
                 F[i, 0] = Q1r - Q2r
                 A[i, 0, 0] = Q1r_psi0 - Q2r_psi0

@@ -32,7 +32,7 @@ def test_derivatives_by_name_and_files():
     u = np.array([0.3])
     assert problem.equations(u, 0.0)[2] == pytest.approx([1.0])
     assert problem.against("r").equations(u, 1.0)[2] == pytest.approx([0.3])
-    from contvines.problems.protocol import rebuild
+    from contvines.problems.registry import rebuild
 
     again = rebuild(cv.AlgebraicProblem(cusp, [0.3], {"h": 0.0, "r": 1.0}, parameter="r").describe())
     assert again.parameter == "r" and again.parameters == {"h": 0.0, "r": 1.0}
