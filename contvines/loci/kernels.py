@@ -26,7 +26,7 @@ import math
 FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
 
 # entries of `data`
-FIRST, SECOND, KIND, WHICH, MULTIPLIERS, FLOW = range(6)
+FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
 
 # entries of `work`
 (
@@ -57,37 +57,15 @@ AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
 
 
-def linearise(data, u, p, work):
-    """Placeholder for the problem's kernel."""
+def linearise(calls, data, u, p, work):
+    """Placeholder for the problem's kernel, called by address; so are the others."""
     raise TypeError("kernels are put in by contvines.loci.binding")
 
 
-def bordered(data, work, border, n, step, tangent):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.loci.binding")
+bordered = inspect = assign = flip = transpose = linearise
 
 
-def inspect(data, u, p, work, row):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.loci.binding")
-
-
-def assign(data, other, value):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.loci.binding")
-
-
-def flip(data, work, sign):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.loci.binding")
-
-
-def transpose(data, work, column, other):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.loci.binding")
-
-
-def null_test(data, linear, F, Q, b, c, line, step, tangent):
+def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
     """Solve M (v, g) = (0, 1) with the linearisation at hand, into `tangent`; returns g."""
     n = F.shape[0]
     for i in range(n):
@@ -95,15 +73,15 @@ def null_test(data, linear, F, Q, b, c, line, step, tangent):
         Q[i] = b[i]
         line[i] = c[i]
     line[n] = 0.0
-    bordered(data, linear, line, 0.0, step, tangent)
+    bordered(calls, data, linear, line, 0.0, step, tangent)
     return tangent[n]
 
 
-def flipped_test(data, linear, F, Q, b, c, line, step, tangent):
+def flipped_test(calls, data, linear, F, Q, b, c, line, step, tangent):
     """The same for perturbations that change sign over the period; the linearisation is left as it was."""
-    flip(data, linear, -1.0)
-    value = null_test(data, linear, F, Q, b, c, line, step, tangent)
-    flip(data, linear, 1.0)
+    flip(calls, data, linear, -1.0)
+    value = null_test(calls, data, linear, F, Q, b, c, line, step, tangent)
+    flip(calls, data, linear, 1.0)
     return value
 
 
@@ -139,18 +117,18 @@ def tests(data, work, u, p, q, values):
     first, trial = data[FIRST], work[TRIAL]
     F, Q, lines, borders, solutions = work[TRIAL_F], work[TRIAL_Q], work[LINES], work[BORDERS], work[SOLUTIONS]
     n = F.shape[0]
-    kind = data[KIND]
-    assign(first, data[SECOND], q)
-    residual = linearise(first, u, p, trial)
+    kind, calls = data[KIND], data[CALLS]
+    assign(calls, first, data[SECOND], q)
+    residual = linearise(calls, first, u, p, trial)
     if not residual < 1e300:
         return residual
     if kind == FOLD:
         values[0] = null_test(
-            first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[SPARE]
+            calls, first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[SPARE]
         )
     elif kind == FLIP:
         values[0] = flipped_test(
-            first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[SPARE]
+            calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[SPARE]
         )
     elif kind == BRANCH:
         for i in range(n):
@@ -158,12 +136,12 @@ def tests(data, work, u, p, q, values):
             Q[i] = borders[B, i]
             lines[0, i] = borders[C, i]
         lines[0, n] = 0.0
-        bordered(first, trial, lines[0], 0.0, lines[1], solutions[SPARE])
+        bordered(calls, first, trial, lines[0], 0.0, lines[1], solutions[SPARE])
         values[0] = solutions[SPARE, n]
         values[1] = lines[1, n]
     else:
         row = work[ROW]
-        inspect(first, u, p, trial, row)
+        inspect(calls, first, u, p, trial, row)
         if kind == MARGIN:
             values[0] = row[2 * data[MULTIPLIERS] + data[WHICH]]
         else:
@@ -178,19 +156,19 @@ def locus_linearise(data, U, q, work):
     F, Q, point, columns, solutions = work[BASE_F], work[BASE_Q], work[POINT], work[COLUMNS], work[SOLUTIONS]
     borders, lines, values, residuals = work[BORDERS], work[LINES], work[VALUES], work[RESIDUAL]
     n, size = F.shape[0], U.shape[0]
-    kind = data[KIND]
+    kind, calls = data[KIND], data[CALLS]
     u, p = U[:n], U[n]
     for i in range(size):
         point[i] = U[i]
     point[size] = q
-    assign(second, first, p)
-    largest = linearise(second, u, q, base)
+    assign(calls, second, first, p)
+    largest = linearise(calls, second, u, q, base)
     if not largest < 1e300:
         return math.inf
     for i in range(n):
         columns[1, i] = Q[i]
-    assign(first, data[SECOND], q)
-    largest = linearise(first, u, p, base)
+    assign(calls, first, data[SECOND], q)
+    largest = linearise(calls, first, u, p, base)
     if not largest < 1e300:
         return math.inf
     for i in range(n):
@@ -205,7 +183,7 @@ def locus_linearise(data, U, q, work):
     for column in range(2):
         for i in range(n):
             F[i] = columns[column, i]
-        bordered(first, base, lines[0], 0.0, solutions[AT_P + column], solutions[NULL])
+        bordered(calls, first, base, lines[0], 0.0, solutions[AT_P + column], solutions[NULL])
     if kind == FOLD:
         values[0] = solutions[NULL, n]
     elif kind == BRANCH:
@@ -283,7 +261,7 @@ def locus_bordered(data, work, border, target, step, tangent):
         Q[i] = borders[B, i]
         lines[0, i] = borders[C, i]
     lines[0, n] = 0.0
-    sign = bordered(data[FIRST], base, lines[0], 0.0, solutions[AT_F], solutions[NULL])
+    sign = bordered(data[CALLS], data[FIRST], base, lines[0], 0.0, solutions[AT_F], solutions[NULL])
     # (u, p, e, q) = particular + dp first + dq second + a third, with one condition on (dp, dq, a)
     for i in range(n):
         for k in range(4):
@@ -366,11 +344,11 @@ def renew(data, work, b, c, null):
         c[i] = null[i] / size
         lines[0, i] = b[i]
     lines[0, n] = 0.0
-    transpose(data[FIRST], work[BASE], c, work[TRIAL])
+    transpose(data[CALLS], data[FIRST], work[BASE], c, work[TRIAL])
     F = work[TRIAL_F]
     for i in range(n):
         F[i] = 0.0
-    bordered(data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
+    bordered(data[CALLS], data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
     size = 0.0
     for i in range(n):
         size += left[i] * left[i]
@@ -393,11 +371,11 @@ def locus_inspect(data, U, q, work, row):
     if kind != BRANCH:  # there e is measured along b
         renew(data, work, borders[B], borders[C], solutions[NULL])
     if kind == FLIP:
-        flip(first, base, -1.0)
+        flip(data[CALLS], first, base, -1.0)
         renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[SPARE])
-        flip(first, base, 1.0)
+        flip(data[CALLS], first, base, 1.0)
     own = row.shape[0] - 3
-    inspect(first, U[:n], U[n], base, row[:own])
+    inspect(data[CALLS], first, U[:n], U[n], base, row[:own])
     row[own] = U[n] - reference[3]
     row[own + 1] = reference[4] - U[n]
     row[own + 2] = math.inf

@@ -138,10 +138,11 @@ class LocusProblem(ProblemDefaults):
         self.borders = self._fresh_borders() if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
-        self.kernels, self.tests = locus_kernels(kernels)
+        self.kernels, calls = locus_kernels(self.first)
         self.data = (
             self.first.data,
             self.second.data,
+            calls,
             self.condition,
             self.index,
             self.n_multipliers,
