@@ -1,7 +1,6 @@
 """The kernels of a locus, made from those of the problem whose special points it collects.
 
-The locus calls the problem's kernels at many places. Compiled, each of them is one function by itself that is called by
-address: else the compiler would work through all of them again in every function that uses them.
+Interpreted kernels are called as they are, compiled ones by address (:mod:`contvines.loci.addresses`).
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from . import kernels as source
 HELPERS = ("null_test", "flipped_test", "pair_of", "tests", "slopes_along", "close", "renew")
 NAMES = ("linearise", "bordered", "inspect", "assign", "flip", "transpose")
 _interpreted: dict[tuple[Any, ...], Kernels] = {}
-_compiled: dict[tuple[Any, ...], tuple[Kernels, np.ndarray]] = {}
+_addresses: dict[tuple[Any, ...], np.ndarray] = {}
 
 
 def locus_kernels(problem: Any) -> tuple[Kernels, np.ndarray]:
@@ -35,19 +34,28 @@ def locus_kernels(problem: Any) -> tuple[Kernels, np.ndarray]:
                 {name: _direct(f) for name, f in given.items()}, lambda function: function, "", False
             )
         return _interpreted[key], np.zeros(0, np.int64)
-    from numba import njit, typeof
+    from numba import typeof
+
+    from .addresses import addresses
 
     data, work = problem.data, problem.workspace()
     key = (*key, typeof(data), typeof(work))
-    if key not in _compiled:
-        from .addresses import addresses, callers
+    if key not in _addresses:
+        types = hashlib.blake2b(repr((typeof(data), typeof(work))).encode(), digest_size=4).hexdigest()
+        _addresses[key] = addresses(given, data, work, f"{kernels_digest(kernels)}_{types}")
+    return _compiled_once(), _addresses[key]
 
-        sources = (Path(str(source.__file__)), Path(__file__).with_name("addresses.py"))
-        own = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
-        digest = f"{kernels_digest(kernels)}_{own}"
-        made = _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, digest)
-        _compiled[key] = made, addresses(given, data, work, digest)
-    return _compiled[key]
+
+@cache
+def _compiled_once() -> Kernels:
+    """The compiled kernels of all loci."""
+    from numba import njit
+
+    from .addresses import callers
+
+    sources = (Path(str(source.__file__)), Path(__file__).with_name("addresses.py"))
+    digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=6).hexdigest()
+    return _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")
 
 
 def _bind(

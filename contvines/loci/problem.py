@@ -139,9 +139,11 @@ class LocusProblem(ProblemDefaults):
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
         self.kernels, calls = locus_kernels(self.first)
+        self._stored: list[Any] = []
+        self.compiled = bool(kernels.compiled)
         self.data = (
-            self.first.data,
-            self.second.data,
+            self._place(self.first.data),
+            self._place(self.second.data),
             calls,
             self.condition,
             self.index,
@@ -151,6 +153,15 @@ class LocusProblem(ProblemDefaults):
         shift = problem.period_shift
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
+
+    def _place(self, content: Any) -> Any:
+        """Data or workspace as the kernels of the locus get it: an address if they are compiled."""
+        if not self.compiled:
+            return content
+        from .addresses import Stored
+
+        self._stored.append(Stored(content))
+        return self._stored[-1].address
 
     def _fresh_borders(self) -> np.ndarray:
         borders = np.random.default_rng(5).standard_normal((4, self.size + 1))
@@ -168,8 +179,8 @@ class LocusProblem(ProblemDefaults):
             scales[:n] = own
         return Work(
             residual=np.zeros(self.dimension),
-            base=base,
-            trial=trial,
+            base=self._place(base),
+            trial=self._place(trial),
             base_F=base[0].reshape(-1),
             base_Q=base[column].reshape(-1),
             trial_F=trial[0].reshape(-1),
