@@ -243,6 +243,12 @@ class MapProblem(ProblemDefaults):
                 result[name] = getattr(nodes[:, :, j], what)(axis=1)
         return result
 
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
+        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
+        if name not in {f"x{j}" for j in range(self.node)}:
+            return None
+        return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""
         return np.array(u).reshape(self.cycle, self.node)
