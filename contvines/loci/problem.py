@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..problems.protocol import ProblemDefaults
-from . import kernels as source
 from .binding import locus_kernels
 from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
 
@@ -200,6 +199,17 @@ class LocusProblem(ProblemDefaults):
             small=np.zeros((3, 5)),
         )
 
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
+        scale = np.ones(self.dimension + 1)
+        if self.compiled:
+            return scale
+        own = getattr(self.base, "scale_within", None)
+        if own is not None and np.isfinite(self.bounds).all():
+            typical = own(self.bounds)
+            scale[: self.size], scale[self.size] = typical[:-1], typical[-1]
+        return scale
+
     # ------------------------------------------------------------------ what a solution is
     def split(self, U: np.ndarray) -> tuple[np.ndarray, float]:
         """(u, p) of a solution."""
@@ -283,4 +293,3 @@ def from_description(description: Mapping[str, Any]) -> LocusProblem:
     )
 
 
-__all__ = ["BRANCH", "FLIP", "FOLD", "MARGIN", "PAIR", "LocusProblem", "Work", "condition", "source"]
