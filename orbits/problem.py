@@ -14,7 +14,7 @@ import numpy as np
 
 from orbits.cycles import measures as measuring
 from orbits.cycles.kernels import assemble
-from orbits.cycles.margins import PER_NODE, border_kind
+from orbits.cycles.margins import DURATION, FLIGHT, PER_NODE, border_kind, margin_name
 from orbits.elimination.block_cyclic import workspace
 from orbits.machines.base import Model
 from orbits.machines.path import along
@@ -125,6 +125,10 @@ class OrbitProblem:
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
+        return j - FLIGHT + DURATION if margin_name(self.word, j) == "hold" else j
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border at which margin `j` vanishes."""

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit, types, typeof  # pyright: ignore[reportPrivateImportUsage]
+from numba import njit, typeof, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import cgutils
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic

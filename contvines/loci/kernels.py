@@ -22,6 +22,7 @@ This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts th
 """
 
 import math
+from typing import Any
 
 FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
 
@@ -50,19 +51,21 @@ FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
     LINES,
     REFERENCE,
     SMALL,
-) = range(20)
+    MASKED,
+) = range(21)
 
 STEP = 1e-7  # of the differences, relative to the scales of the unknowns
 AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
 
 
-def linearise(calls, data, u, p, work):
-    """Placeholder for the problem's kernel, called by address; so are the others."""
-    raise TypeError("kernels are put in by contvines.loci.binding")
-
-
-bordered = inspect = assign = flip = transpose = linearise
+# the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
+linearise: Any = None
+bordered: Any = None
+inspect: Any = None
+assign: Any = None
+flip: Any = None
+transpose: Any = None
 
 
 def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
@@ -115,7 +118,13 @@ def pair_of(row, multipliers, flow, reference, found):
 def tests(data, work, u, p, q, values):
     """The tests g at any (u, p, q), into `values`; the linearisation in TRIAL is used up. Returns the residual."""
     first, trial = data[FIRST], work[TRIAL]
-    F, Q, lines, borders, solutions = work[TRIAL_F], work[TRIAL_Q], work[LINES], work[BORDERS], work[SOLUTIONS]
+    F, Q, lines, borders, solutions = (
+        work[TRIAL_F],
+        work[TRIAL_Q],
+        work[LINES],
+        work[BORDERS],
+        work[SOLUTIONS],
+    )
     n = F.shape[0]
     kind, calls = data[KIND], data[CALLS]
     assign(calls, first, data[SECOND], q)
@@ -379,9 +388,9 @@ def locus_inspect(data, U, q, work, row):
     row[own] = U[n] - reference[3]
     row[own + 1] = reference[4] - U[n]
     row[own + 2] = math.inf
-    if kind == MARGIN:
-        row[2 * multipliers + data[WHICH]] = math.inf
-    elif kind == PAIR:
+    for j in work[MASKED]:
+        row[2 * multipliers + j] = math.inf
+    if kind == PAIR:
         pair_of(row, multipliers, data[FLOW], reference[0], reference[1:])
         reference[0] = reference[2]
         row[own + 2] = reference[2] if data[FLOW] else 1.0 - reference[2] * reference[2]

@@ -55,6 +55,8 @@ class Locus:
         Index and label of the points of codimension two on it.
     turns : tuple of Turn
         Where it turns round in the second parameter.
+    within : (float, float)
+        Interval of the second parameter.
     """
 
     label: str
@@ -65,6 +67,7 @@ class Locus:
     seed: str | None = None
     marks: tuple[tuple[int, str], ...] = ()
     turns: tuple[Turn, ...] = ()
+    within: tuple[float, float] = (-np.inf, np.inf)
 
     def __len__(self) -> int:
         return len(self.branch)
@@ -263,7 +266,7 @@ def trace_locus(
         flags = np.zeros(0, dtype=bool)
         for part in range(20):
             more = follow(engine, first, watch, journal, f"locus/{label}/{side}/{part}", now, None, notice)
-            flags = np.append(flags, np.full(len(more) - len(flags[:0]) - (0 if half is None else 1), now))
+            flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))
             half = more if half is None else half.extended(more, skip=1)
             border = _border(more)
             if border is None or not virtual or problem.margin_kind(border.index) in ("end", "resonance"):
@@ -291,7 +294,7 @@ def trace_locus(
         for i, e in whole.events
         if e.kind == "fold"
     )
-    return Locus(label, problem.kind, (problem.inner, problem.over), branch, flags, seed, (), turns)
+    return Locus(label, problem.kind, (problem.inner, problem.over), branch, flags, seed, (), turns, within)
 
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:

@@ -58,6 +58,7 @@ class Work(NamedTuple):
     lines: np.ndarray
     reference: np.ndarray
     small: np.ndarray
+    masked: np.ndarray
 
 
 class LocusProblem(ProblemDefaults):
@@ -81,6 +82,8 @@ class LocusProblem(ProblemDefaults):
         Of the bordered systems, as :func:`contvines.loci.starts.begin` finds them.
     reference : float
         Position of the pair of multipliers; see ``pair_of``.
+    masked : sequence of int
+        Margins that are zero all along the locus, as those of a border are.
 
     Raises
     ------
@@ -99,6 +102,7 @@ class LocusProblem(ProblemDefaults):
         bounds: tuple[float, float] = (-np.inf, np.inf),
         borders: np.ndarray | None = None,
         reference: float = 0.0,
+        masked: Sequence[int] = (),
     ) -> None:
         kernels = problem.kernels
         names = list(getattr(problem, "parameters", {}))
@@ -134,6 +138,7 @@ class LocusProblem(ProblemDefaults):
         self.dimension = self.size + (2 if self.unfolded else 1)
         self.bounds = (float(bounds[0]), float(bounds[1]))
         self.reference = float(reference)
+        self.masked = tuple(int(j) for j in masked)
         self.borders = self._fresh_borders() if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
@@ -197,6 +202,7 @@ class LocusProblem(ProblemDefaults):
             lines=np.zeros((2, n + 1)),
             reference=np.array([self.reference, 0.0, 0.0, *self.bounds]),
             small=np.zeros((3, 5)),
+            masked=np.array(self.masked, np.int64).reshape(-1),
         )
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
@@ -211,7 +217,7 @@ class LocusProblem(ProblemDefaults):
         return scale
 
     # ------------------------------------------------------------------ what a solution is
-    def split(self, U: np.ndarray) -> tuple[np.ndarray, float]:
+    def split(self, U: np.ndarray) -> tuple[np.ndarray, Any]:
         """(u, p) of a solution."""
         return np.asarray(U[..., : self.size]), U[..., self.size]
 
@@ -249,7 +255,7 @@ class LocusProblem(ProblemDefaults):
         if others:
             rows = [
                 self.at(q).measures(others, u[None, :], np.array([v]))
-                for u, v, q in zip(inner, values, np.atleast_1d(p))
+                for u, v, q in zip(inner, values, np.atleast_1d(np.asarray(p)))
             ]
             result |= {name: np.array([row[name][0] for row in rows]) for name in others}
         return result
@@ -271,25 +277,28 @@ class LocusProblem(ProblemDefaults):
             "index": self.index,
             "bounds": list(self.bounds),
             "reference": self.reference,
+            "masked": list(self.masked),
             "borders": self.borders.tolist(),
             "problem": about,
             "factory": "contvines.loci.problem:from_description" if about.get("factory") else None,
         }
 
 
-def from_description(description: Mapping[str, Any]) -> LocusProblem:
-    """The LocusProblem that `describe` described."""
-    from ..problems.protocol import rebuild
+def from_description(description: Mapping[str, Any], trust: bool = False) -> LocusProblem | None:
+    """The LocusProblem that `describe` described; None where functions of the user's own are not at hand."""
+    from ..problems.registry import rebuild
 
+    problem = rebuild(description["problem"], trust)
+    if problem is None:
+        return None
     low, high = description["bounds"]
     return LocusProblem(
-        rebuild(description["problem"]),
+        problem,
         description["kind"],
         description["parameter"],
         description["index"],
         (low, high),
         np.array(description["borders"]),
         description["reference"],
+        description["masked"],
     )
-
-

@@ -8,9 +8,11 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
-from .kernels import BRANCH, FLIP, FOLD, PAIR, pair_of
+from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR, pair_of
 from .linear import Linearisation
 from .problem import LocusProblem, condition
+
+ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
 
 
 def begin(
@@ -39,6 +41,9 @@ def begin(
         Of the first parameter.
     """
     wanted = condition(problem, kind)
+    smooth = getattr(problem, "smooth_margin", None)
+    if wanted == MARGIN and smooth is not None:
+        index = smooth(index)
     locus = LocusProblem(problem, kind, over, index, bounds)
     line = Linearisation(problem)
     line.at(u, p)
@@ -53,6 +58,9 @@ def begin(
     if wanted == FLIP:
         null = line.null_vectors(flipped=True)
         locus.borders[2, :n], locus.borders[3, :n] = null.left, null.right
+    if wanted == MARGIN:
+        margins = line.row()[2 * int(problem.n_multipliers) :]
+        locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < ZERO)) or (index,)
     if wanted == PAIR:
         found = np.zeros(2)
         row = line.row()

@@ -74,6 +74,11 @@ def inspect(data: Any, u: np.ndarray, p: float, work: DenseWork, row: np.ndarray
     row[1 : 2 * len(spectrum) : 2] = spectrum.imag
 
 
+def matrix(data: Any, work: DenseWork) -> np.ndarray:
+    """F_u as it stands in a workspace."""
+    return work.jacobian.copy()
+
+
 def assign(data: Any, other: Any, value: float) -> None:
     """Give the parameter that varies in ``other`` a value in ``data``, in place."""
     data.values.assign(other.parameter, value)
@@ -91,5 +96,13 @@ def transpose(data: Any, work: DenseWork, column: np.ndarray, other: DenseWork) 
 
 
 KERNELS = Kernels(
-    linearise, bordered, inspect, compiled=False, assign=assign, flip=flip, transpose=transpose, column=2
+    linearise,
+    bordered,
+    inspect,
+    compiled=False,
+    assign=assign,
+    flip=flip,
+    transpose=transpose,
+    column=2,
+    matrix=matrix,
 )

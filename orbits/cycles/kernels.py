@@ -143,6 +143,8 @@ class Kernels:
         sign)` and `transpose(data, work, column, other)` of `orbits.elimination.rearranged`.
     column : int
         Place of F_p in a workspace.
+    matrix : callable
+        `matrix(data, work)`, the whole Jacobian.
     compiled : bool
         True.
     digest : str
@@ -151,6 +153,7 @@ class Kernels:
 
     compiled = True
     column = 3
+    matrix = staticmethod(rearranged.matrix)
 
     def __init__(
         self, name: str, digest: str, linearise: Any, bordered: Any, inspect: Any, flip: Any, transpose: Any

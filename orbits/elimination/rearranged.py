@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from orbits.compiling.decorators import inlined_kernel
 
 unpin: Any = None  # filled in per machine by `orbits.cycles.kernels`
@@ -44,3 +46,18 @@ def transpose(data, work, column, other):
             for c in range(n):
                 new_A[k, i, c] = scale * D[k, c, i]
                 new_D[k, i, c] = A[following, c, i] * (twist if (following == 0 and c > 0) else 1.0)
+
+
+def matrix(data, work) -> np.ndarray:
+    """The whole Jacobian, shape (L n, L n), of the linearisation in a workspace."""
+    A, D, twist = work[1], work[2], data[4]
+    length, n = A.shape[0], A.shape[1]
+    whole = np.zeros((length, n, length, n))
+    closure = np.r_[1.0, np.full(n - 1, twist)]
+    for k in range(length):
+        whole[k, :, k, :] += A[k]
+        if k + 1 < length:
+            whole[k, :, k + 1, :] += D[k]
+        else:
+            whole[k, :, 0, :] += D[k] * closure
+    return whole.reshape(length * n, length * n)
