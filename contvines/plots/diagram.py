@@ -96,9 +96,11 @@ def plot_diagram(
         picture.draw_points(ends)
         frame(axes, graph, picture.curves, x, y, xlim, ylim)
         if own or not axes.get_xlabel():
-            axes.set_xlabel(axis_label(x))
+            axes.set_xlabel(axis_label(x, unit=graph.units.get(x)))
         if own or not axes.get_ylabel():
-            axes.set_ylabel(axis_label(y, short=axes.get_window_extent().height < LOW * figure.dpi))
+            axes.set_ylabel(
+                axis_label(y, axes.get_window_extent().height < LOW * figure.dpi, graph.units.get(y))
+            )
         settle(figure)
         picture.refine()
         picture.key_of_marks()

@@ -70,6 +70,11 @@ def plot_multipliers(
     return figure
 
 
+def unit_of(branch: Branch) -> str | None:
+    """The unit of the parameter, where it has one."""
+    return (branch.description.get("units") or {}).get(branch.parameter)
+
+
 def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
     size = np.real(spectrum) if flow else np.abs(spectrum)
     ranked = np.take_along_axis(size, np.argsort(-size, axis=1), axis=1)
@@ -92,7 +97,7 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
         axes.set_yscale("log")
         low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
         axes.set_ylim(max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5)  # a graze sends a multiplier to infinity
-    axes.set_xlabel(axis_label(branch.parameter))
+    axes.set_xlabel(axis_label(branch.parameter, unit=unit_of(branch)))
     axes.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
     what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
     figure = axes.get_figure(root=True)
@@ -131,7 +136,7 @@ def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
     figure = axes.get_figure(root=True)
     assert figure is not None
     bar = figure.colorbar(dots, ax=axes, shrink=0.85)
-    bar.set_label(axis_label(branch.parameter))
+    bar.set_label(axis_label(branch.parameter, unit=unit_of(branch)))
     axes.set_xlabel(r"Re $\lambda$")
     axes.set_ylabel(r"Im $\lambda$")
     hidden = int((~shown).sum())

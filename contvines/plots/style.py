@@ -1,5 +1,6 @@
 """What things look like in every picture: line styles, marks of special points, names of axes."""
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,8 +66,25 @@ SYMBOLS = {
 }
 
 
-def axis_label(name: str, short: bool = False) -> str:
-    """The label of an axis that shows `name`; the symbol alone, where it has one and room is short."""
+# the same in words, for axes that have a unit
+WORDS = {
+    "max_abs_q1": "largest displacement of the oscillator",
+    "max_abs_w": "largest relative displacement",
+    "amplitude": "amplitude",
+    "impact_speed": "fastest impact",
+    "half_width": "half-width of the cavity (clearance to either side)",
+    "frequency": "excitation frequency",
+    "base_amplitude": "amplitude of the base",
+    "force_amplitude": "amplitude of the force",
+}
+
+
+def axis_label(name: str, short: bool = False, unit: str | None = None) -> str:
+    """The label of an axis that shows `name`; the symbol alone, where it has one and room is short. With a unit: words."""
+    if unit:
+        words = WORDS.get(name) or SYMBOLS.get(name, name.replace("_", " "))
+        raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
+        return f"{name.replace('_', ' ') if short else words} [{raised}]"
     label = SYMBOLS.get(name, name.replace("_", " "))
     if short and "$" in label:
         return label[label.index("$") : label.rindex("$") + 1]
