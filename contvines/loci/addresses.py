@@ -69,7 +69,7 @@ class Stored:
     """
 
     def __init__(self, content: Any) -> None:
-        context = cpu_target.target_context
+        context: Any = cpu_target.target_context
         size = context.get_abi_sizeof(context.get_value_type(typeof(content)))
         self.content = content  # the arrays live as long as this
         self.room = np.zeros(size // 8 + 1)

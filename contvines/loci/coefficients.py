@@ -50,9 +50,10 @@ class Forms:
         self.n = len(self.u)
         self.work = problem.workspace()
         self.flow = problem.spectrum != "map"
-        self.J = self._jacobian(problem, self.work, self.u)
-        if self.J is None:
+        here = self._jacobian(problem, self.work, self.u)
+        if here is None:
             raise ValueError("the equations cannot be evaluated here")
+        self.J = here
         if self.flow:
             self.K = -np.eye(self.n)
             self.open, self.open_work, self.whole = problem, self.work, self.u
@@ -127,7 +128,7 @@ class Forms:
         """a at a fold: z + a z^2, or z' = a z^2."""
         v, w = self.null(1.0 if not self.flow else 0.0)
         v, w = np.real(v), np.real(w)
-        line, weight = self.line(v, 1.0), w @ self.K @ v
+        line, weight = self.line(v, 1.0), float(w @ self.K @ v)
         value = -0.5 * float(w @ line.second @ self.extended(v, 1.0)) / weight
         return Coefficient(value, abs(0.5 * self.n * line.second_error / weight))
 
@@ -136,7 +137,7 @@ class Forms:
         v, w = self.null(factor)
         v, w = np.real(v), np.real(w)
         closure = factor if not self.flow else 1.0
-        line, weight = self.line(v, closure), w @ self.K @ v
+        line, weight = self.line(v, closure), float(w @ self.K @ v)
         x = self.extended(v, closure)
         regular = self.closed_by(0.0 if self.flow else 1.0)
         h = self._solve(regular, -(line.second @ x))
@@ -166,7 +167,7 @@ class Forms:
         # the phase in which real and imaginary parts are orthogonal
         square = np.sum(q * q)
         q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > 1e-300 else q
-        one = self.extended(q, multiplier)
+        one: Any = self.extended(q, multiplier)
         a, b = self.line_of(one.real), self.line_of(one.imag)
         first, third = a.second + 1j * b.second, a.third + b.third
         conjugate = a.second - 1j * b.second
@@ -178,9 +179,9 @@ class Forms:
         total = third @ one
         total = total + 2.0 * first @ self.extended(h11, 1.0)
         total = total + conjugate @ self.extended(h20, multiplier**2)
-        weight = w @ self.K @ q
+        weight = complex(w @ self.K @ q)
         c = complex(-0.5 * (w @ total) / weight)
-        error = abs(self.n * (a.third_error + 3.0 * a.second_error) / weight)
+        error = float(abs(self.n * (a.third_error + 3.0 * a.second_error) / weight))
         if self.flow:
             omega = abs(multiplier.imag)
             return Coefficient(c.real / omega, error / omega), c

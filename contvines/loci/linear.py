@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
 
@@ -96,7 +97,7 @@ class Linearisation:
         self.again()
         return row
 
-    def spectrum(self) -> np.ndarray:
+    def spectrum(self) -> NDArray[np.complex128]:
         """Raw multipliers, or eigenvalues."""
         m = int(self.problem.n_multipliers)
         row = self.row()

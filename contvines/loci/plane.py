@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .kernels import pair_of
 from .linear import Linearisation
@@ -59,7 +60,7 @@ class Plane:
         return self._row
 
     @property
-    def spectrum(self) -> np.ndarray:
+    def spectrum(self) -> NDArray[np.complex128]:
         """Raw multipliers, or eigenvalues."""
         return self.row[0 : 2 * self.m : 2] + 1j * self.row[1 : 2 * self.m : 2]
 

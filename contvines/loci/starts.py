@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
@@ -70,7 +71,7 @@ def begin(
     return locus
 
 
-def _critical_pair(spectrum: np.ndarray, flow: bool) -> float:
+def _critical_pair(spectrum: NDArray[np.complex128], flow: bool) -> float:
     """Position of the complex pair nearest to the stability boundary; see ``pair_of``."""
     upper = spectrum[spectrum.imag > 0.0]
     if not len(upper):

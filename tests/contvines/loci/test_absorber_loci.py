@@ -11,7 +11,9 @@ MACHINE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio":
 
 @pytest.fixture(scope="module")
 def graph():
-    return cv.diagram(Absorber(**MACHINE).symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 1.3))
+    return cv.diagram(
+        Absorber(**MACHINE).symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 1.3)
+    )
 
 
 def closed_form(kind, **changed):
@@ -60,7 +62,9 @@ def test_a_border_that_jumps_is_followed_by_its_smooth_margin(graph):
 def test_a_bad_second_parameter_is_refused_in_a_sentence(graph):
     with pytest.raises(ValueError, match="over = 'amplitude' is the parameter of the diagram itself"):
         cv.locus(graph["LP1"], over="amplitude", within=(0.1, 0.9))
-    with pytest.raises(ValueError, match="over = 'viscosity': the problem has no such parameter; it has amplitude"):
+    with pytest.raises(
+        ValueError, match="over = 'viscosity': the problem has no such parameter; it has amplitude"
+    ):
         cv.locus(graph["LP1"], over="viscosity", within=(0.1, 0.9))
     with pytest.raises(ValueError, match="was made at friction = 0.5, outside of within"):
         cv.locus(graph["LP1"], over="friction", within=(0.6, 0.9))
