@@ -15,21 +15,22 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "AlgebraicProblem": ".algebraic",
+    "AlgebraicProblem": ".problems.algebraic",
     "Branch": ".branch",
-    "Embedding": ".problem",
+    "Embedding": ".problems.protocol",
     "Graph": ".graph.graph",
-    "Kernels": ".problem",
-    "MapProblem": ".map_problem",
+    "Kernels": ".problems.protocol",
+    "MapProblem": ".problems.maps",
     "MemoryJournal": ".journal",
     "NullJournal": ".journal",
-    "Seed": ".problem",
+    "Seed": ".problems.protocol",
     "Settings": ".continuation.settings",
     "SpecialPoint": ".special",
     "Switch": ".graph.graph",
-    "Symmetry": ".problem",
+    "Symmetry": ".problems.protocol",
     "diagram": ".graph.automatic",
     "load": ".store",
+    "register": ".problems.registry",
     "resume": ".store",
     "save": ".store",
     "switch": ".graph.automatic",
@@ -52,6 +53,7 @@ __all__ = [
     "Symmetry",
     "diagram",
     "load",
+    "register",
     "resume",
     "save",
     "switch",
@@ -72,14 +74,15 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
-    from .algebraic import AlgebraicProblem
     from .branch import Branch
     from .continuation.settings import Settings
     from .continuation.trace import trace
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
     from .journal import MemoryJournal, NullJournal
-    from .map_problem import MapProblem
-    from .problem import Embedding, Kernels, Seed, Symmetry
+    from .problems.algebraic import AlgebraicProblem
+    from .problems.maps import MapProblem
+    from .problems.protocol import Embedding, Kernels, Seed, Symmetry
+    from .problems.registry import register
     from .special import SpecialPoint
     from .store import load, resume, save

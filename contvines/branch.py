@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from .problems.registry import without_problem
+
 
 @dataclass(eq=False)
 class Branch:
@@ -108,10 +110,7 @@ class Branch:
     def orbit(self, i: int) -> Any:
         """The solution at point i as the object that the problem hands to users."""
         if self.problem is None:
-            raise ValueError(
-                f"{self.label} has no problem attached: its graph was saved from a Python callable; "
-                "attach one with graph.attach(problem) first"
-            )
+            raise ValueError(without_problem(self.label, self.description))
         return self.problem.orbit(self.points[i], float(self.values[i]))
 
     def to_dict(self) -> dict[str, Any]:

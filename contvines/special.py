@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from .problems.registry import without_problem
+
 #: kind of a special point -> prefix of its label
 PREFIXES = {
     "fold": "LP",
@@ -102,10 +104,7 @@ class SpecialPoint:
     def orbit(self) -> Any:
         """The solution as the object that its problem hands to users."""
         if self.problem is None:
-            raise ValueError(
-                f"{self.label} has no problem attached: its graph was saved from a Python callable; "
-                "attach one with graph.attach(problem) first"
-            )
+            raise ValueError(without_problem(self.label))
         return self.problem.orbit(self.u, self.value)
 
     def to_dict(self) -> dict[str, Any]:

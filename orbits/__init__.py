@@ -6,21 +6,24 @@ import importlib
 from typing import Any
 
 _PLACES = {
-    "Absorber": "orbits.models.absorber",
-    "Coupled": "orbits.models.coupled",
-    "Scales": "orbits.models.scales",
+    "Absorber": "orbits.machines.absorber.machine",
+    "Coupled": "orbits.machines.coupled.machine",
+    "Scales": "orbits.design.scales",
     "Orbit": "orbits.orbit",
     "OrbitProblem": "orbits.problem",
-    "ParameterError": "orbits.models.base",
+    "ParameterError": "orbits.machines.base",
     "Word": "orbits.words",
     "WordError": "orbits.words",
 }
-__all__ = sorted(_PLACES)
+_ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "theory", "words")
+__all__ = sorted([*_PLACES, *_ROOMS])
 
 
 def __getattr__(name: str) -> Any:
     if name in _PLACES:
         return getattr(importlib.import_module(_PLACES[name]), name)
+    if name in _ROOMS:
+        return importlib.import_module(f"orbits.{name}")
     raise AttributeError(f"module 'orbits' has no attribute {name!r}")
 
 

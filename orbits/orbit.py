@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from orbits import measures as measuring
-from orbits.compiled import assemble
-from orbits.identity import is_symmetric, root_orbit
-from orbits.models.base import Model
-from orbits.monitors import Margin, named_margins
+from orbits.cycles import measures as measuring
+from orbits.cycles.identity import is_symmetric, root_orbit
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import Margin, named_margins
+from orbits.machines.base import Model
 from orbits.problem import OrbitProblem
 from orbits.words import Word
 
@@ -72,7 +72,7 @@ class Orbit:
         kernels = assemble(self.model)
         row = np.empty(2 * problem.n_multipliers + problem.n_margins)
         work = problem.workspace()
-        value = float(self.params[problem.index])
+        value = problem.value(self.params)
         residual = kernels.examine(problem.data, problem.reduce(self.nodes), value, work, row)
         spectrum = row[: 2 * problem.n_multipliers : 2] + 1j * row[1 : 2 * problem.n_multipliers : 2]
         margins = row[2 * problem.n_multipliers :]
@@ -107,7 +107,7 @@ class Orbit:
         row = np.empty(2 * problem.n_multipliers + problem.n_margins)
         work = problem.workspace()
         assemble(self.model).examine(
-            problem.data, problem.reduce(self.nodes), float(self.params[problem.index]), work, row
+            problem.data, problem.reduce(self.nodes), problem.value(self.params), work, row
         )
         return row[: 2 * problem.n_multipliers : 2] + 1j * row[1 : 2 * problem.n_multipliers : 2]
 
@@ -132,7 +132,7 @@ class Orbit:
         return bool(np.all(np.abs(self.multipliers) < 1.0))
 
     def measure(self, name: str) -> float:
-        """One measure of the orbit; names: `orbits.measures.COMMON` and the machine's own."""
+        """One measure of the orbit; names: `orbits.cycles.measures.COMMON` and the machine's own."""
         return float(self.measures(name)[name])
 
     def measures(self, *wanted: str) -> dict[str, float]:
@@ -198,18 +198,18 @@ class Orbit:
 
     def seed(self, problem: OrbitProblem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
-        return problem.reduce(self.nodes), float(self.params[problem.index])
+        return problem.reduce(self.nodes), problem.value(self.params)
 
     # ------------------------------------------------------------------ seeing and proving
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """Positions and velocities over one period; see `orbits.sampling.sample`."""
-        from orbits.sampling import sample
+        """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
+        from orbits.cycles.sampling import sample
 
         return sample(self, points)
 
     def replay(self) -> float:
-        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.following`."""
-        from orbits.following import replay_error
+        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.simulation.deviation`."""
+        from orbits.simulation.deviation import replay_error
 
         return replay_error(self)
 

@@ -6,18 +6,19 @@ breaking (there a multiplier of the half map passes -1), and a classification th
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from orbits import measures as measuring
-from orbits.compiled import assemble
-from orbits.cyclic import workspace
-from orbits.handing import Embedding, Symmetry
-from orbits.models.base import Model
-from orbits.monitors import PER_NODE, border_kind
+from orbits.cycles import measures as measuring
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import PER_NODE, border_kind
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.base import Model
+from orbits.machines.path import along
+from orbits.protocol import Embedding, Symmetry
 from orbits.words import Word
 
 
@@ -34,7 +35,7 @@ class OrbitProblem:
     parameter : str
         Name of the parameter that varies.
     params : float array (P,)
-        Parameter vector; the entry of `parameter` is the starting value only.
+        Parameter vector; what `parameter` moves in it is the starting value only.
     symmetric : bool
         Solve for symmetric orbits, on half the word.
 
@@ -55,11 +56,6 @@ class OrbitProblem:
         params: np.ndarray,
         symmetric: bool = False,
     ) -> None:
-        if parameter not in model.parameter_names:
-            raise ValueError(
-                f"parameter = {parameter!r} is unknown to the model {model.name!r}; choose one of "
-                + ", ".join(model.parameter_names)
-            )
         if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
             raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
         if len(word) == 0:
@@ -70,7 +66,7 @@ class OrbitProblem:
             np.array(params, dtype=float),
             bool(symmetric),
         )
-        self.index = model.parameter_names.index(parameter)
+        self.path = model.path(parameter, self.params)
         length = len(word) // 2 if symmetric else len(word)
         n = model.node
         self.length, self.dimension = length, length * n
@@ -83,14 +79,18 @@ class OrbitProblem:
         self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
         self.period_shift = np.zeros(self.dimension)
         self.period_shift[::n] = 2.0 * np.pi
+        own, law = self.params.copy(), model.law
         self.data = (
             word.codes[:length].copy(),
             word.mode_codes[:length].copy(),
-            self.params.copy(),
-            self.index,
+            own,
+            self.path,
             self.twist,
             self.shift,
             self.pinned,
+            model.place_of(parameter),
+            np.array(model.amounts(own), dtype=float) if len(law) else own,
+            law,
         )
 
     # ------------------------------------------------------------------ numerics
@@ -103,11 +103,13 @@ class OrbitProblem:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
-    def values(self, p: float) -> np.ndarray:
-        """The parameter vector at parameter value `p`."""
-        params = self.params.copy()
-        params[self.index] = p
-        return params
+    def values(self, p: float | np.ndarray) -> np.ndarray:
+        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
+        return along(self.path, self.params, p)
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return self.model.amount(self.parameter, params)
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border at which margin `j` vanishes."""
@@ -234,7 +236,7 @@ class OrbitProblem:
         Rotations of the word, shifts by whole forcing periods, the mirror image and repetitions of a shorter orbit
         are one orbit.
         """
-        from orbits.identity import canonical
+        from orbits.cycles.identity import canonical
 
         return canonical(self.word, self.periods, self.expand(u))
 
@@ -243,7 +245,7 @@ class OrbitProblem:
 
         At a border one motion has several words, so that `canonical` cannot tell.
         """
-        from orbits.borders.motion import SAME, distance
+        from orbits.borders.distance import SAME, distance
 
         if not isinstance(other, OrbitProblem):
             return False
@@ -268,11 +270,8 @@ class OrbitProblem:
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
         p = np.atleast_1d(np.asarray(p, dtype=float))
-        params = np.tile(self.params, (p.size, 1))
-        params[:, self.index] = p
-        return measuring.measure(
-            self.model, self.word, self.periods, self.expand(np.atleast_2d(u)), params, names
-        )
+        nodes = self.expand(np.atleast_2d(u))
+        return measuring.measure(self.model, self.word, self.periods, nodes, self.values(p), names)
 
     def orbit(self, u: np.ndarray, p: float) -> Any:
         """The solution as an `orbits.orbit.Orbit`."""
@@ -302,9 +301,9 @@ class OrbitProblem:
         }
 
 
-def rebuild(description: dict[str, Any]) -> OrbitProblem:
-    """The problem that `OrbitProblem.describe` described."""
-    from orbits.models import build
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem:
+    """The problem that `OrbitProblem.describe` described; it holds data only, so `trust` has no meaning here."""
+    from orbits.machines.catalogue import build
 
     word = Word(tuple(description["events"]), tuple(description["modes"]), description["frictionless"])
     return OrbitProblem(

@@ -40,7 +40,7 @@ def checked_study(path: Path) -> "Study":
 
 def machine(study: "Study") -> Any:
     """The machine of a study, `[start]`'s overrides included."""
-    from orbits.models import build
+    from orbits.machines.catalogue import build
 
     own = {k: v for k, v in study.parameters.items() if k not in loose(study)}
     return build({"name": study.name, **own})
@@ -59,8 +59,8 @@ def first_orbit(study: "Study") -> Any:
     ValueError
         If the word cannot be, or no orbit with it is found; the sentence names the study.
     """
-    from orbits.ahead import compile_ahead
-    from orbits.start import StartWarning
+    from orbits.precompile import compile_ahead
+    from orbits.starts.find import StartWarning
 
     compile_ahead(study.name, "contvines.events.scan:prepare")
     try:

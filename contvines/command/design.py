@@ -11,7 +11,7 @@ import typer
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from orbits.design import Design
+    from orbits.design.figures import Design
 
     from .study import Study
 
@@ -29,7 +29,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     StudyError
         If the scale is missing, given twice, or out of range.
     """
-    from orbits.design import SCALE, Design
+    from orbits.design.figures import SCALE, Design
 
     from .study import StudyError
 

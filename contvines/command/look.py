@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.options import TrustOption
+
 FileArgument = Annotated[
     Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
 ]
@@ -59,13 +61,14 @@ def orbit(
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw phase portrait and history.")
     ] = None,
+    trust: TrustOption = False,
 ) -> None:
     """One orbit: its events, multipliers and margins."""
     if plot is not None:
         from contvines.plots.style import check_picture
 
         check_picture(plot)
-    found = _orbit(file, label)
+    found = _orbit(file, label, trust)
     if json:
         from contvines.export import json_text
 
@@ -92,6 +95,7 @@ def plot(
     ] = None,
     kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
     branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
+    trust: TrustOption = False,
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
     from contvines.command.compose import beside
@@ -101,7 +105,8 @@ def plot(
     _refuse_ignored(kind, {"-x": x, "-y": y, "--branch": branch})
     target = output or beside(file, ".png")
     check_picture(target)
-    graph = load(file)
+    graph = load(file, trust=trust)
+    _say_what_lacks(graph)
     if not graph.finished:
         _unfinished(file)
     if not graph.branches:
@@ -134,6 +139,7 @@ def export(
         Path | None,
         typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
     ] = None,
+    trust: TrustOption = False,
 ) -> None:
     """Write a result for other programs: csv, json, graphml or mat.
 
@@ -156,7 +162,10 @@ def export(
 
     target = output or beside(file, f".{to.value}")
     check_target(target, to.value)
-    graph = load(file, problems=to in (Format.csv, Format.mat))  # measures need them
+    measures = to in (Format.csv, Format.mat)
+    graph = load(file, problems=measures, trust=trust)
+    if measures:
+        _say_what_lacks(graph)
     if not graph.finished:
         _unfinished(file)
     typer.echo(str(write(graph, to.value, target)))
@@ -179,7 +188,7 @@ def _refuse_ignored(kind: Picture, options: dict[str, str | None]) -> None:
             )
 
 
-def _orbit(file: Path, label: str | None) -> Any:
+def _orbit(file: Path, label: str | None, trust: bool) -> Any:
     from contvines.command.study import is_database
 
     if not is_database(file) and file.suffix == ".toml":
@@ -190,15 +199,18 @@ def _orbit(file: Path, label: str | None) -> Any:
                 f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
             )
         return first_orbit(checked_study(file))
+    from contvines.problems.registry import without_problem
     from contvines.store import load
 
-    graph = load(file)
+    graph = load(file, trust=trust)
     if label is None:
         raise ValueError(
             f"which orbit of {file}? Give one of the labels {', '.join([*graph.special, *graph.branches])}."
         )
     name, _, place = label.partition(":")
     thing = graph[name]
+    if thing.problem is None:
+        raise ValueError(without_problem(name, graph.branches[getattr(thing, "branch", name)].description))
     if hasattr(thing, "kind") and not place:
         return thing.orbit
     if hasattr(thing, "kind"):
@@ -259,6 +271,16 @@ def _describe(found: Any) -> str:
 def _number(value: float) -> str:
     """Ten digits; what is only rounding is 0."""
     return "0" if abs(value) < 1e-15 else f"{value:.10g}"
+
+
+def _say_what_lacks(graph: Any) -> None:
+    """Branches that were loaded as numbers only, and why, on stderr; they are drawn and written without measures."""
+    from contvines.problems.registry import without_problem
+
+    for branch in graph.branches.values():
+        if branch.problem is None:
+            typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
+            return
 
 
 def _unfinished(file: Path) -> None:

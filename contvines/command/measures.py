@@ -26,7 +26,7 @@ def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -
         return
     from contvines.command.compose import machine
     from contvines.command.sentences import did_you_mean
-    from orbits.measures import names
+    from orbits.cycles.measures import names
 
     known = list(dict.fromkeys([study.parameter, *names(machine(study))]))
     for option, name in given.items():

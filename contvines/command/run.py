@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.options import TrustOption
+
 StudyArgument = Annotated[
     Path, typer.Argument(metavar="STUDY.toml", help="The study: model, start, what to continue.")
 ]
@@ -65,12 +67,13 @@ def switch(
     file: FileArgument,
     label: Annotated[str, typer.Argument(metavar="LABEL", help="A special point, for example SB1.")],
     quiet: QuietOption = False,
+    trust: TrustOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
     from contvines.command.progress import shown
     from contvines.store import Store, load
 
-    graph = load(file)
+    graph = load(file, trust=trust)
     if not graph.finished:
         raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
     if label not in graph.special:

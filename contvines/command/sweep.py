@@ -69,8 +69,8 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
 
     from contvines.command.compose import Interrupted, loose, machine, say
     from contvines.command.sweep_rows import FIRST, Rows, kept
-    from orbits.simulation.sweep import measure_names
-    from orbits.simulation.sweep import sweep as simulate
+    from orbits.attractors.sweep import measure_names
+    from orbits.attractors.sweep import sweep as simulate
 
     model = machine(study)
     low, high = study.sweep.within or study.within

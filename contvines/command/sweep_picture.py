@@ -40,7 +40,7 @@ def graph_beneath(path: Path, study: "Study") -> Any:
 
 def _graph_machine(graph: Any) -> dict[str, Any]:
     """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
-    from orbits.models import build
+    from orbits.machines.catalogue import build
 
     known = dict(graph.model)
     for branch in graph.branches.values():

@@ -49,7 +49,7 @@ class Kept:
 
 
 def kept(row: Any, direction: str, names: list[str]) -> Kept:
-    """A row of `orbits.simulation.sweep` as it is kept; `names` are the measures in the CSV's order."""
+    """A row of `orbits.attractors.sweep` as it is kept; `names` are the measures in the CSV's order."""
     found = row.detail
     kind = "periodic" if row.attractor == "sliding" else row.attractor
     cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
@@ -82,7 +82,7 @@ def _impacts(found: Any) -> list[float]:
     """
     import numpy as np
 
-    from orbits.simulation.sweep import follow
+    from orbits.attractors.sweep import follow
 
     run = follow(found)
     hits = run.codes < 2

@@ -58,7 +58,7 @@ def _make(kernels: Any) -> Bound:
         return Bound(march, copy_with(corrector.solve, **functions))
     from numba import njit
 
-    from ..problem import kernels_digest
+    from ..problems.protocol import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     compile_ = njit(cache=True, forceinline=True, **OPTIONS)

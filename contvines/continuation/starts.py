@@ -36,6 +36,8 @@ def check_interval(within: Any) -> tuple[float, float]:
 def problem_and_start(seed: Any, over: str | None, u: Any = None, p: Any = None) -> tuple[Any, Any, float]:
     """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``; u and p win where they are given."""
     if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
+        if over is not None and over != seed.parameter and over in getattr(seed, "parameters", {}):
+            seed = seed.against(over)
         if over is not None and over != seed.parameter:
             raise ValueError(f"over = {over!r}, but this problem continues in {seed.parameter!r}")
         for name, value in (("u", u), ("p", p)):

@@ -8,6 +8,7 @@ from typing import Any
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
 from ..journal import NullJournal
+from ..problems.registry import without_problem
 from .builder import adopt, begin, work
 from .graph import Graph
 from .leaving import leave
@@ -126,7 +127,7 @@ def switch(
         raise KeyError(f"the graph has no special point {label!r}; it has {known}")
     point = graph.special[label]
     if point.problem is None:
-        raise ValueError(f"{label} has no problem attached; use graph.attach(problem) first")
+        raise ValueError(without_problem(label, graph.branches[point.branch].description))
     if settings is None:
         names = Settings().to_dict()
         settings = {name: value for name, value in graph.settings.items() if name in names}

@@ -184,8 +184,8 @@ class Graph:
         save(self, path)
 
     @classmethod
-    def load(cls, path: str | Path) -> Graph:
-        """Read a graph from a .vines file."""
+    def load(cls, path: str | Path, *, trust: bool = False) -> Graph:
+        """Read a graph from a .vines file; see :func:`contvines.load`."""
         from ..store import load
 
-        return load(path)
+        return load(path, trust=trust)

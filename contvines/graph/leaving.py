@@ -10,7 +10,7 @@ import numpy as np
 from ..branch import Branch
 from ..continuation.engine import Engine, Solved
 from ..normal_forms import criticality, crossing_speed
-from ..problem import rebuild
+from ..problems.registry import UnknownFactory, rebuild
 from ..special import BORDERS, SpecialPoint
 from ..switching import departures
 from .pending import Pending
@@ -226,17 +226,18 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
     key = f"{run.serial}/beyond/{point.label}"
     known = run.journal.recall(key)
-    if known is not None and all(entry.get("factory") for entry in known["problems"]):
+    problems = _rebuilt(known)
+    if known is not None and problems is not None:
         return [
             {
-                "problem": rebuild(entry),
+                "problem": problems[i],
                 "u": known[f"u{i}"],
                 "p": known["p"][i],
                 "tangent": known.get(f"tangent{i}"),
                 "note": known["note"][i],
                 "persistence": known["persistence"][i],
             }
-            for i, entry in enumerate(known["problems"])
+            for i in range(len(problems))
         ]
     seeds = list(point.problem.beyond(point))
     record: dict[str, Any] = {
@@ -262,6 +263,17 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
         }
         for seed in seeds
     ]
+
+
+def _rebuilt(record: Any) -> list[Any] | None:
+    """The problems of a journal's record; None where one of them cannot be had from it, and is asked for again."""
+    if record is None:
+        return None
+    try:
+        problems = [rebuild(entry) for entry in record["problems"]]
+    except UnknownFactory:
+        return None
+    return None if any(problem is None for problem in problems) else problems
 
 
 class _Same:

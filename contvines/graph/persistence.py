@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..branch import Branch
-from ..problem import rebuild
+from ..problems.registry import UnknownFactory, rebuild
 from ..special import SpecialPoint
 from .graph import Graph, Switch
 
@@ -32,7 +31,7 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
 
 
 def graph_from_entries(
-    entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True
+    entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True, trust: bool = False
 ) -> Graph:
     """The graph that `graph_entries` took apart.
 
@@ -40,6 +39,7 @@ def graph_from_entries(
     ----------
     entries : contents by kind and key, in the order in which they were written.
     problems : rebuild the problems of the branches, so that orbits and measures can be had.
+    trust : import functions of the user's that the branches name (see :mod:`contvines.problems.registry`).
     """
     head = next(iter(entries.get("graph", {}).values()), {})
     graph = Graph(**{**head, "within": _pair(head["within"])} if head else {})
@@ -48,7 +48,7 @@ def graph_from_entries(
         content = dict(content)
         content["ended"] = _pair(content["ended"])
         content["marks"] = tuple((int(i), str(name)) for i, name in content["marks"])
-        problem = _problem(content["description"], built) if problems else None
+        problem = _problem(content["description"], built, trust) if problems else None
         graph.branches[label] = Branch(problem=problem, **content)
     for label, content in entries.get("special", {}).items():
         content = dict(content)
@@ -68,26 +68,15 @@ def _pair(values: Any) -> Any:
     return (first, second)
 
 
-def _problem(description: dict[str, Any], built: dict[str, Any]) -> Any:
-    """The problem that a description names, once per description; None if it cannot or must not be rebuilt.
-
-    A file may name any function. Only those of this package's two halves, and of modules that the user has
-    imported, are called.
-    """
-    module = str(description.get("factory") or "").partition(":")[0]
-    if not module or not (module.partition(".")[0] in ("orbits", "contvines") or _users_own(module)):
-        return None
+def _problem(description: dict[str, Any], built: dict[str, Any], trust: bool) -> Any:
+    """The problem that a description names, once per description; None if it cannot or must not be rebuilt."""
     key = json.dumps(description, sort_keys=True, default=str)
     if key not in built:
-        built[key] = rebuild(description)
+        try:
+            built[key] = rebuild(description, trust)
+        except UnknownFactory:
+            built[key] = None
     return built[key]
-
-
-def _users_own(module: str) -> bool:
-    if module not in sys.modules or module.partition(".")[0] in sys.stdlib_module_names - {"__main__"}:
-        return False
-    origin = getattr(sys.modules[module], "__file__", None) or ""
-    return module == "__main__" or ("site-packages" not in origin and origin != "")
 
 
 def same_graph(one: Graph, other: Graph) -> bool:

@@ -198,12 +198,22 @@ class Store:
             self._kept[kind, key] = (scalars, arrays)
         return kind, key
 
-    def graph(self, *, problems: bool = True) -> Any:
-        """The graph as of the last checkpoint; without `problems`, numbers only (quicker)."""
+    def graph(self, *, problems: bool = True, trust: bool = False) -> Any:
+        """The graph as of the last checkpoint; without `problems`, numbers only (quicker).
+
+        With `trust`, functions that the file names are imported; see :mod:`contvines.problems.registry`.
+        """
         from contvines.graph.persistence import graph_from_entries
 
         kinds = ("graph", "branch", "special", "switch")
-        return graph_from_entries({kind: dict(self.entries(kind)) for kind in kinds}, problems=problems)
+        entries = {kind: dict(self.entries(kind)) for kind in kinds}
+        try:
+            return graph_from_entries(entries, problems=problems, trust=trust)
+        except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
+            raise StoreError(
+                f"{self.path}: this file does not hold a graph as contvines writes it ({error}); "
+                "move it away and run again."
+            ) from None
 
     # -- entries -------------------------------------------------------------------------------------------
 
@@ -277,7 +287,7 @@ class Store:
             yield
         except sqlite3.OperationalError as error:
             raise StoreError(f"{self.path}: cannot be used now ({error}).") from None
-        except (sqlite3.DatabaseError, UnicodeDecodeError, json.JSONDecodeError):
+        except (sqlite3.DatabaseError, UnicodeDecodeError, json.JSONDecodeError, RecursionError):
             raise StoreError(
                 f"{self.path}: this file is damaged (its content is broken); move it away and run again."
             ) from None

@@ -48,8 +48,20 @@ def resume(path: str | Path, fingerprint: str = "run from Python") -> Store:
     return Store.attach(path, fingerprint)
 
 
-def load(path: str | Path, *, problems: bool = True) -> Any:
+def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Any:
     """The graph kept in a .vines file; `graph.finished` says whether its run had ended.
+
+    A file is data: loading one runs nothing that it names.
+
+    Parameters
+    ----------
+    path : path of the file.
+    problems : bool
+        Rebuild the problems of the branches, so that orbits and measures can be had (else numbers only).
+    trust : bool
+        Import functions of your own that the file names, those of an :class:`~contvines.AlgebraicProblem` say. Without it
+        they are found only if this program has made a problem from them before. Importing runs code: only for files whose
+        maker you trust.
 
     Raises
     ------
@@ -58,4 +70,4 @@ def load(path: str | Path, *, problems: bool = True) -> Any:
     """
     check_header(Path(path), reading=True)
     with Store.open(path) as store:
-        return store.graph(problems=problems)
+        return store.graph(problems=problems, trust=trust)

@@ -15,7 +15,7 @@ import paper
 
 from orbits import Orbit, Word
 from orbits import multiple_scales as ms
-from orbits.start import polish
+from orbits.starts.find import polish
 
 MASS_RATIOS = (0.012, 0.006, 0.003, 0.0015, 0.00075, 0.000375)
 

@@ -15,7 +15,8 @@ import numpy as np
 import paper
 
 from orbits import multiple_scales as ms
-from orbits.simulation import find_attractor, simulate
+from orbits.attractors import find_attractor
+from orbits.simulation import simulate
 
 
 def envelope(run):

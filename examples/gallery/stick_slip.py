@@ -11,7 +11,7 @@ import numpy as np
 import paper
 
 from orbits import multiple_scales as ms
-from orbits.simulation import find_attractor
+from orbits.attractors import find_attractor
 
 
 def main():

@@ -12,8 +12,8 @@ import numpy as np
 import paper
 from scipy.optimize import brentq
 
+from orbits.attractors import find_attractor
 from orbits.design import Design
-from orbits.simulation import find_attractor
 
 
 def main():

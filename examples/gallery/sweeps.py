@@ -15,7 +15,8 @@ import numpy as np
 import paper
 
 from orbits import multiple_scales as ms
-from orbits.simulation import simulate, sweep
+from orbits.attractors import sweep
+from orbits.simulation import simulate
 
 STYLES = {"sliding": ("o", "k", "sliding, stick-slip"), "stuck": ("x", paper.GREY, "stuck"),
           "chaotic": (".", paper.PURPLE, "nothing repeats"), "chatter": ("+", paper.GREY, "chatter")}  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 import paper
 from scipy.integrate import solve_ivp
 
-from orbits.simulation import find_attractor
+from orbits.attractors import find_attractor
 
 FREQUENCIES = (0.977, 0.983, 0.986)
 

@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from orbits.borders.growing import REAL, grown, margins_of, proposals, turned
-from orbits.borders.motion import distance
-from orbits.borders.reading import read_alike
-from orbits.borders.resting import FOLLOWED, to_rest
+from orbits.borders.alignment import read_alike
+from orbits.borders.distance import distance
+from orbits.borders.neighbours import REAL, grown, margins_of, proposals, turned
 from orbits.borders.rewriting import edits_at
-from orbits.compiled import assemble
-from orbits.handing import Seed
+from orbits.borders.sticking import FOLLOWED, to_rest
+from orbits.cycles.kernels import assemble
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
+from orbits.protocol import Seed
 
 CLOSE = 0.05  # largest difference in w, at equal phases, between a border orbit and one that goes on from it
 
@@ -159,11 +159,11 @@ def _simulated(
     problem: OrbitProblem, u: np.ndarray, p: float
 ) -> Iterator[tuple[OrbitProblem, np.ndarray, float, None, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
-    from orbits.identity import canonical, is_symmetric
+    from orbits.attractors.recurrence import settle
+    from orbits.cycles.identity import canonical, is_symmetric
     from orbits.simulation.driver import machine
-    from orbits.simulation.recurrence import settle
     from orbits.simulation.return_map import state_of
-    from orbits.start import polish
+    from orbits.starts.find import polish
 
     orbit = problem.orbit(u, p)
     engine = machine(problem.model.name)

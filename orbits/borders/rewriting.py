@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from orbits.monitors import EVENT, FLIGHT, PER_NODE, WALL
+from orbits.cycles.margins import EVENT, FLIGHT, PER_NODE, WALL
+from orbits.cycles.sampling import flight, lengths, slowest
 from orbits.orbit import Orbit
-from orbits.sampling import flight, lengths, slowest
 from orbits.words import Word
 
 SHORT = 1e-4  # phase of a stick, or between a turn and the stick after it, that is about to vanish

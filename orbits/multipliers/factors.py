@@ -3,7 +3,7 @@
 
 import math
 
-from orbits.kernel import kernel
+from orbits.compiling.decorators import kernel
 
 UNIT_ROUNDOFF = 2.0**-53
 LARGE, SMALL = 2.0**200, 2.0**-200  # a running product is rescaled outside this range

@@ -18,7 +18,7 @@ import numpy as np
 from llvmlite.binding import add_symbol
 from numba import types
 
-from orbits.kernel import kernel
+from orbits.compiling.decorators import kernel
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
 from orbits.multipliers.product_of_any import product_of_any

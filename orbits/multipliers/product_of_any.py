@@ -2,7 +2,7 @@
 
 import math
 
-from orbits.kernel import kernel
+from orbits.compiling.decorators import kernel
 from orbits.multipliers.factors import (
     LARGE,
     SMALL,

@@ -2,7 +2,7 @@
 
 import math
 
-from orbits.kernel import kernel
+from orbits.compiling.decorators import kernel
 from orbits.multipliers.factors import LARGE, SMALL, UNIT_ROUNDOFF, scaled
 
 CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from orbits.kernel import kernel
+from orbits.compiling.decorators import kernel
 
 ROUNDOFF = 2.0**-52
 

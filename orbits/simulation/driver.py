@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.simulation.contract import EVENTS_FULL, FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
+from orbits.machines.stepping import EVENTS_FULL, FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
 
 CHUNK = 16384
@@ -26,8 +26,8 @@ class SimulationError(ValueError):
 
 @cache
 def machine(name: str) -> Machine:
-    """The compiled stepper of the model called `name`; see :mod:`orbits.simulation.contract`."""
-    kernels = importlib.import_module(f"orbits.simulation.{name}_kernels")
+    """The compiled stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
+    kernels = importlib.import_module(f"orbits.machines.{name}.stepper")
     return Machine(
         name,
         kernels.STATE,

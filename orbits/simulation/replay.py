@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from orbits.simulation.attractor import cyclic_distance
-from orbits.simulation.contract import EVENTS_FULL
+from orbits.machines.stepping import EVENTS_FULL
 from orbits.simulation.driver import collect, machine, skip
-from orbits.simulation.return_map import go_round, monodromy, nodes_of, state_of
+from orbits.simulation.return_map import cyclic_distance, go_round, monodromy, nodes_of, state_of
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 

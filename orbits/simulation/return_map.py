@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.simulation.contract import (
+from orbits.machines.stepping import (
     FAILED,
     HOLD,
     MODE,
@@ -184,3 +184,10 @@ def _slope(
             return None
         ends.append(there.nodes[-1])
     return (ends[0] - ends[1]) / (2.0 * size)
+
+
+def cyclic_distance(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest difference of two node arrays, phases modulo 2 pi."""
+    gap = a - b
+    gap[:, 0] -= TWO_PI * np.round(gap[:, 0] / TWO_PI)
+    return float(np.abs(gap).max()) if gap.size else 0.0

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orbits.simulation.contract import HOLD, MODE, PSI, RATE, STATUS, TURNS, V_RATE, Machine, V, W
+from orbits.machines.stepping import HOLD, MODE, PSI, RATE, STATUS, TURNS, V_RATE, Machine, V, W
 
 TWO_PI = 2.0 * np.pi
 LETTERS = "LRtsuH"
@@ -51,11 +51,11 @@ class Trajectory:
     params : ndarray, shape (P,)
         Parameter vector of the run.
     start, end : ndarray, shape (S,)
-        First and last state; see :mod:`orbits.simulation.contract`.
+        First and last state; see :mod:`orbits.machines.stepping`.
     codes, modes : ndarray of int8, shape (n,)
         Event codes (L R t s u = 0 ... 4, H = 5: persistent contact begins) and the modes after the events.
     rows : ndarray, shape (n, ROW)
-        Event rows; see :mod:`orbits.simulation.contract`.
+        Event rows; see :mod:`orbits.machines.stepping`.
     status : int
         Why the run ended; `ended` says it in words.
     """

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from orbits import Absorber
-from orbits.models.coupled import Coupled
+from orbits.machines.coupled.machine import Coupled
 from orbits.simulation.driver import buffers, first_state, machine
 
 from .floor import PLAIN, library

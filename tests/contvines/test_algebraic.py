@@ -197,7 +197,7 @@ def test_callable_without_complex_derivative_is_noticed():
 
 
 def test_importable_problems_can_be_rebuilt():
-    from contvines.problem import rebuild
+    from contvines.problems.registry import rebuild
 
     problem = cv.AlgebraicProblem(lambda x, p: x - p, [0.0])
     assert problem.describe()["factory"] is None and rebuild(problem.describe()) is None

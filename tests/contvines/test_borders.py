@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.dense import KERNELS, dense_workspace
-from contvines.problem import Kernels, ProblemDefaults, Seed
+from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.protocol import Kernels, ProblemDefaults, Seed
 
 
 def inspect(data, u, p, work, row):

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.dense import KERNELS, dense_workspace
 from contvines.events.examine import changes
 from contvines.events.functions import SymmetryTest, counts
 from contvines.events.scan import Scanner, _compiled, dips
-from contvines.problem import Kernels, ProblemDefaults, Symmetry
+from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.protocol import Kernels, ProblemDefaults, Symmetry
 
 
 def inspect(data, u, p, work, row):

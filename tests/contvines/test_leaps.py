@@ -6,10 +6,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.dense import KERNELS, dense_workspace
 from contvines.graph.persistence import same_graph
 from contvines.journal import MemoryJournal
-from contvines.problem import Kernels, ProblemDefaults
+from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.protocol import Kernels, ProblemDefaults
 
 GAPS = st.floats(-5.0, -1.5).map(lambda exponent: 10.0**exponent)
 

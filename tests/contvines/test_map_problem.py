@@ -141,7 +141,7 @@ def test_canonical_form():
 
 
 def test_rebuild_from_description():
-    from contvines.problem import rebuild
+    from contvines.problems.registry import rebuild
 
     problem = cv.MapProblem(np.multiply, [1.0], 1.0)
     description = problem.describe()

@@ -10,7 +10,7 @@ from contvines.continuation.settings import Settings
 from contvines.continuation.starts import solve_start
 from contvines.continuation.status import Status
 from contvines.continuation.trace import chunks
-from contvines.problem import Kernels, ProblemDefaults
+from contvines.problems.protocol import Kernels, ProblemDefaults
 
 
 def linearise(data, u, p, work):

@@ -101,7 +101,7 @@ def test_a_row_is_a_start_of_the_same_orbit(run, tmp_path, form, parameter, with
     """Word, periods and nodes pasted into [start] give the simulator's orbit; its multipliers are differences."""
     from contvines.command.compose import loose, machine
     from contvines.command.study import read_study
-    from orbits.simulation import sweep
+    from orbits.attractors import sweep
 
     path = study(form, tmp_path / "a.toml", within=within, count=count)
     assert run("sweep", path, "-q", "-o", "a.csv")[0] == 0

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from orbits import Absorber
-from orbits.compiled import assemble
-from orbits.models import absorber_kernels
+from orbits.cycles.kernels import assemble
+from orbits.machines.absorber import maps
 from orbits.problem import OrbitProblem
 from orbits.words import Word
 
@@ -25,14 +25,14 @@ def some_nodes(problem, seed):
 
 def residual(problem, u, p):
     work = problem.workspace()
-    absorber_kernels.linearise(problem.data, u, p, work)
+    maps.linearise(problem.data, u, p, work)
     return work[0].ravel().copy()
 
 
 def dense(problem, u, p):
     """F, and the matrix [dF/du, dF/dp] put together from the blocks."""
     work = problem.workspace()
-    absorber_kernels.linearise(problem.data, u, p, work)
+    maps.linearise(problem.data, u, p, work)
     F, A, D, Q = work[:4]
     n, N = 2, problem.dimension
     J = np.zeros((N, N + 1))
@@ -51,7 +51,7 @@ def dense(problem, u, p):
 def test_derivatives_are_those_of_finite_differences(text, periods, symmetric, parameter):
     params = MACHINE.vector({"amplitude": 0.6})
     problem = OrbitProblem(MACHINE, Word.parse(text), periods, parameter, params, symmetric)
-    u, p, h = some_nodes(problem, 3), params[problem.index], 1e-5
+    u, p, h = some_nodes(problem, 3), problem.value(params), 1e-5
     _, J, _ = dense(problem, u, p)
     for j in range(problem.dimension + 1):
 
@@ -150,7 +150,7 @@ def pre_impact_multipliers(orbit):
 @settings(max_examples=40, deadline=None)
 @given(r=st.floats(0.2, 1.0), mu=st.floats(0.0, 0.6), omega=st.floats(0.5, 2.0), above=st.floats(0.01, 0.5))
 def test_pre_impact_maps_have_the_same_multipliers(r, mu, omega, above):
-    from orbits.closed_forms import fold_square, friction_number, restitution_ratio
+    from orbits.machines.absorber.closed_forms import fold_square, friction_number, restitution_ratio
 
     machine = Absorber(restitution=r, friction=mu, gravity=0.2, mass_ratio=0.01, frequency=omega)
     least = float(fold_square(restitution_ratio(r), friction_number(mu, 0.2, 0.01, omega)))

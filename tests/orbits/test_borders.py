@@ -5,8 +5,8 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from orbits.simulation import find_attractor
-from orbits.start import polish
+from orbits.attractors import find_attractor
+from orbits.starts.find import polish
 
 PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 

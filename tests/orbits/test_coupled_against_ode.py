@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from orbits import Coupled
-from orbits.models.coupled_orbits import stuck_state, symmetric_discriminant
+from orbits.machines.coupled.closed_forms import stuck_state, symmetric_discriminant
 from orbits.simulation import simulate
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)

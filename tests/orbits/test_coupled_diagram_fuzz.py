@@ -12,8 +12,8 @@ import pytest
 
 import contvines as cv
 from orbits import Coupled
-from orbits.simulation import find_attractor
-from orbits.start import polish
+from orbits.attractors import find_attractor
+from orbits.starts.find import polish
 
 sys.path.insert(0, str(Path(__file__).parent))
 from test_diagram_fuzz import crossed, followed, guard, unique

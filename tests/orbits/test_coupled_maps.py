@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from orbits import Coupled
-from orbits.cyclic import workspace
-from orbits.models.coupled_flow import first_zero, wave
-from orbits.models.coupled_kernels import linearise, margins
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.coupled.flow import first_zero, wave
+from orbits.machines.coupled.maps import linearise, margins
+from orbits.machines.path import single
 
 L, R, T, S, U = range(5)
 # arriving event and the modes: every kind of segment
@@ -91,9 +92,18 @@ def test_maps_and_all_their_derivatives(segment):
             return np.array([float((a - b) / (2 * h)) for a, b in zip(*ends)])
 
         for ip in range(8):
-            assert np.isfinite(linearise((events, modes, params, ip, 1.0, 2 * np.pi, 0), u, params[ip], work))
+            assert np.isfinite(
+                linearise((events, modes, params, single(8, ip), 1.0, 2 * np.pi, 0), u, params[ip], work)
+            )
             F, A, D, Q = (work[i][0] for i in range(4))
             np.testing.assert_allclose(Q, slope(ip), rtol=1e-12, atol=1e-13)
+        # a parameter that moves several numbers, each with its own power: the chain rule
+        powers = np.array([-1.0, 0.5, -0.5, 2.0, 0.0, 1.0, -2.0, 0.0])
+        path = np.array([params / 1.3**powers, powers])
+        linearise((events, modes, params, path, 1.0, 2 * np.pi, 0), u, 1.3, work)
+        chain = sum(slope(j) * powers[j] * params[j] / 1.3 for j in range(8) if powers[j])
+        np.testing.assert_allclose(work[3][0], chain, rtol=1e-11, atol=1e-12)
+        linearise((events, modes, params, single(8, 0), 1.0, 2 * np.pi, 0), u, params[0], work)
         np.testing.assert_allclose(F, [float(value) for value in rows(numbers)], atol=1e-14)
         for j in range(4):
             np.testing.assert_allclose(A[:, j], slope(8 + j), rtol=1e-12, atol=1e-13)
@@ -108,8 +118,8 @@ def test_half_and_whole_words_agree():
     orbit = machine.symmetric_orbit(frequency=0.99)
     u = orbit.nodes.ravel()
     codes, modes = orbit.word.codes, orbit.word.mode_codes
-    whole = (codes, modes, orbit.params, 1, 1.0, 2 * np.pi, 0)
-    half = (codes[:1].copy(), modes[:1].copy(), orbit.params, 1, -1.0, np.pi, 0)
+    whole = (codes, modes, orbit.params, single(8, 1), 1.0, 2 * np.pi, 0)
+    half = (codes[:1].copy(), modes[:1].copy(), orbit.params, single(8, 1), -1.0, np.pi, 0)
     one, two = workspace(1, 4, 8), workspace(2, 4, 8)
     assert linearise(half, u[:4].copy(), 0.99, one) < 1e-14
     assert linearise(whole, u, 0.99, two) < 1e-14
@@ -128,9 +138,11 @@ def test_what_cannot_be_evaluated_is_infinite():
     u = np.array([0.3, 1.0, 0.1, 0.2, 3.4, -1.0, -0.1, -0.2])
     work = workspace(2, 4, 8)
     assert (
-        linearise((events, modes, params, 1, 1.0, 2 * np.pi, 0), u, 1.0, work) == np.inf
+        linearise((events, modes, params, single(8, 1), 1.0, 2 * np.pi, 0), u, 1.0, work) == np.inf
     )  # undamped resonance
-    assert linearise((events, modes, params, 2, 1.0, 2 * np.pi, 0), u, 400.0, work) == np.inf  # overdamped
+    assert (
+        linearise((events, modes, params, single(8, 2), 1.0, 2 * np.pi, 0), u, 400.0, work) == np.inf
+    )  # overdamped
 
 
 def test_first_zero_finds_every_zero():

@@ -5,11 +5,11 @@ import pytest
 from scipy.integrate import quad
 
 from orbits import Coupled
-from orbits.closed_forms import symmetric_square
-from orbits.models.base import ParameterError
-from orbits.models.coupled_orbits import response, stuck_frequencies, stuck_response, symmetric_nodes
+from orbits.attractors import find_attractor
+from orbits.machines.absorber.closed_forms import symmetric_square
+from orbits.machines.base import ParameterError
+from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response, symmetric_nodes
 from orbits.multiple_scales import SlowFlow, equilibria
-from orbits.simulation import find_attractor
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 

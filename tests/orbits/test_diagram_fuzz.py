@@ -12,9 +12,9 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from orbits.identity import canonical
-from orbits.simulation import find_attractor
-from orbits.start import polish
+from orbits.attractors import find_attractor
+from orbits.cycles.identity import canonical
+from orbits.starts.find import polish
 
 DRAWN = 400 if os.environ.get("CONTVINES_LARGE") else 60
 SECONDS = 120  # a guard against hanging, far above what any diagram here takes

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.cyclic import cyclic_kernels, workspace
+from orbits.elimination.block_cyclic import cyclic_kernels, workspace
 
 
 def dense(work, twist, border):

@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from orbits import Absorber, ParameterError
-from orbits.closed_forms import (
+from orbits.machines.absorber.closed_forms import (
     fold_beta,
     fold_square,
     friction_number,
@@ -16,7 +16,7 @@ from orbits.closed_forms import (
     symmetry_breaking_beta,
     symmetry_breaking_square,
 )
-from orbits.start import StartError, polish
+from orbits.starts.find import StartError, polish
 
 PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 machines = st.builds(

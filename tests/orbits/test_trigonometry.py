@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from orbits.trigonometry import PI_A, PI_B, PI_C, sines_cosines
+from orbits.compiling.trigonometry import PI_A, PI_B, PI_C, sines_cosines
 
 
 def test_three_pieces_make_pi():

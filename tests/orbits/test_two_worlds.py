@@ -11,8 +11,9 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from orbits.simulation import find_attractor, simulate
-from orbits.start import polish
+from orbits.attractors import find_attractor
+from orbits.simulation import simulate
+from orbits.starts.find import polish
 
 LARGE = bool(os.environ.get("CONTVINES_LARGE"))
 BLOCKS = (

@@ -31,7 +31,7 @@ def test_bounds_are_the_special_points_of_the_branch(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_sticking_limit_by_simulation(seed):
     """Just below the limit the simulated machine is stuck for good, just above it is not."""
-    from orbits.simulation import find_attractor
+    from orbits.attractors import find_attractor
 
     rng = np.random.default_rng(seed)
     mu, g, omega = rng.uniform(0.1, 0.8), rng.uniform(0.05, 0.4), rng.uniform(0.8, 1.2)

@@ -11,7 +11,7 @@ import sympy
 from orbits import Absorber, Coupled, Orbit, Word
 from orbits import multiple_scales as ms
 from orbits.design import Design
-from orbits.start import polish
+from orbits.starts.find import polish
 
 STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211}
 R, H = 0.24 / 1.76, 0.5 * np.pi * 0.5 * 0.211

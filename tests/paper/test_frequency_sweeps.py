@@ -11,9 +11,9 @@ import pytest
 
 import contvines as cv
 from orbits import Coupled
-from orbits.identity import canonical
-from orbits.simulation.sweep import sweep
-from orbits.start import polish
+from orbits.attractors.sweep import sweep
+from orbits.cycles.identity import canonical
+from orbits.starts.find import polish
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 WITHIN = (0.94, 1.07)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.dense import KERNELS, dense_workspace
-from contvines.problem import Kernels
+from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.protocol import Kernels
 from orbits import Absorber, Coupled
 from orbits.problem import OrbitProblem
 

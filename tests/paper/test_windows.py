@@ -12,7 +12,7 @@ from mpmath import eye, mp, mpf
 
 import contvines as cv
 from orbits import Absorber
-from orbits.simulation import find_attractor
+from orbits.attractors import find_attractor
 
 sys.path.insert(0, str(Path(__file__).parent))
 from brute import Machine, eigenvalues, secant
@@ -221,7 +221,7 @@ def test_beyond_each_graze_the_bare_maps_leave_the_simulation(three, four):
 
 def _stepped(point, distance):
     """The solution of the same word at another amplitude."""
-    from orbits.start import polish
+    from orbits.starts.find import polish
 
     problem = point.problem
     u = point.u + distance / point.tangent[-1] * point.tangent[:-1]

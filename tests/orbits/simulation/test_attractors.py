@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from orbits.models.absorber import Absorber
-from orbits.simulation import find_attractor, find_attractors, simulate, sweep, sweeps
+from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
+from orbits.machines.absorber.machine import Absorber
+from orbits.simulation import simulate
 
 EPS, MU, G, R = 0.006, 0.5, 0.211, 0.76
 A = (1 + EPS) * MU * G

@@ -2,8 +2,9 @@
 
 import pytest
 
-from orbits.models.absorber import Absorber
-from orbits.simulation import SimulationError, find_attractor, find_attractors, simulate, sweep
+from orbits.attractors import find_attractor, find_attractors, sweep
+from orbits.machines.absorber.machine import Absorber
+from orbits.simulation import SimulationError, simulate
 
 MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211)
 

@@ -6,7 +6,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from orbits import Coupled
-from orbits.simulation import find_attractor, simulate
+from orbits.attractors import find_attractor
+from orbits.simulation import simulate
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled
-from orbits.simulation import find_attractor, simulate, sweep
-from orbits.simulation.contract import HOLD
-from orbits.simulation.observation import lasting, observe
+from orbits.attractors import find_attractor, sweep
+from orbits.attractors.observation import lasting, observe
+from orbits.machines.stepping import HOLD
+from orbits.simulation import simulate
 
 # strongly modulated: the oscillator grows without impacts for tens of periods, then the absorber brakes it
 MODULATED = Coupled(
@@ -53,7 +54,7 @@ def test_chaos_of_the_reduced_machine():
 
 def test_motions_that_recur_are_followed_over_one_cycle(monkeypatch):
     """They cost no more: one piece of as many periods as the cycle has."""
-    from orbits.simulation import observation
+    from orbits.attractors import observation
 
     lengths = []
     plain = observation._Tally._add

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from orbits.models.absorber import Absorber
+from orbits.machines.absorber.machine import Absorber
 from orbits.simulation import simulate
 
 FOLLOWS = {-1: "Rts", 1: "Lts", 0: "u"}

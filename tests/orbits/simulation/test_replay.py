@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
-from orbits.models.absorber import Absorber
-from orbits.simulation import find_attractor, replay, replay_nodes
+from orbits.attractors import find_attractor
+from orbits.machines.absorber.machine import Absorber
+from orbits.simulation import replay, replay_nodes
 
 R, A = 0.76, 1.006 * 0.5 * 0.211
 MACHINE = Absorber(restitution=R, friction=0.5, gravity=0.211, mass_ratio=0.006)

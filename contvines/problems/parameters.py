@@ -1,0 +1,102 @@
+"""Named parameters: values by name, one of which varies along a branch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+
+class Parameters:
+    """What ``F(u, p)`` reads: ``p.damping`` or ``p["damping"]``; values cannot be changed.
+
+    Parameters
+    ----------
+    values : mapping of str to number
+    """
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self.__dict__.update(values)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"there is no parameter {name!r}; the problem has {', '.join(self)}")
+
+    def __getitem__(self, name: str) -> Any:
+        return getattr(self, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"parameter {name!r} cannot be changed by the equations")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.__dict__)
+
+    def __len__(self) -> int:
+        return len(self.__dict__)
+
+    def __repr__(self) -> str:
+        return f"Parameters({', '.join(f'{name}={value!r}' for name, value in self.__dict__.items())})"
+
+
+class ParameterSet:
+    """The parameters of a problem: their values, and which one varies.
+
+    A plain number stays a plain number: then there is one parameter, and ``F(u, p)`` gets its value itself.
+
+    Parameters
+    ----------
+    given : number, or mapping of str to number
+    varying : str
+        Name of the parameter that varies; of a mapping that does not have it, the first one varies.
+
+    Raises
+    ------
+    ValueError
+        If a name is no identifier, a value no finite number, or the mapping is empty.
+    """
+
+    def __init__(self, given: Any, varying: str) -> None:
+        self.named = isinstance(given, Mapping)
+        values = dict(given) if self.named else {varying: given}
+        if not values:
+            raise ValueError("p0 = {}: give at least one parameter, for example {'p': 1.0}")
+        for name, value in values.items():
+            if not (isinstance(name, str) and name.isidentifier()) and self.named:
+                raise ValueError(
+                    f"the parameter {name!r} must have a name that Python can read, such as 'p1'"
+                )
+            try:
+                values[name] = float(value)
+            except (TypeError, ValueError):
+                raise ValueError(f"parameter {name} = {value!r} must be a number") from None
+            if not math.isfinite(values[name]):
+                raise ValueError(f"parameter {name} = {value!r} must be finite")
+        self.values: dict[str, float] = values
+        self.varying = varying if varying in values else next(iter(values))
+
+    @property
+    def start(self) -> float:
+        """Value of the parameter that varies, where the problem starts."""
+        return self.values[self.varying]
+
+    def at(self, p: Any) -> Any:
+        """What the user's functions get as their second argument when the varying parameter is `p`."""
+        return Parameters({**self.values, self.varying: p}) if self.named else p
+
+    def against(self, varying: str, values: Mapping[str, float] | None = None) -> ParameterSet:
+        """The same parameters with another one varying, and with some other values.
+
+        Raises
+        ------
+        ValueError
+            If a name is not among them.
+        """
+        changed = dict(values or {})
+        for name in (varying, *changed):
+            if name not in self.values:
+                raise ValueError(f"there is no parameter {name!r}; the problem has {', '.join(self.values)}")
+        merged = {**self.values, **changed}
+        return ParameterSet(merged if self.named else merged[varying], varying)
+
+    def given(self) -> dict[str, float] | float:
+        """As they were given: a mapping, or a number."""
+        return dict(self.values) if self.named else self.start

@@ -1,0 +1,163 @@
+"""Which functions may rebuild a problem from its description in a file: a fixed list, and what the program adds.
+
+Files are data. A description names a factory; the name is looked up here, nothing is imported or called because a file
+says so. Functions of the user's own that a file names (those of an :class:`~contvines.AlgebraicProblem`, say) are found
+if this program has made a problem from them already; else they are imported only where the user says ``trust``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+#: Modules that list factories, as ``FACTORIES``: name in a file -> "module:function" of (description, trust).
+PROVIDERS = ("contvines.problems.factories", "orbits.factories")
+
+_added: dict[str, Callable[..., Any]] = {}
+_callables: dict[str, Callable] = {}
+
+
+class UnknownFactory(ValueError):
+    """A description whose factory is not on the list."""
+
+
+def register(name: str, build: Callable[..., Any]) -> None:
+    """Let files name a factory of this program, for problems whose ``describe()["factory"]`` is this name.
+
+    Parameters
+    ----------
+    name : str
+    build : callable
+        (description, trust) -> problem; ``description`` is what ``describe()`` returned, ``trust`` whether functions that
+        it names may be imported.
+    """
+    _added[str(name)] = build
+
+
+def factory(name: Any) -> Callable[..., Any]:
+    """The function behind a factory's name.
+
+    Raises
+    ------
+    UnknownFactory
+        If there is none; the sentence says how to add one.
+    """
+    if isinstance(name, str):
+        if name in _added:
+            return _added[name]
+        for provider in PROVIDERS:
+            try:
+                listed: Mapping[str, str] = import_module(provider).FACTORIES
+            except ModuleNotFoundError as error:
+                if error.name and provider.startswith(error.name):
+                    continue  # this half is not installed
+                raise
+            if name in listed:
+                module, _, function = listed[name].partition(":")
+                return getattr(import_module(module), function)
+    shown = repr(name) if len(repr(name)) <= 80 else repr(name)[:77] + "..."
+    raise UnknownFactory(
+        f"the file names the factory {shown}, which is not one that rebuilds problems; it was not called "
+        "(contvines.register(name, function) adds one of your own)"
+    )
+
+
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> Any:
+    """The problem that ``describe()`` described, or None where that takes functions of the user's that are not at hand.
+
+    Parameters
+    ----------
+    description : mapping
+        With "factory": a name known to :func:`factory`, or None.
+    trust : bool
+        Import functions that the description names. Only for files whose maker is trusted: importing runs their code.
+
+    Raises
+    ------
+    UnknownFactory
+        If the factory is not on the list.
+    ValueError
+        If the description does not describe a problem.
+    """
+    name = description.get("factory")
+    if not name:
+        return None
+    build = factory(name)
+    try:
+        return build(description, trust)
+    except (KeyError, TypeError, IndexError, AttributeError, OverflowError) as error:
+        raise ValueError(
+            f"a problem's description cannot be understood ({type(error).__name__}: {error})"
+        ) from None
+
+
+def address(f: Callable) -> str | None:
+    """ "module:name" under which a callable can be found again, or None; remembers the callable."""
+    module, name = getattr(f, "__module__", None), getattr(f, "__qualname__", "")
+    if not module or module == "__main__" or "<" in name or not name:
+        return None
+    where = f"{module}:{name}"
+    _callables[where] = f
+    return where
+
+
+def find_callables(where: Any, trust: bool) -> dict[str, Any] | None:
+    """The callables whose addresses a description holds; None where one of them is not at hand.
+
+    At hand is what this program has made a problem from; with ``trust``, what can be imported.
+
+    Parameters
+    ----------
+    where : mapping of role to an address, to a mapping of addresses, to numbers (a mirror given as a matrix) or None
+        (Version 0.1 kept those of maps as a list.)
+    trust : bool
+
+    Raises
+    ------
+    ValueError
+        If a callable cannot be imported.
+    """
+    roles = where if isinstance(where, Mapping) else dict(zip(("F", "jacobian", "derivative"), where))
+    found: dict[str, Any] = {}
+    for role, place in roles.items():
+        if isinstance(place, Mapping):
+            found[role] = {name: _find(part, trust) for name, part in place.items()}
+            missing = None in found[role].values()
+        else:
+            found[role] = _find(place, trust) if isinstance(place, str) else place
+            missing = isinstance(place, str) and found[role] is None
+        if missing:
+            return None
+    return found
+
+
+def _find(where: str, trust: bool) -> Callable | None:
+    known = _callables.get(where)
+    if known is not None or not trust:
+        return known
+    module, _, name = where.partition(":")
+    try:
+        found: Any = import_module(module)
+        for part in name.split("."):
+            found = getattr(found, part)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ValueError(f"the function {where!r} that the file names cannot be imported ({error})") from None
+    return found
+
+
+def without_problem(label: str, description: Mapping[str, Any] | None = None) -> str:
+    """The sentence for a branch or point that was loaded without its problem: why, and what would do."""
+    try:
+        named = bool(description and description.get("factory") and factory(description["factory"]))
+    except UnknownFactory as error:
+        return f"{label} has no problem attached: {error}"
+    if description is None or named:
+        return (
+            f"{label} has no problem attached: a function of your own is not imported because a file names it; make the "
+            "problem and call graph.attach(problem), or load the file with trust=True (--trust) if you trust its maker"
+        )
+    return (
+        f"{label} has no problem attached: its graph was saved from a Python callable that has no importable name; "
+        "attach one with graph.attach(problem) first"
+    )

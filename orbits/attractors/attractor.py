@@ -1,0 +1,164 @@
+"""What a simulation settles on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.machines.stepping import Machine
+from orbits.simulation.return_map import cyclic_distance
+from orbits.simulation.trajectory import LETTERS
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """The motion that is left after a transient.
+
+    Attributes
+    ----------
+    model : Model
+        The machine.
+    params : ndarray, shape (P,)
+        Parameter vector.
+    kind : str
+        ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts
+        pile up into persistent contact, in every cycle or every 32 periods on average) or ``chaotic`` (nothing
+        recurs within the periods looked at).
+    periods : int
+        Forcing periods k until the motion recurs; 0 if it does not.
+    codes, modes : ndarray of int8, shape (n,)
+        The cycle's events (H = 5 begins a persistent contact) and the modes after them, rotated into canonical order.
+    nodes : ndarray, shape (n, NODE)
+        (Psi, B+) at impacts and (Psi, w) at other events, then (v, v') in the coupled model; the first phase lies in
+        [0, 2 pi), later ones are counted through.
+    residual : float
+        Largest difference between the first node and its image after one period.
+    multipliers : ndarray of complex, shape (NODE,)
+        Eigenvalues of the simulated return map's central differences; nan where they could not be taken.
+    symmetric : bool
+        Whether the orbit equals its mirror image.
+    state : ndarray, shape (S,)
+        A state on the attractor, from which a simulation goes on.
+    impacts_per_period, impact_speed : float
+        Impacts per forcing period and fastest approach |w'-|, over the motion looked at: the cycle, or what
+        `orbits.attractors.observation` needs where nothing recurs.
+    """
+
+    model: Any
+    params: np.ndarray
+    machine: Machine
+    kind: str
+    periods: int
+    codes: np.ndarray
+    modes: np.ndarray
+    nodes: np.ndarray
+    residual: float
+    multipliers: np.ndarray
+    symmetric: bool
+    state: np.ndarray
+    impacts_per_period: float
+    impact_speed: float
+
+    def __repr__(self) -> str:
+        return (
+            f"Attractor({self.kind}, word={self.letters!r}, periods={self.periods}, impacts={self.impacts})"
+        )
+
+    @property
+    def letters(self) -> str:
+        """The cycle's events as one string, every slip written."""
+        return "".join(LETTERS[code] for code in self.codes)
+
+    @property
+    def impacts(self) -> int:
+        """Impacts l in one cycle."""
+        return int(np.count_nonzero(self.codes < 2))
+
+    @property
+    def recurrent(self) -> bool:
+        """Whether the motion is periodic (stuck included)."""
+        return self.kind == "stuck" or self.periods > 0
+
+    @property
+    def word(self) -> Any:
+        """The cycle as an `orbits.words.Word`.
+
+        None where the motion has none: chaos, persistent contact, frictionless motion off the walls.
+        """
+        from orbits.words import Word
+
+        if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
+            return None
+        frictionless = self.model.friction_acceleration(self.params) == 0.0
+        return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), frictionless)
+
+    @property
+    def text(self) -> str:
+        """The word as text; for motions with persistent contact the plain list of events."""
+        if self.word is not None:
+            return self.word.text
+        return self.letters if self.periods else ""
+
+    @property
+    def orbit(self) -> Any:
+        """The attractor as an `orbits.orbit.Orbit`, ready for continuation.
+
+        A motion without impacts is moved so that the mean of its w is 0, which continuation pins.
+
+        Raises
+        ------
+        ValueError
+            If the attractor is not periodic or has persistent contact, which no word describes.
+        """
+        from orbits.orbit import Orbit
+
+        word = self.word
+        if word is None:
+            raise ValueError(
+                f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits"
+            )
+        return Orbit(
+            self.model, word, self.periods, centred(self.codes, self.nodes, self._mass_ratio), self.params
+        )
+
+    @property
+    def _mass_ratio(self) -> float:
+        return float(self.params[self.model.parameter_names.index("mass_ratio")])
+
+    def distance(self, other: Attractor) -> float:
+        """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.
+
+        Without impacts the mean position is free and left out. inf if the events differ.
+        """
+        if self.kind != other.kind or self.periods != other.periods or len(self.codes) != len(other.codes):
+            return np.inf
+        if not len(self.codes):
+            return 0.0
+        mirror = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
+        eps = self._mass_ratio
+        own, target = centred(self.codes, self.nodes, eps), centred(other.codes, other.nodes, eps)
+        image = -own
+        image[:, 0] = own[:, 0] + np.pi
+        images = [(self.codes, self.modes, own), (mirror[self.codes], -self.modes, image)]
+        best = np.inf
+        for codes, modes, nodes in images:
+            for k in range(len(codes)):
+                if np.array_equal(np.roll(codes, -k), other.codes) and np.array_equal(
+                    np.roll(modes, -k), other.modes
+                ):
+                    best = min(best, cyclic_distance(np.roll(nodes, -k, axis=0), target))
+        return best
+
+
+def centred(codes: np.ndarray, nodes: np.ndarray, eps: float) -> np.ndarray:
+    """The nodes; of a motion without impacts with the absorber moved so that the mean of w is 0 (q1 stays)."""
+    if np.any(codes < 2) or np.any(codes > 4):
+        return nodes
+    moved = nodes.copy()
+    mean = nodes[:, 1].mean()
+    moved[:, 1] -= mean
+    if nodes.shape[1] > 2:
+        moved[:, 2] += eps * mean
+    return moved

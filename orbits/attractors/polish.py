@@ -1,0 +1,111 @@
+"""A recurrent cycle of events made into an orbit: Newton on the simulated return map, root, canonical order, symmetry."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from orbits.attractors.attractor import centred
+from orbits.machines.stepping import Machine
+from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
+from orbits.simulation.trajectory import TWO_PI
+
+ALIKE = 1e-7
+_MIRROR = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
+
+
+def polish(
+    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int
+) -> tuple[np.ndarray, float, np.ndarray]:
+    """Newton's method on the simulated return map, from the first node.
+
+    Returns
+    -------
+    nodes : ndarray, shape (n, NODE)
+    residual : float
+        Largest difference between the first node and its return.
+    multipliers : ndarray of complex, shape (NODE,)
+        nan where displaced starts go through other events.
+    """
+    node = nodes[0].copy()
+    best, error, matrix = nodes, np.inf, None
+    for _ in range(40):  # a handful as a rule; near a pitchfork or fold each one gains only a factor
+        there = go_round(engine, params, codes, modes, node)
+        if there.message:
+            break
+        gap = there.nodes[-1] - node
+        gap[0] -= TWO_PI * periods
+        size = float(np.abs(gap).max())
+        if size < error:
+            error = size
+            best = np.concatenate([node[None, :], there.nodes[:-1]])
+        else:
+            break
+        if size < 3e-15:
+            break
+        if matrix is None or size > 1e-11:
+            matrix = monodromy(engine, params, codes, modes, node)
+        if matrix is None:
+            break
+        left = np.eye(len(node)) - matrix
+        step = np.linalg.lstsq(left, gap, rcond=1e-7)[0]
+        if not np.all(np.isfinite(step)) or np.abs(step).max() > 0.1:
+            break
+        node = node + step
+    matrix = monodromy(engine, params, codes, modes, best[0])
+    multipliers = (
+        np.full(len(node), np.nan + 0j) if matrix is None else np.linalg.eigvals(matrix).astype(complex)
+    )
+    return best, error, multipliers
+
+
+def root_length(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int) -> int:
+    """Events of the shortest cycle of which this one is a repetition."""
+    n = len(codes)
+    for times in range(periods, 1, -1):
+        if n % times or periods % times:
+            continue
+        part = n // times
+        same = np.array_equal(codes, np.roll(codes, part)) and np.array_equal(modes, np.roll(modes, part))
+        if same and cyclic_distance(nodes, np.roll(nodes, part, axis=0)) < ALIKE:
+            return part
+    return n
+
+
+def rotate(
+    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, first: int, periods: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The cycle read from event `first`, its first phase in [0, 2 pi)."""
+    nodes = np.roll(nodes, -first, axis=0)
+    if first:
+        nodes[-first:, 0] += TWO_PI * periods
+    nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
+    return np.roll(codes, -first), np.roll(modes, -first), nodes
+
+
+def first_event(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray) -> int:
+    """Where the cycle starts: smallest rotation of the word that starts with no slip, then smallest phase."""
+    n = len(codes)
+
+    def rank(k: int) -> tuple:
+        return (tuple(np.roll(codes, -k)), tuple(np.roll(modes, -k)), nodes[k, 0] % TWO_PI)
+
+    starts = [k for k in range(n) if codes[k] != 4] or list(range(n))
+    return min(starts, key=rank)
+
+
+def is_symmetric(
+    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, eps: float, tolerance: float = 1e-7
+) -> bool:
+    """Whether the orbit equals its mirror image after half its events."""
+    n = len(codes)
+    if n == 0 or n % 2:
+        return False
+    half = n // 2
+    if not (
+        np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))
+    ):
+        return False
+    nodes = centred(codes, nodes, eps)
+    image = -nodes
+    image[:, 0] = nodes[:, 0] + np.pi
+    return cyclic_distance(image, np.roll(nodes, half, axis=0)) < tolerance

@@ -1,0 +1,262 @@
+"""From a simulated motion to its attractor: recurrence of events, polished to an orbit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors.attractor import Attractor
+from orbits.attractors.observation import lasting
+from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate
+from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine
+from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
+from orbits.simulation.return_map import cyclic_distance, nodes_of
+from orbits.simulation.trajectory import TWO_PI
+
+EVENTS_PER_PERIOD = 400
+UNSTABLE = 1e-5
+
+
+def find_attractor(
+    model: Any,
+    start: Mapping[str, float] | np.ndarray | None = None,
+    *,
+    transient: float = 300,
+    max_period: int = 16,
+    tolerance: float = 1e-6,
+    patience: int = 2,
+    **parameters: float,
+) -> Attractor:
+    """Simulate, leave out the transient, and recognise what is left.
+
+    Parameters
+    ----------
+    model : Model
+        The machine.
+    start : mapping or ndarray, optional
+        As for `orbits.simulation.simulate`; by default the absorber starts from rest in the middle of the cavity.
+    transient : float
+        Forcing periods left out first.
+    max_period : int
+        Longest recurrence looked for, in forcing periods.
+    tolerance : float
+        Largest difference of two nodes that may count as a return; the orbit is then polished.
+    patience : int
+        How often the transient is prolonged fourfold when nothing recurs.
+    **parameters
+        Parameters that are no fields of the machine (`amplitude`), or that replace them.
+
+    Returns
+    -------
+    Attractor
+
+    Raises
+    ------
+    SimulationError
+        If the start or the lengths cannot be.
+    """
+    if max_period < 1:
+        raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
+    if not (np.isfinite(transient) and transient >= 0.0):
+        raise SimulationError(f"transient = {transient}: give a number of forcing periods, 0 or above")
+    params = model.vector(parameters)
+    engine = machine(model.name)
+    state = first_state(model, engine, params, start)
+    return lasting(settle(model, engine, params, state, transient, max_period, tolerance, patience))
+
+
+def settle(
+    model: Any,
+    engine: Machine,
+    params: np.ndarray,
+    state: np.ndarray,
+    transient: float = 300,
+    max_period: int = 16,
+    tolerance: float = 1e-6,
+    patience: int = 2,
+) -> Attractor:
+    """`find_attractor` from a state, which is moved along (for sweeps)."""
+    state[TURNS] = 0.0
+    length = float(transient)
+    window = _Window(engine, params)
+    for attempt in range(patience + 1):
+        status = skip(engine, state, params, state[TURNS] + length, int(EVENTS_PER_PERIOD * (length + 1)))
+        if status == FAILED:
+            raise SimulationError(
+                f"the motion of {model.name!r} is not finite: give parameters of moderate size"
+            )
+        if status != REST:
+            window.record(state, max_period)
+        if window.at_rest and attempt < patience and _will_slip(model, params):
+            length *= 4.0
+            continue  # the oscillator is still growing, or between two beats
+        if status == REST or window.at_rest:
+            return _attractor(model, engine, params, "stuck", 0, window, state)
+        if not len(window.codes):  # without friction a free motion between the walls has no events
+            return _attractor(model, engine, params, "sliding", 1, window, state)
+        found = _recognise(engine, params, window, max_period, tolerance, last=attempt == patience)
+        if found is not None:
+            cycle = _cycle(model, engine, params, state, window, *found)
+            if attempt == patience or not np.any(np.abs(cycle.multipliers) > 1.0 + UNSTABLE):
+                return cycle
+            state[RATE] *= 1.0 + 1e-6  # a motion that only rounding keeps where it is: help it to leave
+        length *= 4.0
+    kind = "chatter" if np.any(window.codes == HOLD) else "chaotic"
+    return _attractor(model, engine, params, kind, 0, window, state)
+
+
+def _will_slip(model: Any, params: np.ndarray) -> bool:
+    """Whether friction cannot hold the absorber once the oscillator has settled."""
+    from orbits.cycles.stuck import StuckOrbit
+
+    return not StuckOrbit.of(model, params).real
+
+
+class _Window:
+    """The motion looked at: a few periods after the transient."""
+
+    def __init__(self, engine: Machine, params: np.ndarray) -> None:
+        self.engine, self.params = engine, params
+        self.codes, self.modes = np.empty(0, np.int8), np.empty(0, np.int8)
+        self.rows = np.empty((0, engine.row))
+        self.nodes = np.empty((0, 2))
+        self.length = 0.0
+        self.at_rest = False
+
+    def record(self, state: np.ndarray, max_period: int) -> None:
+        """Run on for two of the longest recurrences."""
+        begin = state[TURNS] + state[PSI] / TWO_PI
+        self.length = 2.0 * max_period + 1.0
+        most = int(EVENTS_PER_PERIOD * self.length)
+        self.codes, self.modes, self.rows, status = collect(
+            self.engine, state, self.params, begin + self.length, most
+        )
+        self.nodes = nodes_of(self.engine, self.params, self.codes, self.modes, self.rows)
+        self.at_rest = status == REST or (not len(self.codes) and state[RATE] == 0.0 and state[MODE] == 0.0)
+
+
+def _recognise(
+    engine: Machine, params: np.ndarray, window: _Window, max_period: int, tolerance: float, last: bool
+) -> tuple[int, int] | None:
+    """Events and periods of the shortest recurrence at the window's end.
+
+    At the last attempt a slowly converging motion may still be recognised: looser, but then the orbit must
+    exist and be stable.
+    """
+    for slack in (tolerance, 1e-3) if last else (tolerance,):
+        for length, periods in _returns(window, max_period, slack):
+            if slack <= tolerance:
+                return length, periods
+            codes, modes = window.codes[-length:], window.modes[-length:]
+            nodes, residual, multipliers = polish(
+                engine, params, codes, modes, window.nodes[-length:], periods
+            )
+            gap = cyclic_distance(nodes, window.nodes[-length:])
+            if residual < 1e-9 and gap < 10.0 * slack and np.all(np.abs(multipliers) < 1.0 + 1e-6):
+                return length, periods
+    return None
+
+
+def _returns(window: _Window, max_period: int, slack: float) -> list[tuple[int, int]]:
+    """Candidates (events, periods), shortest first: the last cycle repeats the one before it."""
+    codes, modes, nodes = window.codes, window.modes, window.nodes
+    n = len(codes)
+    if n < 2:
+        return []
+    found = []
+    gaps = (nodes[-1, 0] - nodes[:, 0]) / TWO_PI
+    near = (codes == codes[-1]) & (modes == modes[-1]) & (np.abs(gaps - np.round(gaps)) * TWO_PI < slack)
+    for j in np.flatnonzero(near)[::-1]:
+        periods = int(np.round(gaps[j]))
+        length = n - 1 - j
+        if periods < 1 or length < 1:
+            continue
+        if periods > max_period or 2 * length > n:
+            break
+        here, before = slice(n - length, n), slice(n - 2 * length, n - length)
+        if not (np.array_equal(codes[here], codes[before]) and np.array_equal(modes[here], modes[before])):
+            continue
+        shift = nodes[here] - nodes[before]
+        shift[:, 0] -= TWO_PI * periods
+        if np.abs(shift).max() < slack:
+            found.append((int(length), periods))
+    return found
+
+
+def _cycle(
+    model: Any,
+    engine: Machine,
+    params: np.ndarray,
+    state: np.ndarray,
+    window: _Window,
+    length: int,
+    periods: int,
+) -> Attractor:
+    """The polished attractor of a recurrence, in canonical order."""
+    codes, modes = window.codes[-length:], window.modes[-length:]
+    nodes = window.nodes[-length:]
+    # polish from an impact where there is one, else from a turn: there all unknowns of a node are free
+    for wanted in ((0, 1), (2,), (3,), (4, 5)):
+        places = np.flatnonzero(np.isin(codes, wanted))
+        if len(places):
+            break
+    speeds = np.abs(window.rows[-length:][places, 4])
+    codes, modes, nodes = rotate(codes, modes, nodes, int(places[np.argmax(speeds)]), periods)
+    nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
+    root = root_length(codes, modes, nodes, periods)
+    if root < length:  # a slow approach that alternates looks like a longer recurrence
+        codes, modes, nodes, periods = codes[:root], modes[:root], nodes[:root], periods * root // length
+        nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
+    codes, modes, nodes = rotate(codes, modes, nodes, first_event(codes, modes, nodes), periods)
+    impacts = int(np.count_nonzero(codes < 2))
+    kind = "chatter" if np.any(codes == HOLD) else "periodic" if impacts else "sliding"
+    return _attractor(
+        model, engine, params, kind, periods, window, state, codes, modes, nodes, residual, multipliers
+    )
+
+
+def _attractor(
+    model: Any,
+    engine: Machine,
+    params: np.ndarray,
+    kind: str,
+    periods: int,
+    window: _Window,
+    state: np.ndarray,
+    codes: np.ndarray | None = None,
+    modes: np.ndarray | None = None,
+    nodes: np.ndarray | None = None,
+    residual: float = 0.0,
+    multipliers: np.ndarray | None = None,
+) -> Attractor:
+    width = 4 if engine.state > 6 else 2
+    codes = np.empty(0, np.int8) if codes is None else codes
+    modes = np.empty(0, np.int8) if modes is None else modes
+    nodes = np.empty((0, width)) if nodes is None else nodes
+    eps = float(params[model.parameter_names.index("mass_ratio")])
+    hits = np.abs(window.rows[window.codes < 2, 3])
+    rate = (
+        np.count_nonzero(codes < 2) / periods
+        if periods
+        else hits.size / window.length
+        if window.length
+        else 0.0
+    )
+    return Attractor(
+        model=model,
+        params=params,
+        machine=engine,
+        kind=kind,
+        periods=periods,
+        codes=codes,
+        modes=modes,
+        nodes=nodes,
+        residual=residual,
+        multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
+        symmetric=kind == "stuck" or is_symmetric(codes, modes, nodes, eps),
+        state=state.copy(),
+        impacts_per_period=0.0 if kind == "stuck" else float(rate),
+        impact_speed=float(hits.max()) if hits.size and kind != "stuck" else 0.0,
+    )

@@ -1,0 +1,188 @@
+"""Orbits next to a border, with the words that the local rules propose: what vanishes at the border is given a size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from orbits.borders.rewriting import Edit, applied, edits_at
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import PER_NODE
+from orbits.orbit import Orbit
+from orbits.problem import OrbitProblem
+from orbits.words import Word
+
+REAL = -1e-9  # smallest margin of a real orbit
+NEAR = 1e-7  # margins this small vanish together
+SIZES = (
+    (2e-3, 2e-4, 2e-5),
+    (1e-4, 2e-5),
+    (2e-6, 2e-7),
+    (2e-8,),
+)  # of what grows beyond the border: ways to try
+STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is close
+GROWING = 1e-4  # least growth of a margin with the distance from the border
+
+
+def margins_of(problem: OrbitProblem, u: np.ndarray, p: float) -> np.ndarray:
+    """Margins of a solution."""
+    row = np.empty(2 * problem.n_multipliers + problem.n_margins)
+    assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
+    return row[2 * problem.n_multipliers :]
+
+
+def turned(
+    problem: OrbitProblem, u: np.ndarray, p: float, index: int
+) -> tuple[OrbitProblem, np.ndarray, int]:
+    """The same border read from another event, so that what changes does not straddle the end of the word."""
+    place, column = divmod(index, PER_NODE)
+    letter = problem.word.events[place]
+    if 0 < place < problem.length - 1 or (place == 0 and letter != "u") or problem.length < 2:
+        return problem, u, index
+    first = place - 1 if letter == "u" else place
+    orbit = problem.orbit(u, p).rotate(first % len(problem.word))
+    other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
+    return other, other.reduce(orbit.nodes), PER_NODE * (place - first) + column
+
+
+def proposals(
+    problem: OrbitProblem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[OrbitProblem, np.ndarray, float, np.ndarray, str]]:
+    """Solutions next to the border with the words that the local rules propose."""
+    problem, u, index = turned(problem, u, p, index)
+    orbit = problem.orbit(u, p)
+    values = margins_of(problem, u, p)
+    together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
+    for first in edits_at(orbit, index, problem.length):
+        chosen = [first]
+        for j in together:
+            for change in edits_at(orbit, j, problem.length):
+                if change.note == first.note and not any(_overlap(change, other) for other in chosen):
+                    chosen.append(change)
+                    break
+        for edits in [chosen, [first]] if len(chosen) > 1 else [chosen]:
+            found = grown(problem, orbit, p, edits)
+            if found is not None:
+                yield (*found, first.note)
+
+
+def _overlap(a: Edit, b: Edit) -> bool:
+    return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
+
+
+def grown(
+    problem: OrbitProblem, orbit: Orbit, p: float, edits: list[Edit]
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
+    if problem.symmetric:  # edit the half, and mirror it
+        half = problem.length
+        if any(change.stop > half and change.start != half for change in edits):
+            return None
+        word, nodes, first = applied(orbit.word.head(half), orbit.nodes[:half], edits)
+        mirrored = word.mirror()
+        word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.frictionless)
+    else:
+        word, nodes, first = applied(orbit.word, orbit.nodes, edits)
+    if not len(word):
+        return None
+    try:
+        other = problem.sibling(word, problem.periods, problem.symmetric)
+    except ValueError:
+        return None
+    guess = np.ascontiguousarray(nodes, dtype=float).ravel()
+    if edits[0].grows == "margin":
+        return _beside(other, guess, p)
+    for sizes in SIZES:
+        found = _climb(other, guess, first, edits[0], p, sizes)
+        if found is not None and found[0].orbit(found[1], found[2]).margin >= REAL:
+            return found
+    return None
+
+
+def _climb(
+    other: OrbitProblem, guess: np.ndarray, first: int, change: Edit, p: float, sizes: tuple[float, ...]
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """Solve with what grows beyond the border held at each of the sizes in turn; the last that converges."""
+    n, size = other.model.node, other.dimension
+    kernels, work = assemble(other.model), other.workspace()
+    step, tangent = np.empty(size + 1), np.empty(size + 1)
+    best = None
+    u, q = guess.copy(), p
+    for wanted in sizes:
+        border = np.zeros(size + 1)
+        if change.grows == "gap":
+            border[first * n], border[(first + 1) * n] = -1.0, 1.0
+            if change.start == change.stop:  # the later event stays: friction gives way there
+                u[first * n] = u[(first + 1) * n] - wanted
+            else:
+                u[(first + 1) * n] = u[first * n] + wanted
+        else:
+            sign = 1.0 if change.events[0] == "L" else -1.0
+            cavity = float(other.orbit(u, q).events.v_rate[first])
+            border[first * n + 1] = sign
+            if n == 4:
+                border[first * n + 3] = -sign
+            else:
+                values = other.values(q)
+                border[first * n] = sign * values[0] * values[5] * np.sin(u[first * n])
+                change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
+                border[size] = -sign * change_with / NEAR
+            speed = sign * (u[first * n + 1] - cavity)
+            u[first * n + 1] += sign * (wanted - speed)
+        trial = u.copy()
+        residual, _, q_new = kernels.newton(other.data, trial, q, work, border, step, tangent, 1e-12, 40)
+        if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
+            break
+        u, q = trial, float(q_new)
+        best = (other, u.copy(), q, tangent.copy())
+    return best
+
+
+def _beside(
+    other: OrbitProblem, guess: np.ndarray, p: float
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
+    size = other.dimension
+    kernels, work = assemble(other.model), other.workspace()
+    border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
+    border[-1] = 1.0
+    at_border = guess.copy()
+    residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
+    if not residual < 1e-10:
+        return None
+    for distance in (1e-8, 1e-7, 1e-6):
+        sides = []
+        for side in (1.0, -1.0):
+            q = p + side * distance * max(1.0, abs(p))
+            u = at_border + (q - p) * tangent[:-1]
+            along = tangent.copy()
+            residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
+            if residual < 1e-10:
+                sides.append((float(margins_of(other, u, q).min()), u, q, side * along))
+        if sides:
+            margin, u, q, along = max(sides, key=lambda entry: entry[0])
+            if (
+                margin > GROWING * distance
+            ):  # not one that vanishes all along, as at a wall touched without speed
+                return other, u, q, along
+    if np.abs(tangent).max() > STEEP:
+        return _along(other, at_border, p, tangent)
+    return None
+
+
+def _along(
+    other: OrbitProblem, at_border: np.ndarray, p: float, tangent: np.ndarray
+) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+    """The same where the new word's branch turns back close to the border: both ways along its tangent."""
+    kernels, work = assemble(other.model), other.workspace()
+    step, scratch = np.empty_like(tangent), np.empty_like(tangent)
+    for distance in (1e-5, 1e-6):
+        for side in (1.0, -1.0):
+            direction = side * tangent / np.linalg.norm(tangent)
+            u = at_border + distance * direction[:-1]
+            guess = p + distance * direction[-1]
+            residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)
+            if residual < 1e-10 and margins_of(other, u, float(q)).min() > GROWING * distance:
+                return other, u, float(q), direction
+    return None

@@ -1,0 +1,1 @@
+"""Cycles: margins, measures, identity and sampling of periodic motions."""

@@ -1,0 +1,213 @@
+"""The compiled functions of each model, put together once: maps, elimination, multipliers, margins.
+
+`assemble(model)` returns the kernels that a continuation loop calls (`linearise`, `bordered`, `inspect`) and the two
+entry points that this package calls itself (`newton`, `examine`). numba keeps `inspect` and the entry points on disk.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import time
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from orbits.compiling import decorators as compiling
+from orbits.compiling import trigonometry
+from orbits.compiling.decorators import inlined_kernel, stored_kernel
+from orbits.elimination import block_cyclic, by_address, two_unknowns, vectorised
+from orbits.machines import path
+from orbits.machines.base import Model
+from orbits.multipliers import (
+    factors,
+    periodic_qr,
+    periodic_schur,
+    product_of_any,
+    product_of_two,
+    small_eigenvalues,
+)
+
+# filled in per model by `specialise`
+linearise: Any = None
+bordered: Any = None
+margins: Any = None
+unpin: Any = None
+inspect: Any = None
+multipliers: Any = None
+
+
+def _inspect(data, u, p, work, row):
+    """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
+    unpin(data, work)
+    A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
+    multipliers(A, D, data[4], re, im, scratch)
+    n = re.size
+    count = n
+    if (
+        data[6] != 0
+    ):  # an impact-free motion may be moved as a whole: drop that multiplier, nearest to the twist
+        count = n - 1
+        trivial = 0
+        for j in range(1, n):
+            if np.hypot(re[j] - data[4], im[j]) < np.hypot(re[trivial] - data[4], im[trivial]):
+                trivial = j
+        for j in range(trivial, count):
+            re[j] = re[j + 1]
+            im[j] = im[j + 1]
+    for j in range(count):
+        row[2 * j] = re[j]
+        row[2 * j + 1] = im[j]
+    margins(data, u, p, work, row[2 * count :])
+
+
+def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
+    """Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not help.
+
+    Returns (residual, iterations, p); `u` is changed in place.
+    """
+    size = u.size
+    residual = linearise(data, u, p, work)
+    trial = work[15]
+    for iteration in range(limit):
+        sign = bordered(data, work, border, 0.0, step, tangent)
+        if sign == 0.0 or not np.isfinite(step[0]):
+            return np.inf, iteration, p
+        length = 0.0
+        for j in range(size):
+            length = max(length, abs(step[j]))
+        share = 1.0
+        best = np.inf
+        while share > 0.01:
+            for j in range(size):
+                trial[j] = u[j] + share * step[j]
+            best = linearise(data, trial, p + share * step[size], work)
+            if best < residual or length < 1e-7:
+                break
+            share *= 0.5
+        for j in range(size):
+            u[j] = trial[j]
+        p += share * step[size]
+        residual = best
+        if length * share < tolerance or (residual < 1e-14 and length < 1e-9):
+            return residual, iteration + 1, p
+    return np.inf, limit, p
+
+
+def _examine(data, u, p, work, row):
+    """Residual, and the row of `inspect`, of one solution."""
+    residual = linearise(data, u, p, work)
+    inspect(data, u, p, work, row)
+    return residual
+
+
+helpers: dict[str, subprocess.Popen[bytes]] = {}
+"""Processes that compile `inspect` for the model of that name meanwhile (`orbits.precompile`)."""
+
+PATIENCE = 60.0  # seconds to wait for one of them
+
+
+def specialise(function: Callable, name: str, inline: bool = False, **known: Any) -> Any:
+    """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`."""
+    qualified = f"{function.__name__.strip('_')}_{name}"
+    copy = FunctionType(function.__code__, {**function.__globals__, **known}, qualified)
+    copy.__qualname__ = qualified
+    copy.__module__ = function.__module__
+    return (inlined_kernel if inline else stored_kernel)(copy)
+
+
+def cached(function: Any) -> bool:
+    """Whether numba's cache on disk holds a compiled `function`; True where that cannot be told."""
+    try:
+        return bool(function._cache._cache_file._load_index())
+    except (AttributeError, OSError):
+        return True
+
+
+class Kernels:
+    """The compiled functions of one model.
+
+    Attributes
+    ----------
+    linearise, bordered, inspect : compiled functions
+        What a continuation loop calls: `linearise(data, u, p, work)`, `bordered(data, work, border, target, step,
+        tangent)`, `inspect(data, u, p, work, row)`.
+    newton, examine : compiled functions
+        `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, `examine(data, u, p, work, row)`.
+    compiled : bool
+        True.
+    digest : str
+        Of the model and of all sources behind these functions.
+    """
+
+    compiled = True
+
+    def __init__(self, name: str, digest: str, linearise: Any, bordered: Any, inspect: Any) -> None:
+        self.name, self.digest = name, digest
+        self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
+        self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
+        self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
+
+    @property
+    def inspect(self) -> Any:
+        """Multipliers and margins."""
+        self._wait()
+        return self._inspect
+
+    @property
+    def examine(self) -> Any:
+        """Residual, and the row of `inspect`, of one solution."""
+        self._wait()
+        return self._examine
+
+    def _wait(self) -> None:
+        """Wait while another process is compiling `inspect`; if that takes too long it is compiled here as well."""
+        helper = helpers.pop(self.name, None)
+        deadline = time.monotonic() + PATIENCE
+        while helper is not None and helper.poll() is None and not cached(self._inspect):
+            if time.monotonic() > deadline:
+                break
+            time.sleep(0.005)
+
+
+@cache
+def _assemble(kernels: Any, node: int, name: str) -> Kernels:
+    files = [
+        kernels.__file__,
+        *getattr(kernels, "SOURCES", ()),
+        compiling.__file__,
+        two_unknowns.__file__,
+        block_cyclic.__file__,
+        by_address.__file__,
+        vectorised.__file__,
+        path.__file__,
+        trigonometry.__file__,
+        factors.__file__,
+        periodic_schur.__file__,
+        product_of_any.__file__,
+        product_of_two.__file__,
+        periodic_qr.__file__,
+        small_eigenvalues.__file__,
+        __file__,
+    ]
+    digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
+    stamp = f"{name}_{digest}"
+    eliminate = block_cyclic.cyclic_kernels(node).bordered
+    inspect = specialise(
+        _inspect,
+        stamp,
+        inline=True,
+        unpin=kernels.unpin,
+        multipliers=periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers,
+        margins=kernels.margins,
+    )
+    return Kernels(name, stamp, kernels.linearise, eliminate, inspect)
+
+
+def assemble(model: Model) -> Kernels:
+    """The compiled functions for `model`, made once per process."""
+    return _assemble(model.kernels, model.node, model.name)

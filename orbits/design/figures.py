@@ -1,0 +1,246 @@
+"""Design figures of an impact absorber in physical units, for one machine or a whole map of them.
+
+Every field of `Design` may be an array; they broadcast, so that a map over friction and cavity length is
+one call:
+
+    Design(friction=mu[None, :], cavity=b[:, None]).operating_ratio
+
+Sources: Youssef, Karoui and Leine, sections "Effect of friction on design-relevant performance metrics",
+"Inactive absorber" and "Purely sliding absorber"; the lower end of pure sliding is corrected to where
+sticking ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from orbits.theory.multiple_scales import manifolds
+
+SCALE = (1e-9, 1e9)  # metres and hertz of a machine; squares and quotients stay far from overflow
+_AROUND = (1e-12, 1e12)  # of the maps drawn around it
+_LARGEST = 1e9
+
+
+class Figure(NamedTuple):
+    """One line of a design table."""
+
+    name: str
+    symbol: str
+    value: Any
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Design:
+    """A linear oscillator with an impact absorber, in SI units; the paper's machine by default.
+
+    Parameters
+    ----------
+    cavity : array_like
+        Half-width ``b`` of the cavity [m]: the absorber travels ``2 b`` from wall to wall.
+    natural_frequency : array_like
+        ``f_0`` of the oscillator alone [Hz].
+    restitution : array_like
+        ``r``, in (0, 1].
+    friction : array_like
+        Coulomb coefficient ``mu``.
+    mass_ratio : array_like
+        ``eps = m/M``. With it the bounds are those of the exact maps (``h~ = (1 + eps) h``); 0 gives the
+        paper's physical formulas, which leave it out.
+    damping : array_like
+        ``lambda = c/(m omega_0)``; the oscillator's damping ratio is ``eps lambda/2``.
+    acceleration : array_like
+        Gravity ``g`` [m/s^2].
+
+    Raises
+    ------
+    ValueError
+        If a value has no physical meaning; the message names the field.
+    """
+
+    cavity: Any = 0.02
+    natural_frequency: Any = 7.666
+    restitution: Any = 0.76
+    friction: Any = 0.5
+    mass_ratio: Any = 0.006
+    damping: Any = 0.9
+    acceleration: Any = 9.81
+
+    def __post_init__(self) -> None:
+        def scale(x: NDArray) -> NDArray:
+            return (x >= _AROUND[0]) & (x <= _AROUND[1])
+
+        def size(x: NDArray) -> NDArray:
+            return (x >= 0) & (x <= _LARGEST)
+
+        rules = {
+            "cavity": (scale, "must be positive, from 1e-12 to 1e12 [m]"),
+            "natural_frequency": (scale, "must be positive, from 1e-12 to 1e12 [Hz]"),
+            "restitution": (lambda x: (x > 0) & (x <= 1), "must lie in (0, 1]"),
+            "friction": (size, "must lie between 0 and 1e9"),
+            "mass_ratio": (size, "must lie between 0 and 1e9"),
+            "damping": (size, "must lie between 0 and 1e9"),
+            "acceleration": (size, "must lie between 0 and 1e9 [m/s^2]"),
+        }
+        for name, (holds, rule) in rules.items():
+            value = np.asarray(getattr(self, name), dtype=float)
+            fine = holds(value) & np.isfinite(value)
+            if not np.all(fine):
+                raise ValueError(f"{name} = {value[~fine].flat[0]} {rule}.")
+            object.__setattr__(self, name, float(value) if value.ndim == 0 else value)
+
+    @classmethod
+    def from_dimensionless(
+        cls,
+        *,
+        gravity: float,
+        cavity: float | None = None,
+        natural_frequency: float | None = None,
+        **fields: Any,
+    ) -> Design:
+        """From ``g~ = g/(b omega_0^2)`` and one of the two scales; the other one follows.
+
+        Raises
+        ------
+        ValueError
+            If both scales or none are given, ``gravity`` is not positive, or a scale leaves `SCALE`.
+        """
+        if (cavity is None) == (natural_frequency is None):
+            raise ValueError(
+                "give exactly one of cavity [m] and natural_frequency [Hz]; gravity fixes the other."
+            )
+        if not gravity > 0:
+            raise ValueError(f"gravity = {gravity} must be positive to fix a scale.")
+        name, unit = ("natural_frequency", "Hz") if cavity is None else ("cavity", "m")
+        value = float(natural_frequency if cavity is None else cavity)  # type: ignore[arg-type]
+        if not SCALE[0] <= value <= SCALE[1]:
+            raise ValueError(
+                f"{name} = {value!r} must be positive, from {SCALE[0]:g} to {SCALE[1]:g} [{unit}]."
+            )
+        g = float(fields.get("acceleration", cls.acceleration))
+        with np.errstate(over="ignore"):
+            if cavity is None:
+                cavity = other = g / (float(gravity) * (2.0 * np.pi * value) ** 2)
+            else:
+                natural_frequency = other = float(np.sqrt(np.float64(g) / gravity / cavity) / (2.0 * np.pi))
+        if not SCALE[0] <= other <= SCALE[1]:
+            follows = "cavity = {:.6g} m" if name == "natural_frequency" else "natural_frequency = {:.6g} Hz"
+            raise ValueError(
+                f"gravity = {gravity!r} with {name} = {value!r} {unit} means {follows.format(other)}, which lies outside "
+                f"{SCALE[0]:g} to {SCALE[1]:g}; change one of the two."
+            )
+        return cls(cavity=cavity, natural_frequency=natural_frequency, **fields)
+
+    def with_(self, **changes: Any) -> Design:
+        """A copy with some fields changed."""
+        return replace(self, **changes)
+
+    @property
+    def natural_rate(self) -> Any:
+        """``omega_0`` [rad/s]."""
+        return 2.0 * np.pi * self.natural_frequency
+
+    @property
+    def gravity(self) -> Any:
+        """``g~ = g/(b omega_0^2)``, dimensionless."""
+        return self.acceleration / (self.cavity * self.natural_rate**2)
+
+    @property
+    def loss(self) -> Any:
+        """``R = (1 - r)/(1 + r)``."""
+        return manifolds.impact_loss(self.restitution)
+
+    @property
+    def level(self) -> Any:
+        """``h~ = (1 + eps)(pi/2) mu g~``, dimensionless."""
+        return manifolds.friction_level(self.friction, self.gravity, self.mass_ratio)
+
+    @property
+    def activation_threshold(self) -> Any:
+        """``q1_min = b C_min`` [m]: displacement of the oscillator at which the absorber engages."""
+        return self.cavity * manifolds.activation(self.loss, self.level).amplitude
+
+    @property
+    def upper_bound(self) -> Any:
+        """``q1_max = b C_max`` [m]: displacement above which two symmetric impacts per period are
+        unstable."""
+        return self.cavity * manifolds.symmetry_limit(self.loss, self.level).amplitude
+
+    @property
+    def operating_ratio(self) -> Any:
+        """``xi = q1_max/q1_min``: width of the working range; inf for elastic walls without friction, whose threshold is 0."""
+        with np.errstate(divide="ignore"):
+            return self.upper_bound / self.activation_threshold
+
+    def sticking_limit(self, frequency: ArrayLike | None = None) -> Any:
+        """``q1_cr = mu g/omega^2`` [m] at an excitation frequency [Hz] (default ``f_0``): below it the
+        absorber sticks.
+
+        Exact for the stuck machine: oscillator and absorber then move as one, and friction has to hold
+        ``m omega^2 q_1``.
+        """
+        f = self.natural_frequency if frequency is None else np.asarray(frequency, dtype=float)
+        return self.friction * self.acceleration / (2.0 * np.pi * f) ** 2
+
+    @property
+    def sliding_bounds(self) -> tuple[Any, Any]:
+        """Displacements [m] of the oscillator between which the absorber slides, without sticking or impacts.
+
+        ``b/(1 + eps)`` times the bounds of ``C``; the paper's lower value ``b h/(1 + eps)`` is too low,
+        there the absorber still sticks at every turn.
+        """
+        low, high = manifolds.sliding_bounds(self.level)
+        scale = self.cavity / (1.0 + np.asarray(self.mass_ratio))
+        return scale * low, scale * high
+
+    @property
+    def absorber_damping(self) -> Any:
+        """``eps (2/pi) R/(pi^2/4 + R^2)``: damping ratio that the impacts lend the oscillator at large
+        amplitude."""
+        return self.mass_ratio * (2.0 / np.pi) * self.loss / (0.25 * np.pi**2 + self.loss**2)
+
+    def linear_response(self, frequency: ArrayLike, excitation: ArrayLike, *, stuck: bool = False) -> Any:
+        """Displacement amplitude [m] of the oscillator moved by a base motion ``E sin(omega t)``.
+
+        Parameters
+        ----------
+        frequency : array_like
+            Excitation frequency [Hz].
+        excitation : array_like
+            ``E`` [m].
+        stuck : bool
+            With the absorber stuck to the cavity (mass ``M + m``) instead of without it.
+        """
+        ratio = np.asarray(frequency, dtype=float) / self.natural_frequency
+        path = 1.0 + 1j * np.asarray(self.mass_ratio) * np.asarray(self.damping) * ratio
+        mass = 1.0 + np.asarray(self.mass_ratio) * stuck
+        return np.asarray(excitation, dtype=float) * np.abs(path / (path - mass * ratio**2))
+
+    def excitation(self, forcing: ArrayLike) -> Any:
+        """Base amplitude ``E = G b eps`` [m] of a dimensionless forcing ``G``."""
+        return np.asarray(forcing, dtype=float) * self.cavity * self.mass_ratio
+
+    def is_stuck(self, frequency: ArrayLike, excitation: ArrayLike) -> NDArray[np.bool_]:
+        """Whether the linear response with the absorber stuck is one that friction can hold."""
+        return self.linear_response(frequency, excitation, stuck=True) <= self.sticking_limit(frequency)
+
+    def figures(self) -> list[Figure]:
+        """All design figures with symbol, unit and meaning."""
+        low, high = self.sliding_bounds
+        return [
+            Figure("activation threshold", "q1_min", self.activation_threshold, "m", "the absorber engages"),
+            Figure("upper bound", "q1_max", self.upper_bound, "m", "end of symmetric impacts"),
+            Figure("operating ratio", "xi", self.operating_ratio, "1", "q1_max/q1_min"),
+            Figure("sticking limit, f_0", "q1_cr", self.sticking_limit(), "m", "below: stuck"),
+            Figure("pure sliding from", "q1_sl_min", low, "m", "below: stick at each turn"),
+            Figure("pure sliding to", "q1_sl_max", high, "m", "above: impacts"),
+            Figure("damping by impacts", "D_NES", self.absorber_damping, "1", "ratio, large amplitude"),
+            Figure("oscillator's damping", "D", 0.5 * self.mass_ratio * self.damping, "1", "ratio, no absorber"),
+            Figure("friction level", "h", self.level, "1", "(1+eps)(pi/2) mu g~"),
+            Figure("impact loss", "R", self.loss, "1", "(1 - r)/(1 + r)"),
+        ]  # fmt: skip

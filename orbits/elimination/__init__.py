@@ -1,0 +1,1 @@
+"""Block-cyclic bordered systems, solved in O(l)."""

@@ -1,0 +1,299 @@
+"""Block-cyclic systems: maps between consecutive events, closed into a cycle, solved in O(l) by orthogonal elimination.
+
+A periodic orbit with nodes x_0 .. x_{L-1} solves g_i(x_i, x_{i+1}, p) = 0 with x_L the closure of x_0. Its Jacobian has
+two blocks per row, A_i = dg_i/dx_i and D_i = dg_i/dx_{i+1}, and one column Q_i = dg_i/dp. `bordered` eliminates the
+inner nodes with Householder reflections (Wright's structured orthogonal factorisation, SIAM J. Sci. Stat. Comput. 13
+(1992) 742), so that no product of matrices is formed and long, strongly unstable cycles lose nothing.
+
+`cyclic_kernels` makes the compiled functions for a node size; they allocate nothing.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+from numba import njit
+
+from orbits.compiling.decorators import OPTIONS, kernel
+from orbits.elimination import two_unknowns
+from orbits.elimination.by_address import call, links
+from orbits.elimination.vectorised import SHORTEST, lanes_size, short_cycle
+from orbits.multipliers.periodic_schur import scratch_size
+
+TINY = 1e-300
+
+
+def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]:
+    """Arrays for one system of `length` nodes of `node` unknowns: allocated once, used by every kernel.
+
+    Returns
+    -------
+    tuple
+        ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im,
+        order, trial)`` with shapes ``(L, n)``,
+        ``(L, n, n)`` twice, ``(L, n)``, ``(2 P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
+        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.multipliers.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
+        ``(L n,)``; then those of `orbits.elimination.vectorised`, and ``(L + 1,)`` twice.
+    """
+    n = node
+    long = length if n == 2 else 0
+    F, A, D, Q = (
+        np.zeros((length, n)),
+        np.zeros((length, n, n)),
+        np.zeros((length, n, n)),
+        np.zeros((length, n)),
+    )
+    solution, lanes, short = np.zeros((2, length * n + 1)), np.zeros(lanes_size(long)), short_cycle(long)
+    listed = (F, A, D, Q, lanes, *short, solution)
+    return (
+        F,
+        A,
+        D,
+        Q,
+        np.zeros(2 * parameters),
+        np.zeros((length + 1, 8)),
+        np.zeros((length, n, 3 * n + 2)),
+        np.zeros((2 * n, 3 * n + 2)),
+        np.zeros((n, n + 2)),
+        solution,
+        np.zeros(4 * n + 2),
+        np.zeros(scratch_size(length, n)),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n + 1, np.int64),
+        np.zeros(length * n),
+        lanes,
+        *short,
+        np.zeros(length + 1),
+        np.zeros(length + 1),
+        links(listed if n == 2 else (np.zeros(0),)),
+    )
+
+
+@cache
+def cyclic_kernels(node: int) -> SimpleNamespace:
+    """Compiled elimination for cycles whose nodes have `node` unknowns.
+
+    Returns
+    -------
+    SimpleNamespace
+        ``bordered(data, work, border, target, step, tangent)``.
+    """
+    n = node
+    width = 3 * n + 2  # columns x_i | x_0 | x_{i+1} | p | right-hand side
+    at_first, at_next, at_p, at_rhs = n, 2 * n, 3 * n, 3 * n + 1
+
+    @njit(forceinline=True, fastmath={"contract", "nsz", "arcp"}, **OPTIONS)
+    def triangularise(panel):
+        """Householder reflections that clear the first n columns of the 2n rows; returns the sign of the factor."""
+        sign = 1.0
+        for j in range(n):
+            square = 0.0
+            for i in range(j + 1, 2 * n):
+                square += panel[i, j] * panel[i, j]
+            head = panel[j, j]
+            if square > 0.0:
+                norm = np.sqrt(square + head * head)
+                if head > 0.0:
+                    norm = -norm
+                v0 = head - norm
+                factor = -1.0 / (norm * v0)
+                for c in range(j + 1, width):
+                    dot = v0 * panel[j, c]
+                    for i in range(j + 1, 2 * n):
+                        dot += panel[i, j] * panel[i, c]
+                    dot *= -factor
+                    panel[j, c] += dot * v0
+                    for i in range(j + 1, 2 * n):
+                        panel[i, c] += dot * panel[i, j]
+                panel[j, j] = norm
+                sign = -sign
+            if panel[j, j] < 0.0:
+                sign = -sign
+        return sign
+
+    @kernel
+    def close(small, solution, order):
+        """Solve n equations in x_0 and p by complete pivoting: a particular and a null solution, and a sign."""
+        sign = 1.0
+        for j in range(n + 1):
+            order[j] = j
+        for j in range(n):
+            best, row, column = -1.0, j, j
+            for i in range(j, n):
+                for c in range(j, n + 1):
+                    if abs(small[i, c]) > best:
+                        best, row, column = abs(small[i, c]), i, c
+            if row != j:
+                sign = -sign
+                for c in range(n + 2):
+                    small[j, c], small[row, c] = small[row, c], small[j, c]
+            if column != j:
+                sign = -sign
+                order[j], order[column] = order[column], order[j]
+                for i in range(n):
+                    small[i, j], small[i, column] = small[i, column], small[i, j]
+            if abs(small[j, j]) < TINY:
+                small[j, j] = TINY
+            if small[j, j] < 0.0:
+                sign = -sign
+            for i in range(j + 1, n):
+                ratio = small[i, j] / small[j, j]
+                for c in range(j + 1, n + 2):
+                    small[i, c] -= ratio * small[j, c]
+        size = solution.shape[1] - 1
+        free = order[n]
+        place = free if free < n else size
+        solution[0, place] = 0.0
+        solution[1, place] = 1.0
+        for j in range(n - 1, -1, -1):
+            particular, null = small[j, n + 1], -small[j, n]
+            for c in range(j + 1, n):
+                where = order[c] if order[c] < n else size
+                particular -= small[j, c] * solution[0, where]
+                null -= small[j, c] * solution[1, where]
+            where = order[j] if order[j] < n else size
+            solution[0, where] = particular / small[j, j]
+            solution[1, where] = null / small[j, j]
+        return sign
+
+    @kernel
+    def forward(F, A, D, Q, stored, panel):
+        """Eliminate the inner nodes one after the other; panel[:n] keeps V x_L + U x_0 + w p = r; returns a sign."""
+        length = F.shape[0]
+        sign = 1.0
+        # the condensed equation  panel[:n]:  V x_i + U x_0 + w p = r
+        for i in range(n):
+            for c in range(n):
+                panel[i, c] = D[0, i, c]
+                panel[i, at_first + c] = A[0, i, c]
+            panel[i, at_p] = Q[0, i]
+            panel[i, at_rhs] = -F[0, i]
+        for block in range(1, length):
+            for i in range(n):
+                for c in range(n):
+                    panel[n + i, c] = A[block, i, c]
+                    panel[n + i, at_first + c] = 0.0
+                    panel[n + i, at_next + c] = D[block, i, c]
+                    panel[i, at_next + c] = 0.0
+                panel[n + i, at_p] = Q[block, i]
+                panel[n + i, at_rhs] = -F[block, i]
+            sign *= triangularise(panel)
+            for i in range(n):
+                for c in range(width):
+                    stored[block, i, c] = panel[i, c]
+                for c in range(n):
+                    panel[i, c] = panel[n + i, at_next + c]
+                    panel[i, at_first + c] = panel[n + i, at_first + c]
+                panel[i, at_p] = panel[n + i, at_p]
+                panel[i, at_rhs] = panel[n + i, at_rhs]
+        return sign
+
+    @kernel
+    def eliminate(F, A, D, Q, twist, stored, panel, small, order, solution):
+        """Particular and null solution of J x + F_p p = -F, one node after the other; returns a sign."""
+        length = F.shape[0]
+        size = length * n
+        sign = forward(F, A, D, Q, stored, panel)
+        for i in range(n):
+            for c in range(n):
+                small[i, c] = panel[i, at_first + c] + (panel[i, c] if c == 0 else twist * panel[i, c])
+            small[i, n] = panel[i, at_p]
+            small[i, n + 1] = panel[i, at_rhs]
+        sign *= close(small, solution, order)
+        for block in range(length - 1, 0, -1):
+            for i in range(n - 1, -1, -1):
+                pivot = stored[block, i, i]
+                if abs(pivot) < TINY:
+                    pivot = TINY
+                particular = stored[block, i, at_rhs] - stored[block, i, at_p] * solution[0, size]
+                null = -stored[block, i, at_p] * solution[1, size]
+                for c in range(n):
+                    coefficient = stored[block, i, at_first + c]
+                    particular -= coefficient * solution[0, c]
+                    null -= coefficient * solution[1, c]
+                    coefficient = stored[block, i, at_next + c]
+                    if block + 1 < length:
+                        particular -= coefficient * solution[0, (block + 1) * n + c]
+                        null -= coefficient * solution[1, (block + 1) * n + c]
+                    else:
+                        if c > 0:
+                            coefficient *= twist
+                        particular -= coefficient * solution[0, c]
+                        null -= coefficient * solution[1, c]
+                for c in range(i + 1, n):
+                    particular -= stored[block, i, c] * solution[0, block * n + c]
+                    null -= stored[block, i, c] * solution[1, block * n + c]
+                solution[0, block * n + i] = particular / pivot
+                solution[1, block * n + i] = null / pivot
+        return sign
+
+    @kernel
+    def eliminate_two(F, A, D, Q, twist, stored, small, order, solution):
+        """The same for two unknowns per node, two halves side by side."""
+        state, sign = two_unknowns.forward(F, A, D, Q, stored)
+        v00, v01, u00, u01, w0, r0, v10, v11, u10, u11, w1, r1 = state
+        small[0, 0], small[0, 1], small[0, 2], small[0, 3] = u00 + v00, u01 + twist * v01, w0, r0
+        small[1, 0], small[1, 1], small[1, 2], small[1, 3] = u10 + v10, u11 + twist * v11, w1, r1
+        sign *= close(small, solution, order)
+        two_unknowns.backward(F.shape[0], stored, twist, solution)
+        return sign
+
+    @kernel
+    def eliminate_lanes(F, A, D, Q, twist, stored, small, order, solution, short, found, listed):
+        """The same with sixteen segments side by side, where the cycle is long enough."""
+        length = F.shape[0]
+        if length < SHORTEST:
+            return eliminate_two(F, A, D, Q, twist, stored, small, order, solution)
+        address = listed.ctypes.data
+        sign = call(listed[0], length, twist, address)
+        F_, A_, D_, Q_ = short
+        sign *= eliminate_two(F_, A_, D_, Q_, twist, stored, small, order, found)
+        call(listed[1], length, twist, address)
+        return sign
+
+    @kernel
+    def bordered(data, work, border, target, step, tangent):
+        """Solve [[J, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`.
+
+        Parameters
+        ----------
+        data, work : tuple
+            Of the problem; the last linearisation is read from `work`.
+        border, step, tangent : float array (L n + 1,)
+        target : float
+
+        Returns
+        -------
+        float
+            Sign of the determinant (up to a constant of the word), 0 if the matrix is singular.
+        """
+        F, A, D, Q = work[0], work[1], work[2], work[3]
+        stored, panel, small, solution, order = work[6], work[7], work[8], work[9], work[14]
+        size = solution.shape[1] - 1
+        if n == 2:
+            short = (work[17], work[18], work[19], work[20])
+            sign = eliminate_lanes(
+                F, A, D, Q, data[4], stored, small, order, solution, short, work[21], work[24]
+            )
+        else:
+            sign = eliminate(F, A, D, Q, data[4], stored, panel, small, order, solution)
+        along, across = 0.0, 0.0
+        for i in range(size + 1):
+            across += border[i] * solution[0, i]
+            along += border[i] * solution[1, i]
+        if along == 0.0:
+            along = TINY
+            sign = 0.0
+        elif along < 0.0:
+            sign = -sign
+        by = 1.0 / along
+        share = (target - across) * by
+        for i in range(size + 1):
+            step[i] = solution[0, i] + share * solution[1, i]
+            tangent[i] = solution[1, i] * by
+        return sign
+
+    return SimpleNamespace(bordered=bordered)

@@ -1,0 +1,1 @@
+"""The reduced absorber: a cavity that is shaken harmonically."""

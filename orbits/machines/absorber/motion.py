@@ -1,0 +1,79 @@
+"""The reduced absorber between events: samples, works and energies in closed form (compiled).
+
+Notation and source of the formulas: :mod:`orbits.machines.absorber.stepper`; signatures:
+:mod:`orbits.machines.stepping`, items 4 and 5.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from orbits.compiling.digits import remainders
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def sample(states, params, ahead, out):
+    """w, w', v, v' at given phases after given states; contract, item 4."""
+    C = params[0]
+    omega = params[5]
+    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
+    for i in range(states.shape[0]):
+        psi = states[i, 0]
+        x = ahead[i]
+        s = states[i, 3]
+        if s == 0.0:
+            out[i, 0] = states[i, 1]
+            out[i, 1] = 0.0
+        else:
+            p = s * states[i, 2] / omega
+            m0 = -s * math.sin(psi)
+            k0 = -s * math.cos(psi)
+            _sine, versine, third, fourth = remainders(x)
+            q0 = C * m0 - A
+            out[i, 0] = states[i, 1] + s * (p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth))
+            out[i, 1] = s * omega * (p + q0 * x + C * (k0 * versine - m0 * third))
+        out[i, 2] = C * math.sin(psi + x)
+        out[i, 3] = C * omega * math.cos(psi + x)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def works(states, params, ahead, out):
+    """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5.
+
+    In the frame of the cavity, per mass of the absorber: the integral of -v'' w', and a times the way slid.
+    """
+    C = params[0]
+    omega = params[5]
+    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
+    for i in range(states.shape[0]):
+        out[i, 0] = 0.0
+        out[i, 1] = 0.0
+        out[i, 2] = 0.0
+        s = states[i, 3]
+        if s == 0.0:
+            continue
+        psi = states[i, 0]
+        x = ahead[i]
+        p = s * states[i, 2] / omega
+        m0 = -s * math.sin(psi)
+        k0 = -s * math.cos(psi)
+        m1 = -s * math.sin(psi + x)
+        k1 = -s * math.cos(psi + x)
+        _sine, _versine, third, fourth = remainders(x)
+        way = p * x + 0.5 * (C * m0 - A) * x * x + C * (k0 * third - m0 * fourth)
+        out[i, 0] = (
+            C
+            * omega
+            * omega
+            * ((p + C * k0) * (k0 - k1) - 0.5 * C * (m1 * m1 - m0 * m0) - A * (m1 - m0 - x * k1))
+        )
+        out[i, 2] = A * omega * omega * abs(way)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energies(states, params, out):
+    """Kinetic energy of the relative motion per mass of the absorber, w'^2/2; contract, item 5."""
+    for i in range(states.shape[0]):
+        out[i] = 0.5 * states[i, 2] * states[i, 2]

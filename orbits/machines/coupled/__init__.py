@@ -1,0 +1,1 @@
+"""The absorber on its oscillator, without approximation."""

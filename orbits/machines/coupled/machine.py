@@ -1,0 +1,271 @@
+"""The coupled machine: a mass with dry friction in a cavity that rides on a driven linear oscillator."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from orbits.machines.base import NOT_NEGATIVE, POSITIVE, RESTITUTION, Model, ParameterError
+from orbits.machines.coupled import closed_forms
+
+if TYPE_CHECKING:
+    from orbits.machines.coupled.closed_forms import StuckResponse
+    from orbits.orbit import Orbit
+    from orbits.theory.multiple_scales import Equilibrium
+    from orbits.words import Word
+
+EXCITATIONS: dict[str, float] = {"exact": 1.0, "truncated": 0.0}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coupled(Model):
+    """A vibro-impact absorber on a linear oscillator with a shaken base, without approximation.
+
+        q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps mu g S,    q2'' = mu g S,    e = eps G sin(Omega tau),
+
+    with S the sign of w' = q1' - q2' while sliding, |S| <= 1 while stuck, |w| <= 1, and w'+ = -r w'- at the walls with
+    v = q1 + eps q2 and v' continuous. Lengths in units of the cavity's half-width b, time tau = omega_0 t.
+
+    Parameters
+    ----------
+    restitution : float
+        Newton's coefficient r of the walls, 0 < r <= 1.
+    friction : float
+        Coulomb coefficient mu >= 0.
+    gravity : float
+        g / (b omega_0^2) >= 0.
+    mass_ratio : float
+        eps = m/M > 0.
+    damping : float
+        lambda = c/(m omega_0) >= 0; the oscillator must not be overdamped, eps lambda < 2.
+    forcing : float, optional
+        G = E/(b eps) >= 0, amplitude of the base over eps b. May be left to each orbit.
+    frequency : float
+        Omega > 0, excitation frequency over omega_0.
+    excitation : {"exact", "truncated"} or float
+        Whether the base also acts through the damper (eps lambda e', exact) or that term is dropped, as in the literature; a
+        number from 0 to 1 leaves that part of it.
+
+    Raises
+    ------
+    ParameterError
+        For values that make no sense; the sentence names field, value and way out.
+
+    Notes
+    -----
+    Source: Youssef, Karoui, Leine, the model section; the terms that are dropped there are kept. For data in SI units
+    see `orbits.design.scales`.
+    """
+
+    restitution: float
+    friction: float
+    gravity: float
+    mass_ratio: float
+    damping: float = 0.9
+    forcing: float | None = None
+    frequency: float = 1.0
+    excitation: str | float = "exact"
+
+    name: ClassVar[str] = "coupled"
+    node: ClassVar[int] = 4
+    default_measure: ClassVar[str] = "max_abs_q1"
+    default_parameter: ClassVar[str] = "frequency"
+    parameter_names: ClassVar[tuple[str, ...]] = (
+        "forcing",
+        "frequency",
+        "damping",
+        "mass_ratio",
+        "restitution",
+        "friction",
+        "gravity",
+        "excitation",
+    )
+    limits: ClassVar[Mapping] = {
+        "forcing": NOT_NEGATIVE,
+        "frequency": POSITIVE,
+        "damping": NOT_NEGATIVE,
+        "mass_ratio": POSITIVE,
+        "restitution": RESTITUTION,
+        "friction": NOT_NEGATIVE,
+        "gravity": NOT_NEGATIVE,
+        "excitation": ("from 0 (truncated) to 1 (exact)", lambda value: 0.0 <= value <= 1.0),
+    }
+    own_measures: ClassVar[tuple[str, ...]] = (
+        "max_abs_q1",
+        "amplitude",
+        "v_phase",
+        "input_work",
+        "damping_loss",
+    )
+
+    def __post_init__(self) -> None:
+        for name in self.parameter_names:
+            value = getattr(self, name)
+            if name == "excitation":
+                number = self.coded(name, value)
+                words = [word for word, code in EXCITATIONS.items() if code == number]
+                object.__setattr__(self, name, words[0] if words else number)
+            elif name != "forcing" or value is not None:
+                object.__setattr__(self, name, self.check(name, value))
+        _underdamped(self.damping, self.mass_ratio)
+
+    @property
+    def kernels(self) -> ModuleType:
+        from orbits.machines.coupled import maps
+
+        return maps
+
+    def coded(self, name: str, value: Any) -> float:
+        """The number that stands for a parameter's value; the words of `excitation` have one too."""
+        if name == "excitation" and isinstance(value, str):
+            if value not in EXCITATIONS:
+                raise ParameterError(
+                    f'excitation = {value!r} is unknown; give "exact", "truncated" or a number from 0 to 1'
+                )
+            return EXCITATIONS[value]
+        return self.check(name, value)
+
+    def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
+        """The parameter vector, shape (8,); see `Model.vector`.
+
+        Raises
+        ------
+        ParameterError
+            Also for an overdamped oscillator and for a resonance without damping.
+        """
+        params = super().vector(values)
+        forcing, omega, damping, eps = (float(value) for value in params[:4])
+        _underdamped(damping, eps)
+        if damping == 0.0 and forcing > 0.0:
+            for mass, state in ((1.0, "sliding"), (1.0 + eps, "stuck")):
+                if mass * omega * omega == 1.0:
+                    raise ParameterError(
+                        f"frequency = {omega:.17g} is the resonance of the oscillator (absorber {state}) and damping = 0: "
+                        "the response has no bound; give a damping above 0 or another frequency"
+                    )
+        return params
+
+    # ------------------------------------------------------------------ orbits
+    def orbit(
+        self,
+        word: str,
+        periods: int = 1,
+        guess: Sequence[Sequence[float]] | np.ndarray | None = None,
+        **parameters: float,
+    ) -> Orbit:
+        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
+        from orbits.starts.find import find
+
+        return find(self, word, periods, guess, parameters)
+
+    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Orbit:
+        """The symmetric orbit `LR` with two impacts per period, in closed form.
+
+        Parameters
+        ----------
+        fast : bool
+            Of the two orbits at one frequency, the one with the faster absorber.
+        **parameters
+            Parameters that replace the machine's own.
+
+        Raises
+        ------
+        ParameterError
+            If there is none with these parameters.
+        """
+        params = self.vector(parameters)
+        found = closed_forms.symmetric_nodes(params)
+        if not found:
+            raise ParameterError(
+                f"frequency = {params[1]:g} and forcing = {params[0]:g} have no symmetric orbit with two impacts per "
+                "period; go nearer to resonance or increase forcing"
+            )
+        return self._closed("LR", found[0 if fast else -1], params)
+
+    def sliding_orbit(self, **parameters: float) -> Orbit:
+        """The symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
+
+        Raises
+        ------
+        ParameterError
+            If the shaking is too weak to slide without sticking.
+        """
+        params = self.vector(parameters)
+        nodes = closed_forms.sliding_nodes(params)
+        if nodes is None:
+            raise ParameterError(
+                f"frequency = {params[1]:g} and forcing = {params[0]:g} shake too weakly for pure sliding; go nearer to "
+                "resonance or increase forcing"
+            )
+        return self._closed("tt", nodes, params)
+
+    def orbit_near(self, equilibrium: Equilibrium, **parameters: float) -> Orbit:
+        """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
+
+        Parameters
+        ----------
+        equilibrium : orbits.theory.multiple_scales.Equilibrium
+            Its detuning sets the frequency, 1 + mass_ratio * detuning.
+        **parameters
+            Parameters that replace the machine's own.
+        """
+        eps = float(parameters.get("mass_ratio", self.mass_ratio))
+        values = {"frequency": 1.0 + eps * equilibrium.detuning} | parameters
+        params = self.vector(values)
+        word = "LR" if equilibrium.manifold == "impacting" else "tt"
+        guess = self._closed(word, closed_forms.nodes_from_equilibrium(params, equilibrium), params)
+        return self.orbit(word, 1, guess.nodes, **values)
+
+    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Orbit:
+        from orbits.orbit import Orbit
+        from orbits.words import Word
+
+        reading = Word.parse(word, frictionless=self.friction_acceleration(params) == 0.0)
+        if reading.modes[0] != (-1 if word == "LR" else 1):
+            nodes = np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
+        return Orbit(self, reading, 1, nodes, params)
+
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        """Nodes to start from in closed form, where there are any: `LR`, `RL`, `tt`."""
+        if periods != 1:
+            return
+        events = "".join(word.events)
+        if events in ("LR", "RL"):
+            for nodes in closed_forms.symmetric_nodes(params):
+                yield (
+                    nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
+                )
+        elif events == "tt":
+            nodes = closed_forms.sliding_nodes(params, int(word.modes[0]))
+            if nodes is not None:
+                yield nodes
+
+    def stuck_response(self, **parameters: float) -> StuckResponse:
+        """The linear response with the absorber stuck, and whether friction holds it."""
+        return closed_forms.stuck_response(self.vector(parameters))
+
+    def stuck_frequencies(self, **parameters: float) -> np.ndarray:
+        """Frequencies at which the stuck response begins or ceases to slip, ascending."""
+        return closed_forms.stuck_frequencies(self.vector(parameters))
+
+    # ------------------------------------------------------------------ measures
+    def measure_own(
+        self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
+    ) -> dict[str, np.ndarray]:
+        """The machine's own measures; see `orbits.machines.coupled.measures`."""
+        from orbits.machines.coupled.measures import own_measures
+
+        return own_measures(wanted, self, word, periods, nodes, params)
+
+
+def _underdamped(damping: float, mass_ratio: float) -> None:
+    if damping * mass_ratio >= 2.0 or not math.isfinite(damping * mass_ratio):
+        raise ParameterError(
+            f"damping = {damping:g} with mass_ratio = {mass_ratio:g} overdamps the oscillator: keep damping * mass_ratio "
+            "below 2"
+        )

@@ -1,0 +1,79 @@
+"""What every compiled stepper offers: state, event rows, status, and the functions of a kernel module.
+
+1. *State*, float64, one vector for all models::
+
+       index  0    1  2   3     4      5    | 6  7
+              Psi  w  w'  mode  turns  low  | v  v'
+
+   ``Psi`` is the forcing phase reduced to [0, 2 pi) and ``turns`` the number of whole forcing periods, so
+   that no digit of the phase is lost in a long run. ``mode`` is -1, 0 or +1. ``w + low`` is the position:
+   ``low`` keeps the digits of ``w`` below roundoff, so that a turn 1e-18 away from a wall stays there.
+   The reduced model uses the first six entries, the coupled one all eight.
+   ``mode == 0`` with ``abs(w) == 1`` exactly is *persistent contact*: the absorber rests on the wall and can
+   only leave it inwards.
+
+2. ``launch(state, params) -> None`` reduces the phase, sets the mode from ``w'`` (and where ``w' = 0``
+   from the accelerations) and clears nothing else.
+
+3. ``advance(state, params, until, codes, modes, rows) -> (count, status)``
+
+   moves ``state`` on, in place, until the arrays are full or ``turns + Psi/(2 pi)`` reaches ``until``, and
+   writes one row per event::
+
+       codes[i]  int8   L, R, T, S, U of :mod:`orbits.words.alphabet`, or HOLD = 5
+       modes[i]  int8   mode after the event
+       rows[i]   f8     0    1      2  3             4             | 5  6
+                        Psi  turns  w  w' before it  w' after it   | v  v'
+
+   HOLD ends a complete chatter: infinitely many impacts have piled up, the absorber now rests on the wall
+   at ``w`` until the wall stops pushing; the release is a U event. Without friction (a = 0) turns are no
+   events and no rows. Nothing is allocated, nothing is raised; the number of operations is bounded by the
+   number of rows and of forcing periods.
+
+4. ``sample(states[n, S], params, ahead[n], out[n, 4])`` writes ``w, w', v, v'`` at the phase ``ahead[i]``
+   (radians, >= 0) after ``states[i]``, inside the mode of ``states[i]`` (closed form, no events).
+
+5. ``works(states[n, S], params, ahead[n], out[n, 3])`` writes the work done inside that piece of a segment by
+   the excitation (positive = into the system), the damper and the friction (positive = dissipated);
+   ``energies(states[n, S], params, out[n])`` writes the energy that these works change. What an impact
+   takes is the difference of the energies before and after it.
+
+6. Constants ``STATE`` (length of the state) and ``ROW`` (length of an event row).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+HOLD = 5
+"""Event code of the simulator alone: complete chatter has ended in persistent contact."""
+
+EVENTS_FULL, TIME_REACHED, REST, FAILED = 0, 1, 2, 3
+STATUS: dict[int, str] = {
+    EVENTS_FULL: "the requested number of events was reached",
+    TIME_REACHED: "the requested time was reached",
+    REST: "at rest: no event will ever happen again",
+    FAILED: "the state is no longer finite",
+}
+
+PSI, W, RATE, MODE, TURNS, LOW, V, V_RATE = range(8)
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The compiled functions of one model; see the module's docstring."""
+
+    name: str
+    state: int
+    row: int
+    launch: Callable
+    advance: Callable
+    sample: Callable
+    works: Callable
+    energies: Callable
+
+    def __reduce__(self):
+        from orbits.simulation.driver import machine
+
+        return machine, (self.name,)

@@ -1,0 +1,124 @@
+"""Compiling beside other work: what a first run needs later is compiled by a second process meanwhile.
+
+numba compiles one function at a time in a process. On a machine with a second core another process compiles the
+kernel `inspect`, the simulator and the elimination of long words, while this one compiles Newton's method and the
+continuation loop; both find each other's results in numba's cache on disk.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+from numba import config, typeof
+
+from orbits.cycles import kernels
+from orbits.elimination import by_address
+from orbits.machines.catalogue import build
+from orbits.multipliers.factors import scratch_size
+from orbits.multipliers.periodic_qr import periodic_multipliers
+
+SMALL: dict[str, dict[str, float]] = {
+    "absorber": {"restitution": 0.5, "friction": 0.1, "gravity": 0.1, "mass_ratio": 0.01},
+    "coupled": {
+        "restitution": 0.5,
+        "friction": 0.1,
+        "gravity": 0.1,
+        "mass_ratio": 0.01,
+        "forcing": 1.0,
+        "frequency": 0.9,
+    },
+}
+
+
+def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
+    """Start compiling for the model called `name` in a process of its own, if anything is missing from the cache.
+
+    Parameters
+    ----------
+    name : str
+    *more : str
+        "module:function" of what else to call there.
+
+    Returns
+    -------
+    subprocess.Popen or None
+        The process; this one waits for it only where it would otherwise compile `inspect` itself. None if there is nothing
+        to compile or no second core.
+    """
+    running = kernels.helpers.get(name)
+    if running is not None and running.poll() is None:
+        return running
+    if _cores() < 2 or not _missing(name):
+        return None
+    digest = kernels.assemble(build({"name": name} | SMALL[name])).digest
+    program = f"from orbits.precompile import compile_as; compile_as({digest!r}, {name!r}, *{more!r})"
+    # the very modules and the very cache of this process, wherever it was started
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    place = getattr(config, "CACHE_DIR", "")
+    if place:
+        environment["NUMBA_CACHE_DIR"] = str(place)
+    quiet = subprocess.DEVNULL
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-c", program],
+            stdin=quiet,
+            stdout=quiet,
+            stderr=quiet,
+            env=environment,
+            start_new_session=True,
+        )
+    except OSError:
+        return None
+    kernels.helpers[name] = process
+    return process
+
+
+def compile_as(digest: str, name: str, *more: str) -> None:
+    """`compile_now`, if the sources are those with this digest: others would be compiled for nobody."""
+    if kernels.assemble(build({"name": name} | SMALL[name])).digest == digest:
+        compile_now(name, *more)
+
+
+def compile_now(name: str, *more: str) -> None:
+    """Compile for the model called `name`, in the order in which a run asks for it."""
+    from orbits.problem import OrbitProblem
+    from orbits.simulation.driver import simulate
+    from orbits.words import Word
+
+    model = build({"name": name} | SMALL[name])
+    problem = OrbitProblem(
+        model, Word.parse("LR"), 1, model.parameter_names[0], np.zeros(len(model.parameter_names))
+    )
+    unknowns, row = np.zeros(problem.dimension), np.zeros(1)
+    arguments = (problem.data, unknowns, 0.0, problem.workspace(), row)
+    problem.kernels.inspect.compile(tuple(map(typeof, arguments)))
+    for place in more:
+        module, _, function = place.partition(":")
+        getattr(importlib.import_module(module), function)()
+    values: dict[str, Any] = {"amplitude": 0.1} if name == "absorber" else {}
+    simulate(model, periods=0.5, **values).sample()
+    if model.node == 2:
+        by_address.functions()
+    else:
+        n = model.node
+        factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
+        periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
+
+
+def _cores() -> int:
+    """Number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _missing(name: str) -> bool:
+    """Whether numba's cache lacks the kernel `inspect` or the stepper; False where that cannot be told."""
+    module = importlib.import_module(f"orbits.machines.{name}.stepper")
+    compiled = kernels.assemble(build({"name": name} | SMALL[name]))
+    return not (kernels.cached(compiled.inspect) and kernels.cached(module.advance))

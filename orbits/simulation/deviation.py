@@ -1,0 +1,89 @@
+"""How far the simulated motion leaves a claimed orbit: by events where they are distinct, by positions at a border.
+
+At a border two events coincide or one has no strength, so the event list of the simulation is a matter of rounding there;
+the motion itself is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orbits.cycles.sampling import flight, lengths
+from orbits.simulation.driver import machine, simulate
+from orbits.simulation.replay import replay
+from orbits.simulation.return_map import state_of
+
+if TYPE_CHECKING:
+    from orbits.orbit import Orbit
+
+AT_BORDER = 1e-4  # margins below this may make two events one
+DEFINITE = 1e-2  # speed after an event from which a simulation starts without doubt
+WILD = 1e3  # multipliers above this blow rounding up within a period
+STRETCHES = 32  # at most so many starts
+AGREED = 1e-9  # deviations below this need no second look
+
+
+def replay_error(orbit: Orbit) -> float:
+    """Largest deviation of the simulation over one period of the orbit.
+
+    Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
+    unstable orbits the relative position w is compared at many instants as well, stretch by stretch, and the smaller
+    deviation counts. Infinite if the simulation does something else.
+    """
+    error = float(replay(orbit).error)
+    margins = np.array([margin.value for margin in orbit.margins])
+    delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(orbit.multipliers) > WILD)
+    if error < AGREED or not (delicate or np.isfinite(error)):
+        return error
+    return min(error, position_error(orbit))
+
+
+def position_error(orbit: Orbit, points: int = 400) -> float:
+    """Largest difference of the relative positions over one period.
+
+    The simulation is started at every definite event and followed to the next one: an impact of vanishing speed has
+    infinite derivatives, and a very unstable orbit large ones, so that rounding would grow out of bounds over a period.
+    """
+    speeds = np.abs(orbit.events.rate_post)
+    definite = np.flatnonzero(speeds > DEFINITE)
+    places = definite if definite.size else _calm(orbit)
+    places = places[:: -(-len(places) // STRETCHES)]
+    ends = np.append(places[1:], places[0] + len(orbit.word))
+    follow = _follower(orbit, points)
+    return max(follow(int(a), int(b - a)) for a, b in zip(places, ends, strict=True))
+
+
+def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
+    """The same from one event over the next ones, as a function of place and number of events."""
+    model = orbit.model
+    own = {name for name in orbit.parameters if hasattr(model, name) and name != "excitation"}
+    given: dict[str, float] = {k: v for k, v in orbit.parameters.items() if not hasattr(model, k)}
+    model = model.changed(**{name: orbit.parameters[name] for name in own})
+    engine, durations = machine(model.name), lengths(orbit)
+    codes, modes = orbit.word.codes, orbit.word.modes
+
+    def error(place: int, events: int) -> float:
+        start = state_of(engine, orbit.params, int(codes[place]), int(modes[place]), orbit.nodes[place])
+        start[1] = min(max(start[1], -1.0), 1.0)
+        phases, positions, passed = [], [], 0.0
+        for segment in np.arange(place, place + events) % len(codes):
+            count = max(2, round(points * durations[segment] / (2.0 * np.pi * orbit.periods)))
+            within = np.linspace(0.0, max(float(durations[segment]), 0.0), count)
+            phases.append(passed + within)
+            positions.append(flight(orbit, int(segment), within)[:, 0])
+            passed += float(durations[segment])
+        ahead, claimed = np.concatenate(phases), np.concatenate(positions)
+        run = simulate(model, start, periods=float(ahead[-1]) / (2.0 * np.pi) + 1e-6, **given)  # type: ignore[arg-type]
+        seen = run.sample(run.start[0] + 2.0 * np.pi * run.start[4] + ahead)
+        return float(np.abs(seen.w - claimed).max())
+
+    return error
+
+
+def _calm(orbit: Orbit) -> np.ndarray:
+    """Slips if there are any (friction gives way at a known phase), else all events."""
+    slips = [i for i, letter in enumerate(orbit.word.events) if letter == "u"]
+    return np.array(slips or range(len(orbit.word)))

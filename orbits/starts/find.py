@@ -1,0 +1,285 @@
+"""From a word to a first orbit: a guess, a closed form, or what the simulator finds."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from orbits.cycles.kernels import assemble
+from orbits.cycles.stuck import StuckOrbit
+from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
+from orbits.machines.base import Model, ParameterError
+from orbits.orbit import Orbit
+from orbits.problem import OrbitProblem
+from orbits.words import Word
+
+TOLERANCE = 1e-12
+LONG = 12  # words with more events are not looked for from random nodes
+
+
+class StartWarning(UserWarning):
+    """An orbit was found, but not from the guess."""
+
+
+class StartError(ValueError):
+    """No orbit was found; the sentence says what was tried and what the simulator finds there."""
+
+
+def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
+    """Newton's method from the orbit's nodes at fixed parameters; None if it does not converge to an orbit with this word."""
+    symmetric = orbit.symmetric
+    problem = OrbitProblem(
+        orbit.model, orbit.word, orbit.periods, orbit.model.default_parameter, orbit.params, symmetric
+    )
+    u = problem.reduce(orbit.nodes)
+    border = np.zeros(problem.dimension + 1)
+    border[-1] = 1.0
+    step, tangent = np.empty_like(border), np.empty_like(border)
+    value = problem.value(orbit.params)
+    residual, _, _ = assemble(orbit.model).newton(
+        problem.data, u, value, problem.workspace(), border, step, tangent, TOLERANCE, limit
+    )
+    if not residual < 1e-9 * max(1.0, float(np.abs(u).max())):
+        return None
+    nodes = problem.expand(u)
+    nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
+    return Orbit(orbit.model, orbit.word, orbit.periods, nodes, orbit.params)
+
+
+def check_guess(word: Word, node: int, guess: Any) -> np.ndarray:
+    """The guess as an array (L, n).
+
+    Raises
+    ------
+    StartError
+        If its shape does not fit the word, or a number in it is not finite.
+    """
+    try:
+        nodes = np.array(guess, dtype=float)
+    except (TypeError, ValueError):
+        raise StartError(f"guess = {guess!r} is no table of numbers: give one list per event") from None
+    if nodes.shape != (len(word), node):
+        what = "[phase, B_post or w]" if node == 2 else "[phase, B_post or w, v, v_rate]"
+        raise StartError(
+            f"guess has the shape {nodes.shape}, but the word {word.text!r} has {len(word)} events "
+            f"({' '.join(word.events)}): give one {what} for each, slips included"
+        )
+    if not np.all(np.isfinite(nodes)):
+        raise StartError(
+            "guess has numbers that are not finite: give a phase and a velocity or position per event"
+        )
+    return nodes
+
+
+def find(
+    model: Model,
+    word: str | Word,
+    periods: int = 1,
+    guess: Sequence[Sequence[float]] | np.ndarray | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> Any:
+    """The orbit of `model` with this word: an `Orbit`, or a `StuckOrbit` for the empty word.
+
+    Parameters
+    ----------
+    model : Model
+    word : str or Word
+        Events, or the paper's maps.
+    periods : int
+        Forcing periods k >= 1.
+    guess : array (L, n), optional
+        Nodes to start Newton's method from. Without it: the closed forms, then simulation from many starts, then
+        Newton's method from many random nodes.
+    parameters : mapping
+        Parameters that are no fields of the machine, or replace them.
+
+    Raises
+    ------
+    StartError
+        If no orbit with this word is found.
+    ParameterError, WordError
+        For bad parameters and words.
+    """
+    params = model.vector(parameters)
+    reading = Word.parse(word, frictionless=model.friction_acceleration(params) == 0.0)
+    if isinstance(periods, bool) or int(periods) != periods or periods < 1:
+        raise StartError(
+            f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more"
+        )
+    periods = int(periods)
+    if len(reading) == 0:
+        return _stuck(model, params)
+    tried = []
+    if guess is not None:
+        nodes = check_guess(reading, model.node, guess)
+        orbit = polish(Orbit(model, reading, periods, nodes, params), limit=100)
+        if orbit is not None and _proper(orbit):
+            return orbit
+        tried.append("Newton's method from the guess")
+    else:
+        for nodes in _closed(model, reading, periods, params):
+            orbit = polish(Orbit(model, reading, periods, nodes, params))
+            if orbit is not None:
+                return orbit
+        tried.append("the closed forms")
+    orbit, nearest = _simulated(model, reading, periods, params)
+    if orbit is not None:
+        _warn(guess, reading, "simulation from many starts")
+        return orbit
+    tried.append("simulation from many starts")
+    if guess is None:
+        orbit = _random(model, reading, periods, params)
+        if orbit is not None:
+            return orbit
+        tried.append("Newton's method from random nodes")
+    orbit = _repeated(model, reading, periods, parameters)
+    if orbit is not None:
+        _warn(guess, reading, "a shorter orbit, written several times")
+        return orbit
+    found = (
+        f"the nearest motion that the simulator finds is {nearest}"
+        if nearest
+        else "the simulator finds no periodic motion"
+    )
+    given = ", ".join(f"{name} = {value:g}" for name, value in (parameters or {}).items())
+    raise StartError(
+        f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
+        f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."
+    )
+
+
+def _warn(guess: Any, word: Word, instead: str) -> None:
+    if guess is not None:
+        shown = word.text if len(word) <= LONG else f"{word.text[:LONG]}..."
+        warnings.warn(
+            f"the guess does not lead to an orbit {shown!r}; the orbit was found by {instead}",
+            StartWarning,
+            stacklevel=4,
+        )
+
+
+def _repeated(model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None) -> Orbit | None:
+    """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
+    times = math.gcd(word.repetitions, periods)
+    if times == 1:
+        return None
+    try:
+        return find(model, word.head(len(word) // times), periods // times, None, parameters).repeat(times)
+    except StartError:
+        return None
+
+
+def _stuck(model: Model, params: np.ndarray) -> StuckOrbit:
+    orbit = StuckOrbit.of(model, params)
+    if not orbit.real:
+        raise StartError(
+            f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); "
+            "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
+        )
+    return orbit
+
+
+def _proper(orbit: Orbit) -> bool:
+    """Whether time runs forward through the nodes."""
+    phases = np.append(orbit.nodes[:, 0], orbit.nodes[0, 0] + 2.0 * np.pi * orbit.periods)
+    return bool(np.all(np.diff(phases) > -1e-9))
+
+
+def _closed(model: Model, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+    if hasattr(model, "start_nodes"):
+        yield from model.start_nodes(word, periods, params)  # type: ignore[attr-defined]
+        return
+    if periods != 1 or model.node != 2:
+        return
+    events = "".join(word.events)
+    try:
+        if events in ("LR", "RL"):
+            for stable in (True, False):
+                nodes = symmetric_nodes(params, stable)
+                yield nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0]])
+        elif events == "tt":
+            yield sliding_nodes(params, word.modes[0])
+        elif events == "susu" and word.modes[1] == -word.modes[3]:
+            yield stick_slip_nodes(params, word.modes[1])
+    except ParameterError:
+        return
+
+
+def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
+    """An attractor with this word, or the description of the one whose word is nearest."""
+    from orbits.attractors.recurrence import find_attractor
+
+    target = word.canonical()
+    values = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
+    nearest, distance = "", np.inf
+    patience = 2 if model.node == 4 else 0  # a light absorber's oscillator settles over thousands of periods
+    generator = np.random.default_rng(20)
+    for trial in range(24):
+        start = None if trial == 0 else _random_start(model, generator)
+        attractor = find_attractor(model, start, max_period=max(8, 2 * periods), patience=patience, **values)
+        if attractor.kind not in ("periodic", "sliding") or not attractor.nodes.size:
+            continue
+        if attractor.word is None:
+            continue
+        orbit = attractor.orbit
+        if orbit.word.impact_free:  # its mean position is free: take the middle
+            orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
+        if orbit.word.canonical() == target and orbit.periods == periods:
+            polished = polish(_aligned(orbit, word))
+            if polished is not None:
+                return polished, ""
+        gap = (
+            abs(orbit.word.impacts - word.impacts)
+            + abs(len(orbit.word) - len(word))
+            + abs(orbit.periods - periods)
+        )
+        if gap < distance:
+            nearest, distance = f"{orbit.word.text!r} with periods = {orbit.periods}", gap
+    return None, nearest
+
+
+def _random_start(model: Model, generator: np.random.Generator) -> dict[str, float]:
+    start = {
+        "phase": generator.uniform(0.0, 2.0 * np.pi),
+        "w": generator.uniform(-0.95, 0.95),
+        "w_rate": generator.uniform(-2.0, 2.0),
+    }
+    if model.node == 4:
+        start |= {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
+    return start
+
+
+def _aligned(orbit: Orbit, word: Word) -> Orbit:
+    """The orbit in the rotation or mirror image that reads exactly `word`."""
+    for candidate in (orbit, orbit.mirror()):
+        for place in range(len(word)):
+            if candidate.word.rotate(place) == word:
+                return candidate.rotate(place)
+    return orbit
+
+
+def _random(model: Model, word: Word, periods: int, params: np.ndarray) -> Orbit | None:
+    """Newton's method from random nodes (reduced machine): the first real orbit found, else the first proper one."""
+    if model.node != 2 or len(word) > LONG:
+        return None
+    generator = np.random.default_rng(7)
+    amplitude, omega = float(params[0]), float(params[-1])
+    fallback = None
+    for _ in range(300):
+        phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
+        second = generator.uniform(-0.9, 0.9, len(word))
+        for i, letter in enumerate(word.events):
+            if letter in "LR":
+                sign = 1.0 if letter == "L" else -1.0
+                second[i] = sign * generator.uniform(0.0, 1.5) * (1.0 + amplitude) * omega
+        orbit = polish(Orbit(model, word, periods, np.column_stack([phases, second]), params), limit=25)
+        if orbit is None or not _proper(orbit) or orbit.root().periods != periods:
+            continue
+        if orbit.real:
+            return orbit
+        fallback = fallback or orbit
+    return fallback

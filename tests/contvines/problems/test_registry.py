@@ -1,0 +1,199 @@
+"""Files are data: whatever a .vines file names, reading it imports and calls nothing."""
+
+import contextlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.command.cli import main
+from contvines.problems.registry import UnknownFactory, factory, rebuild
+from contvines.store import Store, StoreError
+
+EVIL = "open('marker', 'w').close()\ndef F(u, p):\n    return u - p\n"
+
+
+def described(factory_name, **more):
+    # Popen(description) would run its keys as a command line
+    return {"touch": 0, "marker": 0, "factory": factory_name, **more}
+
+
+CALLABLES = {"F": "evil:F", "jacobian": None, "derivative": None, "mirror": None}
+NAMES = {
+    "u0": [0.0],
+    "p0": 0.0,
+    "parameter": "p",
+    "spectrum": "none",
+    "name": "x",
+    "cycle": 1,
+    "dimension": 1,
+}
+ATTACKS = {
+    "a process": described("orbits.ahead:subprocess.Popen"),
+    "the system": described("os:system"),
+    "an own module": described("evil:F"),
+    "a submodule by attribute": described("contvines.problems.registry:import_module"),
+    "builtins": described("builtins:exec"),
+    "a builder that takes names": described("contvines.problems.registry:factory"),
+    "no text": described(["os:system"]),
+    "a long name": described("x" * 100_000),
+    "functions of an equation": described(
+        "contvines.problems.algebraic:from_description", callables=CALLABLES, **NAMES
+    ),
+    "functions of a map, as in version 0.1": described(
+        "contvines.map_problem:from_description", callables=["evil:F", None, None], **NAMES
+    ),
+}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "evil.py").write_text(EVIL)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    yield tmp_path
+    sys.modules.pop("evil", None)
+
+
+def graph_with(description):
+    problem = cv.AlgebraicProblem(lambda u, p: np.array([u[0] ** 3 - p * u[0]]), [0.0], -0.5)
+    graph = cv.diagram(problem, within=(-1.0, 1.0), depth=0)
+    assert [p.kind for p in graph.special.values()].count("branch-point") == 1
+    for branch in graph.branches.values():
+        branch.description = dict(description)
+    return graph
+
+
+COMMANDS = {
+    "show": ["show", "x.vines"],
+    "show as json": ["show", "x.vines", "--json"],
+    "orbit": ["orbit", "x.vines", "BP1"],
+    "orbit on a branch": ["orbit", "x.vines", "B1:1"],
+    "switch": ["switch", "x.vines", "BP1"],
+    "export csv": ["export", "x.vines", "--to", "csv"],
+    "export mat": ["export", "x.vines", "--to", "mat"],
+    "export json": ["export", "x.vines", "--to", "json"],
+    "export graphml": ["export", "x.vines", "--to", "graphml"],
+    "plot": ["plot", "x.vines"],
+    "plot multipliers": ["plot", "x.vines", "--kind", "multipliers"],
+    "plot network": ["plot", "x.vines", "--kind", "network"],
+}
+
+
+@pytest.mark.parametrize("attack", ATTACKS)
+def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
+    graph_with(ATTACKS[attack]).save("x.vines")
+    for words in COMMANDS.values():
+        with contextlib.suppress(SystemExit):
+            main(words)
+        said = capsys.readouterr().err
+        assert "Traceback" not in said and "something went wrong" not in said and len(said) < 2000
+        if words[0] in ("orbit", "switch"):
+            assert "has no problem attached" in said or "cannot be understood" in said
+    for read in (cv.load, cv.Graph.load):
+        graph = read("x.vines")
+        assert graph["B1"].problem is None
+        with pytest.raises(ValueError, match="has no problem attached"):
+            graph["B1"].orbit(0)
+        with pytest.raises(ValueError, match="has no problem attached"):
+            cv.switch(graph, "BP1")
+    assert not (folder / "marker").exists() and "evil" not in sys.modules
+
+
+def test_a_journal_that_names_a_function_does_not_call_it(folder):
+    """What a killed run has kept of the far side of a border is rebuilt, too, when it goes on."""
+    from contvines.graph.leaving import _seeds  # the reader of such records
+
+    class Far:
+        def beyond(self, point):
+            return []
+
+    class Kept:
+        def recall(self, key):
+            return {
+                "problems": [ATTACKS["a process"]],
+                "p": [0.0],
+                "note": [""],
+                "persistence": [True],
+                "u0": np.zeros(1),
+            }
+
+    class Run:
+        serial, journal = 1, Kept()
+
+    class Point:
+        label, problem = "ST1", Far()
+
+    assert _seeds(Run(), Point()) == []
+    assert not (folder / "marker").exists()
+
+
+@pytest.mark.parametrize(
+    "words", [["orbit", "x.vines", "B1:1", "--json"], ["export", "x.vines", "--to", "csv"]]
+)
+def test_with_trust_the_functions_are_imported(folder, words):
+    """A process that has not seen the function: refused or left out, unless the user says that the file may be trusted."""
+    graph = graph_with(
+        described("contvines.problems.algebraic:from_description", callables=CALLABLES, **NAMES)
+    )
+    graph.save("x.vines")
+    run = [sys.executable, "-m", "contvines.command", *words]
+    first = subprocess.run(run, capture_output=True, text=True)
+    assert "--trust" in first.stderr and not (folder / "marker").exists()
+    second = subprocess.run([*run, "--trust"], capture_output=True, text=True)
+    assert second.returncode == 0 and "--trust" not in second.stderr, second.stderr
+    assert (folder / "marker").exists()
+
+
+def test_in_python_trust_and_known_functions(folder):
+    graph_with(described("contvines.algebraic:from_description", callables=CALLABLES, **NAMES)).save(
+        "x.vines"
+    )
+    assert cv.load("x.vines").branches["B1"].problem is None
+    trusted = cv.load("x.vines", trust=True).branches["B1"].problem
+    assert trusted.equations(np.array([0.25]), 0.5)[0].tolist() == [-0.25]
+    # the program has used the function now: its name in a file means nothing but that function
+    assert cv.load("x.vines").branches["B1"].problem.functions.f is trusted.functions.f
+
+
+def test_trust_does_not_open_the_list_of_factories(folder):
+    graph_with(ATTACKS["a process"]).save("x.vines")
+    assert cv.load("x.vines", trust=True).branches["B1"].problem is None
+    assert not (folder / "marker").exists()
+
+
+def test_a_function_that_cannot_be_imported_has_its_sentence(folder):
+    callables = {**CALLABLES, "F": "nowhere_at_all:F"}
+    graph_with(described("contvines.algebraic:from_description", callables=callables, **NAMES)).save(
+        "x.vines"
+    )
+    with pytest.raises(StoreError, match="'nowhere_at_all:F' that the file names cannot be imported"):
+        cv.load("x.vines", trust=True)
+
+
+def test_a_program_registers_its_own_factory():
+    made = []
+    with pytest.raises(UnknownFactory, match=r"contvines\.register"):
+        factory("my house")
+    cv.register("my house", lambda description, trust: made.append((description["size"], trust)) or "house")
+    assert rebuild({"factory": "my house", "size": 3}) == "house" and made == [(3, False)]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["orbits.problem:rebuild", "orbits.stuck_problem:rebuild", "contvines.algebraic:from_description",
+     "contvines.map_problem:from_description"],
+)  # fmt: skip
+def test_factories_of_version_0_1_are_known(name):
+    assert callable(factory(name))
+
+
+def test_a_description_that_is_none_gets_a_sentence(tmp_path):
+    graph = graph_with({"factory": "orbits.problem:rebuild", "word": 3})
+    graph.save(tmp_path / "x.vines")
+    with pytest.raises(StoreError, match="does not hold a graph"):
+        cv.load(tmp_path / "x.vines")
+    with Store.open(tmp_path / "x.vines") as store:
+        assert len(store.graph(problems=False)) == len(graph)
