@@ -1,7 +1,7 @@
 """Binding the continuation loop to the kernels of a problem.
 
-One source (march.py, corrector.py, predictor.py): ``bind`` copies the functions with other globals. For compiled problems
-the copies are compiled and cached on disk under a name that carries a digest of the kernels' sources, so that a cached
+One source (march.py, corrector.py): ``bind`` copies the functions with other globals. What runs over the unknowns is taken
+from lengths.py for compiled problems and from arrays.py for others. For compiled problems the copies are compiled and cached on disk under a name that carries a digest of the kernels' sources, so that a cached
 loop is never older than the kernels in it.
 """
 
@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import corrector, predictor
+from . import arrays, corrector, lengths
 from . import march as loop
 
 
@@ -27,6 +27,8 @@ class Bound(NamedTuple):
 # Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
 # and out of every call would cost more than the mathematics of a small problem.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
+
+SUMS = ("correction_size", "add", "remainder", "fix_parameter", "plane", "compare", "put", "extrapolate")
 
 _bound: dict[tuple[Any, ...], Bound] = {}
 
@@ -53,25 +55,27 @@ def bind(kernels: Any) -> Bound:
 def _make(kernels: Any) -> Bound:
     functions = {"linearise": kernels.linearise, "bordered": kernels.bordered, "inspect": kernels.inspect}
     if not kernels.compiled:
-        correct = copy_with(corrector.correct, **functions)
-        march = copy_with(loop.march, correct=correct, predict=predictor.predict, **functions)
-        return Bound(march, copy_with(corrector.solve, **functions))
+        sums = {name: getattr(arrays, name) for name in SUMS}
+        improve = copy_with(corrector.improve, **sums)
+        correct = copy_with(corrector.correct, improve=improve, **sums, **functions)
+        march = copy_with(loop.march, correct=correct, **sums, **functions)
+        return Bound(march, copy_with(corrector.solve, improve=improve, **sums, **functions))
     from numba import njit
 
     from ..problems.protocol import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     compile_ = njit(cache=True, forceinline=True, **OPTIONS)
-    improve = compile_(copy_with(corrector.improve, suffix))
-    correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **functions))
-    predict = compile_(copy_with(predictor.predict, suffix))
-    march = compile_(copy_with(loop.march, suffix, correct=correct, predict=predict, **functions))
-    return Bound(march, compile_(copy_with(corrector.solve, suffix, improve=improve, **functions)))
+    sums = {name: compile_(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    improve = compile_(copy_with(corrector.improve, suffix, **sums))
+    correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **sums, **functions))
+    march = compile_(copy_with(loop.march, suffix, correct=correct, **sums, **functions))
+    return Bound(march, compile_(copy_with(corrector.solve, suffix, improve=improve, **sums, **functions)))
 
 
 def _loop_digest() -> str:
     """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls."""
     digest = hashlib.blake2b(digest_size=4)
-    for module in (corrector, predictor, loop):
+    for module in (corrector, lengths, loop):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()

@@ -3,10 +3,12 @@
 Runs compiled and interpreted: see :mod:`contvines.continuation.march`.
 """
 
+from .lengths import add, correction_size, remainder
+
 # what `solve` does
 LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
 
-ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative to 1 + abs(unknown)
+ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative to scale + abs(unknown)
 STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
 HUGE = 1e6  # larger corrections are a divergence
 
@@ -26,7 +28,7 @@ def inspect(data, u, p, work, row):
     raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
-def improve(u, p, step, sweep, residual, before, tolerance):
+def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
     """Add a Newton correction to u and p, unless Newton's method diverges.
 
     Parameters
@@ -36,47 +38,45 @@ def improve(u, p, step, sweep, residual, before, tolerance):
     sweep : int
         Number of corrections before this one.
     residual : float
-        Largest absolute residual before this correction.
+        Largest residual before this correction.
     before : float
         Size of the correction before this one.
     tolerance : float
+    scale : ndarray, shape (N + 1,)
+        Typical sizes of unknowns and parameter.
+    noise : float
+        Accuracy to which corrections can be had at all, because the equations are not smooth below it; 0 for roundoff.
 
     Returns
     -------
     p : float
     size : float
-        Of the correction, relative to 1 + abs(unknown).
+        Of the correction, relative to the scale + abs(unknown).
     verdict : int
         1 when converged, -1 when diverged, else 0.
     """
-    n = u.shape[0]
-    size = abs(step[n]) / (1.0 + abs(p))
-    finite = step[n] - step[n]
-    for i in range(n):
-        finite += step[i] - step[i]
-        change = abs(step[i]) / (1.0 + abs(u[i]))
-        if change > size:
-            size = change
-    if not (finite == 0.0 and size < HUGE):
+    size = correction_size(step, u, p, scale)
+    if not size < HUGE:
         return p, size, -1
-    if sweep > 1 and size > 2.0 * before and size > STALLED:
+    if sweep > 1 and size > 2.0 * before and size > max(STALLED, 10.0 * noise):
         return p, size, -1
-    for i in range(n):
-        u[i] += step[i]
-    p += step[n]
-    if size <= 1e-11:
+    add(u, step)
+    p += step[u.shape[0]]
+    if size <= max(1e-11, noise):
         return p, size, 1
     if sweep > 0:
         ratio = size / before
         # quadratic convergence: the next correction would be about ratio^2 size
-        if size <= tolerance and ratio * ratio * size <= ROUNDOFF:
+        if size <= tolerance and ratio * ratio * size <= max(ROUNDOFF, noise):
             return p, size, 1
         if size <= STALLED and ratio > 0.3 and residual < 1e-9:
+            return p, size, 1
+        if size <= min(tolerance, 10.0 * noise) and ratio > 0.3:
             return p, size, 1
     return p, size, 0
 
 
-def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent):
+def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, scale, noise):
     """Newton's method for F(u, p) = 0, border.(u, p) = target; u is updated in place.
 
     Each sweep is one linearisation and one elimination, which gives the correction and the tangent.
@@ -89,7 +89,7 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
     sign : float
         Sign of the bordered determinant at the last linearisation, before the last correction.
     size : float
-        Last correction, relative to 1 + abs(unknown).
+        Last correction, relative to the scale + abs(unknown).
     """
     size = 0.0
     sign = 0.0
@@ -97,17 +97,15 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
         residual = linearise(data, u, p, work)
         if not residual < 1e300:
             return p, -2, sign, size
-        gap = target - border[u.shape[0]] * p
-        for i in range(u.shape[0]):
-            gap -= border[i] * u[i]
+        gap = remainder(border, u, p, target)
         sign = bordered(data, work, border, gap, step, tangent)
-        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance)
+        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, scale, noise)
         if verdict != 0:
             return p, sweep + 1 if verdict > 0 else -1, sign, size
     return p, -1, sign, size
 
 
-def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, row, what):
+def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, row, what, scale, noise):
     """A single solution, and everything about it.
 
     EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method (none: the point is good as it is), then linearisation,
@@ -137,16 +135,14 @@ def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent
                 return p, sweep, residual, sign, size
             if not residual < 1e300:
                 return p, -2, residual, sign, size
-            gap -= border[u.shape[0]] * p
-            for i in range(u.shape[0]):
-                gap -= border[i] * u[i]
+            gap = remainder(border, u, p, target)
         sign = bordered(data, work, border, gap, step, tangent)
         if settled:
             if what == EVERYTHING:
                 inspect(data, u, p, work, row)
             return p, sweep, residual, sign, size
         if sweep < max_sweeps:
-            p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance)
+            p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, scale, noise)
             if verdict < 0:
                 break
             settled = verdict > 0

@@ -22,6 +22,12 @@ def parameter_unit(within: tuple[float, float], p: float) -> float:
     return min(within[1] - within[0], max(1.0, abs(p)))
 
 
+def problem_scale(problem: Any, within: tuple[float, float]) -> np.ndarray:
+    """Typical sizes of unknowns and parameter, shape (N + 1,): of a problem that has them, else 1."""
+    own = getattr(problem, "scale_within", None)
+    return np.ones(int(problem.dimension) + 1) if own is None else own(within)
+
+
 class Solved(NamedTuple):
     """A point of a branch with everything known about it.
 
@@ -59,17 +65,19 @@ class Engine:
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
         self.row_size = 2 * self.m + int(problem.n_margins)
-        self.weights = np.full(n + 1, 1.0 / n)
+        self.scale, self.noise = problem_scale(problem, self.within), float(getattr(problem, "noise", 0.0))
+        self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
         self.u = np.zeros(n)
         control = np.zeros(source.CONTROL_SIZE)
-        control[source.METRIC_U], control[source.METRIC_P] = self.weights[0], self.weights[n]
+        control[source.METRIC_U], control[source.METRIC_P] = 1.0 / n, self.weights[n]
         control[source.ANGLE] = settings.angle
         control[source.MIN_STEP], control[source.MAX_STEP] = settings.min_step, settings.max_step
         control[source.TOLERANCE], control[source.SWEEPS] = settings.tolerance, settings.max_iterations
         control[source.LOWER], control[source.UPPER] = self.lower, self.upper
         control[source.ROW_MARGINS] = 2 * self.m
+        control[source.NOISE] = self.noise
         self.control = control
         self._rows = np.zeros((0, self.row_size))
         self.at_parameter = np.zeros(n + 1)
@@ -143,6 +151,8 @@ class Engine:
             tangent,
             row,
             corrector.EVERYTHING,
+            self.scale,
+            self.noise,
         )
         if sweeps < 0 or not np.isfinite(tangent).all():
             return None
@@ -193,6 +203,8 @@ class Engine:
             self.tangent,
             NO_ROW,
             what,
+            self.scale,
+            self.noise,
         )
         return float(found)
 
@@ -201,7 +213,20 @@ class Engine:
         self.work[0].reshape(-1)[:] = -side[: self.n]
         target, what = float(side[self.n]), corrector.ELIMINATE
         self.bound.solve(
-            self.data, self.work, self.u, 0.0, border, target, TIGHT, 0, self.step, self.tangent, NO_ROW, what
+            self.data,
+            self.work,
+            self.u,
+            0.0,
+            border,
+            target,
+            TIGHT,
+            0,
+            self.step,
+            self.tangent,
+            NO_ROW,
+            what,
+            self.scale,
+            self.noise,
         )
         return self.step.copy()
 

@@ -5,13 +5,14 @@ This source runs compiled and interpreted: :mod:`contvines.continuation.binding`
 well. Nothing is allocated here, and nothing is known of events.
 
 Metric: <a, b> = metric_u a_u.b_u + metric_p a_p b_p with metric_u = 1/N and metric_p = 1/(hi - lo)^2, so that step lengths
-depend neither on the number of repetitions of an orbit nor on the unit of the parameter.
+depend neither on the number of repetitions of an orbit nor on the unit of the parameter. Unknowns of Python problems have
+scales s: then a_u.b_u is the sum of a_j b_j / s_j^2 (the array ``weights``).
 """
 
 import math
 
 from .corrector import correct, inspect
-from .predictor import predict
+from .lengths import compare, extrapolate, fix_parameter, plane, put
 
 # entries of the control vector
 (
@@ -26,8 +27,9 @@ from .predictor import predict
     STOP_AT_BORDER,
     SWEEPS,
     ROW_MARGINS,
-) = range(11)
-CONTROL_SIZE = 11
+    NOISE,
+) = range(12)
+CONTROL_SIZE = 12
 
 # status codes (contvines.continuation.status)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
@@ -45,6 +47,8 @@ def march(
     first,
     h,
     control,
+    weights,
+    scale,
     u,
     border,
     step,
@@ -70,6 +74,8 @@ def march(
         Step to try first.
     control : ndarray
         Settings; see the names at the top.
+    weights, scale : ndarray, shape (N + 1,)
+        Diagonal of the metric; typical sizes of unknowns and parameter.
     u, border, step, tangent : ndarray
         Scratch of sizes N, N + 1, N + 1, N + 1.
 
@@ -90,13 +96,14 @@ def march(
     sweeps_allowed = int(control[SWEEPS])
     row_margins = int(control[ROW_MARGINS])
     row_size = rows.shape[1]
+    noise = control[NOISE]
     i = first
     trouble = 0
     while i < points.shape[0]:
         if h < control[MIN_STEP]:
             return i, h, NOT_EVALUABLE if trouble == -2 else STEP_TOO_SMALL
         start = values[i - 1]
-        p = predict(points, values, tangents, i, h, metric_u, metric_p, u)
+        p = extrapolate(points, values, tangents, i, h, weights, metric_u, metric_p, u)
         fixed = p > upper or p < lower
         length = h
         if fixed:
@@ -106,43 +113,36 @@ def march(
             for _ in range(3):
                 if p != start:
                     length *= min(max((bound - start) / (p - start), 0.0), 1.5)
-                p = predict(points, values, tangents, i, length, metric_u, metric_p, u)
+                p = extrapolate(points, values, tangents, i, length, weights, metric_u, metric_p, u)
             p = bound
-            for j in range(n):
-                border[j] = 0.0
-            border[n] = 1.0
+            fix_parameter(border)
             target = bound
         else:
-            target = 0.0
-            for j in range(n):
-                border[j] = metric_u * tangents[i - 1, j]
-                target += border[j] * u[j]
-            border[n] = metric_p * tangents[i - 1, n]
-            target += border[n] * p
-        for j in range(n):
-            points[i, j] = u[j]
+            target = plane(tangents[i - 1], u, p, weights, metric_u, metric_p, border)
+        put(points[i], u, 1.0)
         guess = p
         p, sweeps, sign, size = correct(
-            data, work, u, p, border, target, control[TOLERANCE], sweeps_allowed, step, tangent
+            data,
+            work,
+            u,
+            p,
+            border,
+            target,
+            control[TOLERANCE],
+            sweeps_allowed,
+            step,
+            tangent,
+            scale,
+            noise,
         )
         if sweeps < 0:
             trouble = sweeps
             h *= 0.5
             continue
         trouble = 0
-        norm = metric_p * tangent[n] * tangent[n]
-        cosine = metric_p * tangent[n] * tangents[i - 1, n]
-        error = metric_p * (p - guess) ** 2
-        part_norm = 0.0
-        part_cosine = 0.0
-        part_error = 0.0
-        for j in range(n):
-            part_norm += tangent[j] * tangent[j]
-            part_cosine += tangent[j] * tangents[i - 1, j]
-            part_error += (u[j] - points[i, j]) ** 2
-        norm = math.sqrt(norm + metric_u * part_norm)
-        cosine = (cosine + metric_u * part_cosine) / norm
-        error = math.sqrt(error + metric_u * part_error)
+        norm, cosine, error = compare(
+            tangent, tangents[i - 1], u, points[i], p, guess, weights, metric_u, metric_p
+        )
         if fixed:
             p = bound
             if cosine < 0.0:
@@ -151,7 +151,7 @@ def march(
             if tangent[n] * norm < 0.0:
                 sign = -sign
         turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
-        if not (turn <= 2.0 * angle and error <= angle * length + 1e-12):
+        if not (turn <= 2.0 * angle and error <= angle * length + max(1e-12, noise)):
             h = 0.5 * length
             continue
         if p > upper or p < lower:
@@ -162,10 +162,8 @@ def march(
             if h >= length:
                 h = 0.9 * length
             continue
-        for j in range(n):
-            points[i, j] = u[j]
-            tangents[i, j] = tangent[j] / norm
-        tangents[i, n] = tangent[n] / norm
+        put(points[i], u, 1.0)
+        put(tangents[i], tangent, norm)
         values[i] = p
         signs[i] = sign
         corrections[i] = size

@@ -83,7 +83,7 @@ def chunks(
             room = min(room, max(settings.max_points - total, 1))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
             closed = closing.cut(chunk)
-            away = _away(chunk.points, start.u, settings.escape)
+            away = _away(chunk.points, start.u, settings.escape, engine.scale[:-1])
             if closed is not None:
                 chunk = closed
             elif away.any():
@@ -130,6 +130,8 @@ def _march(
         first,
         float(h),
         engine.control,
+        engine.weights,
+        engine.scale,
         engine.u,
         engine.border,
         engine.step,
@@ -150,8 +152,10 @@ def _march(
     )
 
 
-def _away(points: np.ndarray, u: np.ndarray, escape: float) -> np.ndarray:
-    """Which points are further than `escape` from u (root mean square)."""
+def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -> np.ndarray:
+    """Which points are further than `escape` times the scale from u (root mean square)."""
+    if not (scale == 1.0).all():
+        points, u = points / scale, u / scale
     limit = escape * escape * len(u)
     squares = np.einsum("ij,ij->i", points, points)
     # nothing as large as the points is made, unless unknowns are so large that their squares cancel

@@ -184,13 +184,9 @@ def _simulated(
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
             continue
-        if (
-            abs(
-                found.measure("friction_loss") / found.periods
-                - orbit.measure("friction_loss") / orbit.periods
-            )
-            > 0.05
-        ):
+        if abs(
+            found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods
+        ) > 0.05 * problem.model.gauge("energy", params):
             continue
         if distance(orbit, found) > CLOSE:
             continue  # an attractor somewhere else: nothing joins it to the border

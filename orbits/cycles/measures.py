@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -61,6 +62,24 @@ class EventTable:
     v_rate: np.ndarray
 
 
+KINDS = {
+    "B": "velocity",
+    "B_post": "velocity",
+    "B_pre": "velocity",
+    "B_mean": "velocity",
+    "C2": "area",
+    "phase": "angle",
+    "impact_speed": "velocity",
+    "impact_speed_min": "velocity",
+    "max_abs_w": "length",
+    "max_abs_q1": "length",
+    "amplitude": "length",
+    "v_phase": "angle",
+    **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
+}
+"""What kind of quantity each measure is, where it is more than a number."""
+
+
 def parameter(model: Model, params: np.ndarray, name: str) -> np.ndarray:
     """Column `name` of the parameter vectors, shape (m, 1)."""
     return params[:, model.parameter_names.index(name)][:, None]
@@ -92,7 +111,19 @@ def names(model: Model) -> tuple[str, ...]:
 def measure(
     model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
-    """The measures `wanted` of many orbits with one word.
+    """`dimensionless`, in the units of a machine that has some."""
+    return gauged(model, params, dimensionless(model, word, periods, nodes, params, wanted))
+
+
+def gauged(model: Model, params: np.ndarray, found: dict[str, Any]) -> dict[str, Any]:
+    """Dimensionless measures by name, in the machine's units; params (..., P), measures (...)."""
+    return {name: value * model.gauge(KINDS.get(name, ""), params) for name, value in found.items()}
+
+
+def dimensionless(
+    model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
+) -> dict[str, np.ndarray]:
+    """The measures `wanted` of many orbits with one word, in the machine's own numbers.
 
     ``B_post`` and ``B_pre`` are the absorber's absolute velocities after and before the first impact, each counted positive
     in its own usual direction (away from the wall, towards it), ``B`` is their mean (Youssef, Karoui, Leine: B = (B+ +
@@ -119,7 +150,7 @@ def measure(
     result: dict[str, np.ndarray] = {}
     means = [name for name in wanted if name in MEANS]
     if means:
-        whole = measure(model, word, periods, nodes, params, [MEANS[name] for name in means])
+        whole = dimensionless(model, word, periods, nodes, params, [MEANS[name] for name in means])
         result |= {name: whole[MEANS[name]] / periods for name in means}
     own = [
         name

@@ -43,7 +43,7 @@ class StuckProblem:
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
-    def values(self, p: float) -> np.ndarray:
+    def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
         return along(self.path, self.params, p)
 
@@ -98,7 +98,7 @@ class StuckProblem:
             result[name] = np.array(
                 [self._measure(name, row, self.values(value)) for row, value in zip(u, p)]
             )
-        return result
+        return measuring.gauged(self.model, self.values(p), result)
 
     def _measure(self, name: str, u: np.ndarray, params: np.ndarray) -> float:
         name = measuring.MEANS.get(name, name)  # its period is the forcing's

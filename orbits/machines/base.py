@@ -123,6 +123,25 @@ class Model:
         """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
         return np.zeros((0, len(self.parameter_names)))
 
+    def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        """`vector` with the parameter that may vary called `name` at `value`.
+
+        Raises
+        ------
+        ParameterError
+            As `vector` does.
+        """
+        return self.vector({**(values or {}), name: value})
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters and measures by name; none here, where all are numbers."""
+        return {}
+
+    def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
+        """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
+        return 1.0
+
     def place_of(self, name: str) -> int:
         """Place of a parameter among `amount_names`.
 

@@ -32,4 +32,8 @@ def model_class(name: str) -> type[Model]:
 def build(settings: Mapping[str, Any]) -> Model:
     """The machine with these settings, `name` among them (see `Model.settings`)."""
     values = dict(settings)
+    if values.pop("units", None):
+        from orbits.machines.physical import physical
+
+        return physical(str(values.pop("name")), values, bool(values.pop("unusual", False)))
     return model_class(str(values.pop("name")))(**values)

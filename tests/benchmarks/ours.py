@@ -40,7 +40,14 @@ class Core:
         control[source.LOWER], control[source.UPPER] = case.INTERVAL
         control[source.ROW_MARGINS] = 2 * self.problem.n_multipliers
         arrays = (self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count))
-        scratch = (np.zeros(n), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1))
+        scratch = (
+            np.ones(n + 1),
+            np.ones(n + 1),
+            np.zeros(n),
+            np.zeros(n + 1),
+            np.zeros(n + 1),
+            np.zeros(n + 1),
+        )
         self.arguments = (self.problem.data, self.problem.workspace(), *arrays, 1, step, control, *scratch)
         self.march = bind(self.problem.kernels).march
 

@@ -1,0 +1,104 @@
+"""Sums over the unknowns with numpy, for problems made of Python callables: every unknown has its scale.
+
+The functions are those of :mod:`contvines.continuation.lengths`, whose docstrings they share; ``scale`` (N + 1,) are the typical
+sizes of unknowns and parameter, ``weights`` (N + 1,) is the diagonal of the metric.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+def correction_size(step: np.ndarray, u: np.ndarray, p: float, scale: np.ndarray) -> float:
+    """Largest entry of a correction, relative to scale + abs(unknown); infinity where it is not finite."""
+    n = len(u)
+    size = max(
+        float((np.abs(step[:n]) / (scale[:n] + np.abs(u))).max()), abs(float(step[n])) / (scale[n] + abs(p))
+    )
+    return size if size - size == 0.0 else math.inf
+
+
+def add(u: np.ndarray, step: np.ndarray) -> None:
+    """See lengths."""
+    u += step[:-1]
+
+
+def remainder(border: np.ndarray, u: np.ndarray, p: float, target: float) -> float:
+    """See lengths."""
+    return target - border[-1] * p - float(border[:-1] @ u)
+
+
+def fix_parameter(border: np.ndarray) -> None:
+    """See lengths."""
+    border[:-1] = 0.0
+    border[-1] = 1.0
+
+
+def plane(
+    tangent: np.ndarray,
+    u: np.ndarray,
+    p: float,
+    weights: np.ndarray,
+    metric_u: float,
+    metric_p: float,
+    border: np.ndarray,
+) -> float:
+    """See lengths."""
+    np.multiply(weights, tangent, out=border)
+    return float(border[:-1] @ u) + border[-1] * p
+
+
+def compare(
+    tangent: np.ndarray,
+    before: np.ndarray,
+    u: np.ndarray,
+    guess_u: np.ndarray,
+    p: float,
+    guess: float,
+    weights: np.ndarray,
+    metric_u: float,
+    metric_p: float,
+) -> tuple[float, float, float]:
+    """See lengths."""
+    weighted = weights * tangent
+    norm = math.sqrt(float(weighted @ tangent))
+    gap = u - guess_u
+    error = math.sqrt(float((weights[:-1] * gap) @ gap) + metric_p * (p - guess) ** 2)
+    return norm, float(weighted @ before) / norm, error
+
+
+def put(to: np.ndarray, source: np.ndarray, divisor: float) -> None:
+    """See lengths."""
+    np.divide(source, divisor, out=to)
+
+
+def extrapolate(
+    points: np.ndarray,
+    values: np.ndarray,
+    tangents: np.ndarray,
+    i: int,
+    h: float,
+    weights: np.ndarray,
+    metric_u: float,
+    metric_p: float,
+    u: np.ndarray,
+) -> float:
+    """See lengths."""
+    here, value = tangents[i - 1], values[i - 1]
+    if i >= 2:
+        there = tangents[i - 2]
+        chord, bend = points[i - 1] - points[i - 2], here - there
+        change = value - values[i - 2]
+        turn = float((weights * bend) @ bend)
+        d = math.sqrt(float((weights[:-1] * chord) @ chord) + metric_p * change**2) * (1.0 + turn / 24.0)
+        if d > 0.0 and turn < 1.0 and h < 4.0 * d:
+            share = h / d
+            a = h * (1.0 + 2.0 * share + share * share)
+            b = h * (share + share * share)
+            c = h * (3.0 * share + 2.0 * share * share) / d
+            u[:] = points[i - 1] + a * here[:-1] + b * there[:-1] - c * chord
+            return value + a * here[-1] + b * there[-1] - c * change
+    u[:] = points[i - 1] + h * here[:-1]
+    return value + h * here[-1]

@@ -1,0 +1,119 @@
+"""Sums over the unknowns: corrections, planes, angles. As loops, which are compiled with the continuation loop.
+
+:mod:`contvines.continuation.arrays` has the same functions for problems made of Python callables, whose unknowns have scales of
+their own; here all unknowns have scale 1 and weight ``metric_u``, so ``scale`` and ``weights`` are not read.
+"""
+
+import math
+
+
+def correction_size(step, u, p, scale):
+    """Largest entry of a correction, relative to 1 + abs(unknown); infinity where it is not finite."""
+    n = u.shape[0]
+    size = abs(step[n]) / (1.0 + abs(p))
+    finite = step[n] - step[n]
+    for i in range(n):
+        finite += step[i] - step[i]
+        change = abs(step[i]) / (1.0 + abs(u[i]))
+        if change > size:
+            size = change
+    return size if finite == 0.0 else math.inf
+
+
+def add(u, step):
+    """Add the part of a correction that belongs to the unknowns."""
+    for i in range(u.shape[0]):
+        u[i] += step[i]
+
+
+def remainder(border, u, p, target):
+    """target - border.(u, p)."""
+    gap = target - border[u.shape[0]] * p
+    for i in range(u.shape[0]):
+        gap -= border[i] * u[i]
+    return gap
+
+
+def fix_parameter(border):
+    """Fill `border` with the row that picks the parameter."""
+    n = border.shape[0] - 1
+    for j in range(n):
+        border[j] = 0.0
+    border[n] = 1.0
+
+
+def plane(tangent, u, p, weights, metric_u, metric_p, border):
+    """Fill `border` with the plane through (u, p) across a tangent; returns border.(u, p)."""
+    n = u.shape[0]
+    target = 0.0
+    for j in range(n):
+        border[j] = metric_u * tangent[j]
+        target += border[j] * u[j]
+    border[n] = metric_p * tangent[n]
+    return target + border[n] * p
+
+
+def compare(tangent, before, u, guess_u, p, guess, weights, metric_u, metric_p):
+    """Length of a tangent, cosine of its angle with the unit tangent before, distance of a point from its guess."""
+    n = u.shape[0]
+    norm = metric_p * tangent[n] * tangent[n]
+    cosine = metric_p * tangent[n] * before[n]
+    error = metric_p * (p - guess) ** 2
+    part_norm = 0.0
+    part_cosine = 0.0
+    part_error = 0.0
+    for j in range(n):
+        part_norm += tangent[j] * tangent[j]
+        part_cosine += tangent[j] * before[j]
+        part_error += (u[j] - guess_u[j]) ** 2
+    norm = math.sqrt(norm + metric_u * part_norm)
+    cosine = (cosine + metric_u * part_cosine) / norm
+    return norm, cosine, math.sqrt(error + metric_u * part_error)
+
+
+def put(to, source, divisor):
+    """Copy a vector, divided by a number."""
+    for j in range(source.shape[0]):
+        to[j] = source[j] / divisor
+
+
+def extrapolate(points, values, tangents, i, h, weights, metric_u, metric_p, u):
+    """Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p.
+
+    The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order).
+    """
+    n = u.shape[0]
+    if i < 2:
+        for j in range(n):
+            u[j] = points[i - 1, j] + h * tangents[i - 1, j]
+        return values[i - 1] + h * tangents[i - 1, n]
+    square = metric_p * (values[i - 1] - values[i - 2]) ** 2
+    turn = metric_p * (tangents[i - 1, n] - tangents[i - 2, n]) ** 2
+    chord = 0.0
+    bend = 0.0
+    for j in range(n):
+        change = points[i - 1, j] - points[i - 2, j]
+        chord += change * change
+        change = tangents[i - 1, j] - tangents[i - 2, j]
+        bend += change * change
+    square += metric_u * chord
+    turn += metric_u * bend
+    d = math.sqrt(square) * (1.0 + turn / 24.0)
+    if not (d > 0.0 and turn < 1.0 and h < 4.0 * d):
+        for j in range(n):
+            u[j] = points[i - 1, j] + h * tangents[i - 1, j]
+        return values[i - 1] + h * tangents[i - 1, n]
+    share = h / d
+    for j in range(n):
+        here = tangents[i - 1, j]
+        there = tangents[i - 2, j]
+        mean = (points[i - 1, j] - points[i - 2, j]) / d
+        u[j] = points[i - 1, j] + h * (
+            here + share * (2.0 * here + there - 3.0 * mean + share * (here + there - 2.0 * mean))
+        )
+    here = tangents[i - 1, n]
+    there = tangents[i - 2, n]
+    mean = (values[i - 1] - values[i - 2]) / d
+    return values[i - 1] + h * (
+        here + share * (2.0 * here + there - 3.0 * mean + share * (here + there - 2.0 * mean))
+    )
