@@ -44,6 +44,7 @@ class Condition:
     name: str
     event: int
     value: Any = None
+    side: int = 0
     function: Callable[[Any], Rates] | None = field(default=None, repr=False)
     phases: tuple[Any, Any] | None = None
     pace: Any = None
@@ -116,14 +117,17 @@ def conditions(
         flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
         phases = (nodes[i][0], following[0])
         for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights.friction):
-            if (zero.name, zero.event) != (condition.name, i) or (
-                condition.name == "wall" and condition.start != zero.side
-            ):
+            if zero.event != i or not _vanishes(condition, zero):
                 yield condition
-        empty = zero.name == "duration" and zero.event == i
-        if not empty:
+        if zero.event != i or zero.name != "stop":
             yield Condition("duration", i, phases[1] - phases[0])
             yield from _in_flight(motif, i, flight, phases, flights, zero)
+
+
+def _vanishes(condition: Condition, zero: Zero) -> bool:
+    """Whether a condition at the border's event is the one that vanishes."""
+    name = "stick" if zero.name == "stop" else zero.name
+    return condition.name == name and (name not in ("wall", "stick") or condition.side == zero.side)
 
 
 def _at_event(motif: Motif, i: int, here: Any, node: Sequence[Any], friction: Any) -> Iterator[Condition]:
@@ -133,12 +137,12 @@ def _at_event(motif: Motif, i: int, here: Any, node: Sequence[Any], friction: An
         yield Condition("approach", i, -WALLS[letter] * here.w1)
         return
     for side in (1, -1):
-        yield Condition("wall", i, 1 - side * node[1], start=side)
+        yield Condition("wall", i, 1 - side * node[1], side=side)
     if letter == "t":
         yield Condition("turn", i, -motif.incoming(i) * here.push - friction)
     elif letter == "s":
         for side in (1, -1):
-            yield Condition("stick", i, friction - side * here.push)
+            yield Condition("stick", i, friction - side * here.push, side=side)
     else:
         yield Condition("slip", i, motif.modes[i] * here.push1)
 
@@ -161,8 +165,8 @@ def _in_flight(
             graze = zero.name == "approach"
             start = 0 if letter != wall else 2 if graze and zero.event == i else 1
             end = 0 if arrival != wall else 2 if graze and zero.event == following else 1
-            touch = touching if zero.name == "wall" and zero.side == side else None
-            yield Condition("wall", i, None, room, phases, pace, start, end, touch)
+            touch = touching if zero.name == "reversal" and zero.side == side else None
+            yield Condition("wall", i, None, 0, room, phases, pace, start, end, touch)
     elif mode == 0:
         for side in (after, -after):
 
@@ -172,7 +176,7 @@ def _in_flight(
 
             held = zero.name == "stick" and zero.event == i and side == zero.side
             touch = touching if zero.name == "hold" and zero.side == side else None
-            yield Condition("hold", i, None, hold, phases, pace, 1 if held else 0, 1 if side == after else 0, touch)
+            yield Condition("hold", i, None, 0, hold, phases, pace, 1 if held else 0, 1 if side == after else 0, touch)
     else:
 
         def slide(phase: Any) -> Rates:
@@ -185,7 +189,9 @@ def _in_flight(
             start += 1
         if zero.event == following and zero.name == "approach":
             end = 1
-        yield Condition("flight", i, None, slide, phases, pace, start, end, touching if zero.name == "flight" else None)
+        if zero.event == following and zero.name == "stop" and zero.side == mode:
+            end = 2  # it would slide on in the same direction
+        yield Condition("flight", i, None, 0, slide, phases, pace, start, end, touching if zero.name == "flight" else None)
 
 
 def _decide(condition: Condition) -> bool | None:

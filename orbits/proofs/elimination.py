@@ -4,7 +4,7 @@
 
 Every entry is a ball; the result encloses the solutions of all real systems inside, and that no pivot holds zero proves all of
 them regular (Neumaier, *Interval Methods for Systems of Equations*, section 4.5). The unknowns x_1 ... x_{l-1} are eliminated
-one after another between two block rows at a time, with pivoting among these; x_0 and e come last.
+one after another between two block rows (and the border rows met so far), with pivoting among these; x_0 and e come last.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Blocks:
     b : list (l) of lists (k)
         Right sides.
     rows : list (m) of dict of int to list (k)
-        The border rows' coefficients of x_i, by i.
+        Each border row's coefficients of the one x_i that it reads, by i.
     corner : list (m) of lists (m)
         The border rows' coefficients of the further unknowns.
     c : list (m)
@@ -56,50 +56,42 @@ def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
     """
     length, k, m = len(system.A), len(system.A[0]), len(system.c)
     last = length - 1
-    # columns of a running row: x_i, x_{i+1}, x_0, e, right side
-    borders = [[*system.corner[j], system.c[j]] for j in range(m)]
-    heads = [system.rows[j].get(0, [0] * k) for j in range(m)]
-    current: list[list[Any]] = [[0] * k for _ in range(m)]
-    running = []
+    nothing = [0] * k
+    borders: dict[int, list[list[Any]]] = {}  # by the block they read: coefficients of it, e, right side
+    for row, corner, c in zip(system.rows, system.corner, system.c):
+        for i, own in row.items():
+            borders.setdefault(i, []).append([own, [*corner, c]])
+    # columns of a running row: x_i, x_{i+1}, x_0, e, right side; after the last block: x_0, e, right side
+    running: list[list[Any]] = []
     for row in range(k):
         tail = [*system.E[0][row], system.b[0][row]]
         A, D = system.A[0][row], system.D[0][row]
-        if length == 1:
-            running.append([*[p + q for p, q in zip(A, D)], *tail])
-        else:
-            running.append([*D, *[0] * k, *A, *tail])
+        running.append([*[p + q for p, q in zip(A, D)], *tail] if length == 1 else [*D, *nothing, *A, *tail])
+    for own, tail in borders.get(0, []):
+        running.append([*own, *tail] if length == 1 else [*nothing, *nothing, *own, *tail])
     kept: list[list[list[Any]]] = []
     for i in range(1, length):
         rows = running
         for row in range(k):
             D = system.D[i][row]
-            middle = [*[0] * k, *D] if i == last else [*D, *[0] * k]
+            middle = [*nothing, *D] if i == last else [*D, *nothing]
             rows.append([*system.A[i][row], *middle, *system.E[i][row], system.b[i][row]])
-        lower = []
-        for j in range(m):
-            own = system.rows[j].get(i, [0] * k)
-            lower.append([*[p + q for p, q in zip(current[j], own)], *[0] * k, *heads[j], *borders[j]])
-        pivots = _eliminate(rows, lower, k)
-        kept.append(pivots)
-        running = [row[k:] if i == last else [*row[k : 2 * k], *[0] * k, *row[2 * k :]] for row in rows]
-        if i == last:
-            running = [row[k:] for row in running]
-        for j, row in enumerate(lower):
-            current[j], heads[j], borders[j] = row[k : 2 * k], row[2 * k : 3 * k], row[3 * k :]
-    final = running + [[*heads[j], *borders[j]] for j in range(m)]
-    pivots = _eliminate(final, [], k + m)
+        rows += [[*own, *nothing, *nothing, *tail] for own, tail in borders.get(i, [])]
+        kept.append(_eliminate(rows, k))
+        running = [row[2 * k :] if i == last else [*row[k : 2 * k], *nothing, *row[2 * k :]] for row in rows]
+    pivots = _eliminate(running, k + m)
     solution = _back(pivots, k + m, [])
     head, extra = solution[:k], solution[k:]
     nodes: list[list[Any]] = [head]
-    following = [0] * k
+    following = nothing
     for pivots in reversed(kept):
         following = _back(pivots, k, [*following, *head, *extra])
         nodes.insert(1, following)
     return nodes, extra
 
 
-def _eliminate(rows: list[list[Any]], others: list[list[Any]], count: int) -> list[list[Any]]:
-    """Eliminate the first `count` columns from `rows` and `others` in place; the pivot rows leave `rows`."""
+def _eliminate(rows: list[list[Any]], count: int) -> list[list[Any]]:
+    """Eliminate the first `count` columns from `rows` in place; the pivot rows leave them."""
     pivots = []
     for column in range(count):
         sizes = [0.0 if _zero(row[column]) else float(row[column].abs_lower()) for row in rows]
@@ -109,7 +101,7 @@ def _eliminate(rows: list[list[Any]], others: list[list[Any]], count: int) -> li
         pivot = rows.pop(best)
         pivots.append(pivot)
         used = [j for j in range(column + 1, len(pivot)) if not _zero(pivot[j])]
-        for row in (*rows, *others):
+        for row in rows:
             if _zero(row[column]):
                 continue
             factor = row[column] / pivot[column]

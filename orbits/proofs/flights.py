@@ -101,11 +101,18 @@ class Shaken:
 
         return flight
 
+    def resting(self, phase: Any) -> tuple[Any, Any]:
+        """The push on the stuck absorber in steady state, and its rate."""
+        s, c = sin_cos(phase)
+        peak = self.amplitude * self.omega * self.omega
+        return self.bias - peak * s, -peak * self.omega * c
+
 
 class Coupled:
     """Flights of the absorber on its oscillator; node (Psi, B+, v, v') at impacts, (Psi, w, v, v') elsewhere."""
 
     node = 4
+    bias = 0
 
     def __init__(self, p: Mapping[str, Any]) -> None:
         self.eps, self.omega = p["mass_ratio"], p["frequency"]
@@ -176,6 +183,13 @@ class Coupled:
             )
 
         return flight
+
+    def resting(self, phase: Any) -> tuple[Any, Any]:
+        """The push on the stuck absorber in steady state, and its rate."""
+        s, c = sin_cos(phase)
+        X, Y, _, _ = self._response(True)
+        size = -self.whole * self.omega * self.omega
+        return size * (X * s + Y * c), size * self.omega * (X * c - Y * s)
 
 
 MACHINES: dict[str, type[Shaken] | type[Coupled]] = {

@@ -34,7 +34,7 @@ class Remedy(Enum):
     OTHER_WORD = "the word of the branch on the other side of this border would help"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Obstacle(Exception):
     """The step that failed, where, and what would help."""
 
