@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from platform import python_version
 from typing import Any
 
 from orbits.proofs.balls import ball, library, precision, texts
@@ -126,8 +127,6 @@ class Proof:
         """
         if self.box is None:
             raise ValueError("nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles)))
-        from importlib.metadata import version
-
         motif = self.motif
         return {
             "format": FORMAT,
@@ -146,7 +145,7 @@ class Proof:
             "claims": {"existence": True, "real": self.real, "stable": self.stable},
             "broken": list(self.broken) if self.broken else None,
             "bits": self.bits,
-            "versions": {"python-flint": library().__version__, "contvines": version("contvines")},
+            "versions": {"python-flint": library().__version__, "python": python_version()},
         }
 
     def __str__(self) -> str:

@@ -156,7 +156,7 @@ def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: fl
     if not abs(float(e[0]) - value) < NEAR:
         raise Obstacle(Step.REFINEMENT, Remedy.START)
     box = enclose(system, z, e, bits)
-    return replace(proof, box=box, real=True, details={"slip": side}, bits=bits)
+    return replace(proof, box=box, real=True, details={"border": ["rest", 0, side]}, bits=bits)
 
 
 def motif_of(
