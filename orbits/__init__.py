@@ -11,7 +11,7 @@ _PLACES = {
     "Scales": "orbits.design.scales",
     "Orbit": "orbits.orbit",
     "OrbitProblem": "orbits.problem",
-    "ParameterError": "orbits.machines.base",
+    "ParameterError": "orbits.machines.parameters",
     "Word": "orbits.words",
     "WordError": "orbits.words",
 }

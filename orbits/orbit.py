@@ -62,7 +62,7 @@ class Orbit:
     @cached_property
     def symmetric(self) -> bool:
         """Whether the orbit equals its mirror image after half its period."""
-        return is_symmetric(self.word, self.periods, self.nodes)
+        return self.model.has_mirror(self.params) and is_symmetric(self.word, self.periods, self.nodes)
 
     @cached_property
     def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
@@ -167,7 +167,18 @@ class Orbit:
         )
 
     def mirror(self) -> Orbit:
-        """The mirror image: L and R change places, half a forcing period later."""
+        """The mirror image: L and R change places, half a forcing period later.
+
+        Raises
+        ------
+        ValueError
+            If it is no motion of this machine.
+        """
+        if not self.model.has_mirror(self.params):
+            raise ValueError(
+                f"the model {self.model.name!r} has no mirror symmetry with these parameters: the image of "
+                f"{self.word.text!r} is not one of its orbits"
+            )
         nodes = -self.nodes
         nodes[:, 0] = self.nodes[:, 0] + np.pi
         return Orbit(self.model, self.word.mirror(), self.periods, nodes, self.params)
@@ -191,10 +202,10 @@ class Orbit:
         symmetric : bool, optional
             Solve on half the word; default: whether the orbit is symmetric.
         """
-        half = self.symmetric if symmetric is None else symmetric
-        return OrbitProblem(
-            self.model, self.word, self.periods, parameter or self.model.default_parameter, self.params, half
-        )
+        parameter = parameter or self.model.default_parameter
+        lasting = self.symmetric and self.model.has_mirror(self.params, parameter)
+        half = lasting if symmetric is None else symmetric
+        return OrbitProblem(self.model, self.word, self.periods, parameter, self.params, half)
 
     def seed(self, problem: OrbitProblem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
@@ -222,25 +233,26 @@ class Orbit:
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
         table = self.events
+        long, fast = (float(self.model.gauge(kind, self.params)) for kind in ("length", "velocity"))
         nodes = []
         for i, letter in enumerate(self.word.events):
             entry = {
                 "event": letter,
                 "phase": float(table.phase[i]),
-                "B_pre": float(table.B_pre[i]),
-                "B_post": float(table.B_post[i]),
-                "w": float(table.w[i]),
-                "w_rate": float(table.rate_post[i]),
+                "B_pre": float(table.B_pre[i]) * fast,
+                "B_post": float(table.B_post[i]) * fast,
+                "w": float(table.w[i]) * long,
+                "w_rate": float(table.rate_post[i]) * fast,
             }
-            if self.model.node == 4:
-                entry |= {"v": float(table.v[i]), "v_rate": float(table.v_rate[i])}
+            for name in self.model.node_names[2:]:
+                entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
             nodes.append(entry)
         return {
             "word": self.word.text,
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,
-            "parameters": self.parameters,
+            **self.model.described(self.params),
             "nodes": nodes,
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from orbits.cycles import measures as measuring
+from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE, border_kind
 from orbits.elimination.block_cyclic import workspace
@@ -56,6 +57,11 @@ class OrbitProblem:
         params: np.ndarray,
         symmetric: bool = False,
     ) -> None:
+        self.mirrored = model.has_mirror(np.asarray(params, dtype=float), parameter)
+        if symmetric and not self.mirrored:
+            raise ValueError(
+                f"the model {model.name!r} has no mirror image along {parameter}, so no symmetric orbits"
+            )
         if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
             raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
         if len(word) == 0:
@@ -142,7 +148,7 @@ class OrbitProblem:
         if self.symmetric:
             return ()
         found = []
-        places = self._mirror_places()
+        places = self._mirror_places() if self.mirrored else 0
         if places:
             half = self.sibling(
                 self.word.head(2 * places), 2 * self.periods * places // self.length, symmetric=True
@@ -164,6 +170,14 @@ class OrbitProblem:
                 )
             )
         return tuple(found)
+
+    def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
+        """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
+        word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u))
+        if len(word) == len(self.word):
+            return None
+        found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes))
+        return found, found.reduce(nodes)
 
     def _mirror_places(self) -> int:
         """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
@@ -238,7 +252,8 @@ class OrbitProblem:
         """
         from orbits.cycles.identity import canonical
 
-        return canonical(self.word, self.periods, self.expand(u))
+        mirrored = self.model.has_mirror(self.values(p))
+        return canonical(self.word, self.periods, self.expand(u), mirrored)
 
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
@@ -249,7 +264,8 @@ class OrbitProblem:
 
         if not isinstance(other, OrbitProblem):
             return False
-        return distance(self.orbit(u, p), other.orbit(v, p), mirror=True) <= SAME
+        mirrored = self.model.has_mirror(self.values(p))
+        return distance(self.orbit(u, p), other.orbit(v, p), mirrored) <= SAME
 
     # ------------------------------------------------------------------ for people
     @property
@@ -297,6 +313,7 @@ class OrbitProblem:
             "impacts": self.word.impacts,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
+            **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
         }
 

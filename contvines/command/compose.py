@@ -32,7 +32,7 @@ def checked_study(path: Path) -> "Study":
     except ValueError as error:
         raise ValueError(f"{path}: [model] {error}") from error
     try:
-        Word.parse(study.word, frictionless=model.friction_acceleration(vector) == 0.0)
+        Word.parse(study.word, frictionless=model.frictionless(vector))
     except ValueError as error:
         raise ValueError(f"{path}: [start] {error}") from error
     return study
@@ -48,7 +48,10 @@ def machine(study: "Study") -> Any:
 
 def loose(study: "Study") -> dict[str, float]:
     """Parameters that belong to the orbit rather than to the machine (the reduced model's amplitude)."""
-    return {k: v for k, v in study.parameters.items() if study.name == "absorber" and k == "amplitude"}
+    from orbits.machines.catalogue import model_class
+
+    own = model_class(study.name).field_names()
+    return {k: v for k, v in study.parameters.items() if k not in own}
 
 
 def first_orbit(study: "Study") -> Any:

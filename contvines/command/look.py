@@ -32,6 +32,14 @@ class Picture(StrEnum):
     network = "network"
 
 
+class Colors(StrEnum):
+    """What a colour of a diagram stands for."""
+
+    branch = "branch"
+    word = "word"
+    stability = "stability"
+
+
 def show(file: FileArgument, json: JsonOption = False) -> None:
     """List branches, special points and switches."""
     from contvines.store import load
@@ -65,7 +73,7 @@ def orbit(
 ) -> None:
     """One orbit: its events, multipliers and margins."""
     if plot is not None:
-        from contvines.plots.style import check_picture
+        from contvines.plots.figures import check_picture
 
         check_picture(plot)
     found = _orbit(file, label, trust)
@@ -77,8 +85,8 @@ def orbit(
         typer.echo(_describe(found))
     if plot is not None:
         from contvines.command.compose import say
+        from contvines.plots.figures import save_figure
         from contvines.plots.portrait import plot_portrait
-        from contvines.plots.style import save_figure
 
         save_figure(plot_portrait(found), plot)
         say(f"drawn in {plot}")
@@ -89,22 +97,55 @@ def plot(
     x: Annotated[
         str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")
     ] = None,
-    y: Annotated[str | None, typer.Option("-y", help="Measure on the y axis; by default B.")] = None,
+    y: Annotated[
+        str | None,
+        typer.Option(
+            "-y",
+            help="Measure on the y axis; by default what the machine is judged by: B (velocity at the first impact) "
+            "of the absorber, max_abs_q1 of the coupled machine, the first measure of other problems.",
+        ),
+    ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
     ] = None,
     kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
     branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
+    xlim: Annotated[
+        tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
+    ] = None,
+    ylim: Annotated[
+        tuple[float, float] | None, typer.Option("--ylim", metavar="LOW HIGH", help="Limits of the y axis.")
+    ] = None,
+    size: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--size", metavar="WIDTH HEIGHT", help="Inches; 3.4 2.4 is a column of a journal."),
+    ] = None,
+    color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
+    words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
+    legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,
+    style: Annotated[
+        str | None, typer.Option("--style", help="A style or style sheet of matplotlib's, before ours.")
+    ] = None,
     trust: TrustOption = False,
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
     from contvines.command.compose import beside
-    from contvines.plots.style import check_picture, save_figure
+    from contvines.plots.figures import check_picture, check_style, save_figure
     from contvines.store import load
 
-    _refuse_ignored(kind, {"-x": x, "-y": y, "--branch": branch})
+    asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
+    asked |= {"--no-legend": None if legend else "", "--branch": branch}
+    _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
     check_picture(target)
+    check_style(style)
+    for name, pair in (("--xlim", xlim), ("--ylim", ylim)):
+        if pair is not None and not (math.isfinite(sum(pair)) and pair[0] < pair[1]):
+            raise ValueError(
+                f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
+            )
+    if size is not None and not all(1.0 <= side <= 60.0 for side in size):
+        raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
     graph = load(file, trust=trust)
     _say_what_lacks(graph)
     if not graph.finished:
@@ -114,11 +155,22 @@ def plot(
     if kind is Picture.diagram:
         from contvines.plots.diagram import plot_diagram
 
-        figure = plot_diagram(graph, x, y)
+        figure = plot_diagram(
+            graph,
+            x,
+            y,
+            words=words,
+            color=(color or Colors.branch).value,
+            legend=legend,
+            xlim=xlim,
+            ylim=ylim,
+            figsize=size,
+            style=style,
+        )
     elif kind is Picture.network:
         from contvines.plots.network import plot_network
 
-        figure = plot_network(graph)
+        figure = plot_network(graph, figsize=size, style=style)
     else:
         from contvines.plots.multipliers import plot_multipliers
 
@@ -127,7 +179,7 @@ def plot(
             raise ValueError(
                 f"--branch {label}: there is no such branch in {file}; it has {', '.join(graph.branches)}."
             )
-        figure = plot_multipliers(graph.branches[label])
+        figure = plot_multipliers(graph.branches[label], figsize=size, style=style)
     save_figure(figure, target)
     typer.echo(str(target))
 
@@ -171,10 +223,11 @@ def export(
     typer.echo(str(write(graph, to.value, target)))
 
 
-def _refuse_ignored(kind: Picture, options: dict[str, str | None]) -> None:
+def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
     """Options that this kind of picture would ignore are refused."""
+    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend")
     takes = {
-        Picture.diagram: (("-x", "-y"), "draws all branches"),
+        Picture.diagram: (of_diagrams, "draws all branches"),
         Picture.multipliers: (("--branch",), "draws over the parameter"),
         Picture.network: ((), "draws boxes and arrows"),
     }
@@ -183,9 +236,16 @@ def _refuse_ignored(kind: Picture, options: dict[str, str | None]) -> None:
         if value is not None and name not in known:
             other = Picture.multipliers if name == "--branch" else Picture.diagram
             raise ValueError(
-                f"{name} {value}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
+                f"{name}{_given(value)}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
                 f"or choose --kind {other.value}."
             )
+
+
+def _given(value: Any) -> str:
+    """An option's value as it was typed; nothing for a switch."""
+    if isinstance(value, bool) or value == "":
+        return ""
+    return " " + (" ".join(f"{v:g}" for v in value) if isinstance(value, tuple) else str(value))
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> Any:

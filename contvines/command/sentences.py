@@ -5,28 +5,20 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
+from contvines.command import schema
 from contvines.command.schema import (
     EXCITATION,
+    MODEL_SECTIONS,
     PARAMETERS,
-    AbsorberSection,
     ContinueSection,
-    CoupledSection,
     StartSection,
     SweepSection,
 )
+from orbits.machines.catalogue import NAMES, model_class
 
-# What would do, for each field; used in every sentence that refuses a value.
+# What would do, for each field of a study that is no parameter; used in every sentence that refuses a value.
 WOULD_DO = {
-    "name": "'absorber' or 'coupled'",
-    "restitution": "a number in (0, 1], for example 0.76",
-    "friction": "a number from 0 to 1e6, for example 0.5",
-    "gravity": "a number from 0 to 1e6, for example 0.211",
-    "mass_ratio": "a number from 0 to 1e6 (coupled machine: at least 1e-6), for example 0.006",
-    "frequency": "a number from 1e-6 to 1e6, for example 1.0",
-    "amplitude": "a number from 0 to 1e6, for example 0.55",
-    "forcing": "a number from 0 to 1e6, for example 3.3",
-    "damping": "a number from 0 to 1e6, for example 0.9",
-    "excitation": "'exact', 'truncated' (without the damper's share of the base's motion), or a number from 0 to 1",
+    "name": " or ".join(repr(name) for name in NAMES),
     "word": "a word of events such as 'LR', 'LtL' or 'tt', or of maps such as 'LR RL'",
     "periods": "a whole number from 1 to 4096",
     "guess": "a list with one [phase, B or w] per event of the word",
@@ -50,19 +42,29 @@ SECTIONS = {
 }
 
 
-def refusal_of(kind: Any, section: str, key: str, value: Any) -> str | None:
+def would_do(key: str, machine: Any = None) -> str:
+    """What would do for a field: a parameter of the machine of that name, or a field of the study."""
+    if machine in NAMES and key in PARAMETERS[machine]:
+        return schema.would_do(model_class(machine).parameter(key))
+    return WOULD_DO.get(key, "another value")
+
+
+def refusal_of(machine: str, section: str, key: str, value: Any) -> str | None:
     """The sentence that refuses a parameter's value, or None if it is fine."""
     try:
+        kind = PARAMETERS[machine][key]
         TypeAdapter(kind, config=ConfigDict(strict=True, allow_inf_nan=False)).validate_python(value)
     except ValidationError as error:
-        return sentence_of({**error.errors()[0], "loc": (section, key), "input": value}, {})
+        return sentence_of(
+            {**error.errors()[0], "loc": (section, key), "input": value}, {"model": {"name": machine}}
+        )
     return None
 
 
 def sentence_of(error: Any, data: dict[str, Any]) -> str:
     """One pydantic error as a sentence: field, value, what would do."""
     kind = error["type"]
-    loc = [p for p in error["loc"] if p not in ("absorber", "coupled")]
+    loc = [p for p in error["loc"] if p not in NAMES]
     section = str(loc[0])
     value = error.get("input")
     if kind in ("union_tag_invalid", "union_tag_not_found"):
@@ -81,7 +83,8 @@ def sentence_of(error: Any, data: dict[str, Any]) -> str:
         return f"{section} = {_show(value)} is not a section; write [{section}] on a line of its own, its keys below."
     key = str(loc[1])
     place = f"[{section}] {key}" + "".join(f"[{i}]" for i in loc[2:])
-    would = WOULD_DO.get(key, "another value")
+    model = data.get("model")
+    would = would_do(key, model.get("name") if isinstance(model, dict) else None)
     if kind == "missing":
         return f"[{section}] {key} is missing; {would} would do."
     if kind == "extra_forbidden":
@@ -110,7 +113,7 @@ def _fields(section: str, data: dict[str, Any]) -> list[str]:
     }
     if section == "model":
         name = data.get("model", {}).get("name")
-        return list((CoupledSection if name == "coupled" else AbsorberSection).model_fields)
+        return list(MODEL_SECTIONS.get(name, MODEL_SECTIONS[NAMES[0]]).model_fields)
     return list(models[section].model_fields)
 
 

@@ -15,13 +15,14 @@ from pydantic import TypeAdapter, ValidationError
 
 from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, SweepSection
 from contvines.command.sentences import (
-    WOULD_DO,
     did_you_mean,
     refusal_of,
     sentence_of,
     together,
     unknown_field,
+    would_do,
 )
+from orbits.machines.catalogue import model_class
 
 
 class StudyError(ValueError):
@@ -35,7 +36,7 @@ class Study:
     Attributes
     ----------
     path : Path of the TOML file.
-    name : "absorber" or "coupled".
+    name : of the machine, as in `orbits.machines.catalogue`.
     parameters : every parameter of the model at the start, by name.
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
@@ -136,7 +137,7 @@ def _resolve(file: StudyFile, path: Path) -> Study:
         if key not in known:
             wrong.append(unknown_field("start", key, value, ["word", "periods", "guess", *known]))
             continue
-        refusal = refusal_of(known[key], "start", key, value)
+        refusal = refusal_of(name, "start", key, value)
         if refusal:
             wrong.append(refusal)
         else:
@@ -149,7 +150,7 @@ def _resolve(file: StudyFile, path: Path) -> Study:
             f"{did_you_mean(go.parameter, known)}; it has {', '.join(known)}."
         )
     else:
-        wrong += _check_interval("continue", go.parameter, go.within, known[go.parameter])
+        wrong += _check_interval("continue", go.parameter, go.within, name)
         if go.parameter not in parameters and not any(go.parameter in w for w in wrong):
             wrong.append(
                 f"[start] {go.parameter} is missing: it is the continuation parameter's first value; "
@@ -167,16 +168,16 @@ def _resolve(file: StudyFile, path: Path) -> Study:
         and excitation != go.parameter
         and not any(excitation in w for w in wrong)
     ):
-        wrong.append(f"[start] {excitation} is missing; {WOULD_DO[excitation]} would do.")
+        wrong.append(f"[start] {excitation} is missing; {would_do(excitation, name)} would do.")
     swept = file.sweep.within
     if swept is not None and go.parameter in known:
-        wrong += _check_interval("sweep", go.parameter, swept, known[go.parameter])
+        wrong += _check_interval("sweep", go.parameter, swept, name)
     guess = file.start.guess
     if guess is not None:
-        width = 2 if name == "absorber" else 4
+        names = model_class(name).node_names
         for i, node in enumerate(guess):
-            if len(node) != width:
-                form = "[phase, B or w]" if width == 2 else "[phase, B or w, v, v_rate]"
+            if len(node) != len(names):
+                form = f"[{', '.join(names)}]"
                 wrong.append(
                     f"[start] guess[{i}] = {node!r} has {len(node)} numbers; each event needs {form}."
                 )
@@ -200,16 +201,16 @@ def _resolve(file: StudyFile, path: Path) -> Study:
     )
 
 
-def _check_interval(section: str, parameter: str, within: list[float], kind: Any) -> list[str]:
+def _check_interval(section: str, parameter: str, within: list[float], machine: str) -> list[str]:
     low, high = within
     if low == high:
         return [f"[{section}] within = {within!r} is empty; low < high would do."]
     if low > high:
         return [f"[{section}] within = {within!r} is reversed; within = [{high!r}, {low!r}] would do."]
     for value in within:
-        if refusal_of(kind, section, parameter, value):
+        if refusal_of(machine, section, parameter, value):
             return [
                 f"[{section}] within = {within!r} leaves the range of {parameter} at {value!r}; "
-                f"{WOULD_DO[parameter]} would do at both ends."
+                f"{would_do(parameter, machine)} would do at both ends."
             ]
     return []

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..interrupts import HELD, OPEN
 from . import corrector
 from . import march as source
 from .binding import bind
@@ -61,6 +62,7 @@ class Engine:
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
         self.bound = bind(problem.kernels)
+        self.section = HELD if problem.kernels.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
@@ -138,22 +140,23 @@ class Engine:
         here[:] = u
         row = np.zeros(self.row_size)
         step, tangent = self.step, self.tangent
-        p, sweeps, residual, sign, size = self.bound.solve(
-            self.data,
-            self.work,
-            here,
-            p,
-            border,
-            target,
-            TIGHT,
-            sweeps,
-            step,
-            tangent,
-            row,
-            corrector.EVERYTHING,
-            self.scale,
-            self.noise,
-        )
+        with self.section:
+            p, sweeps, residual, sign, size = self.bound.solve(
+                self.data,
+                self.work,
+                here,
+                p,
+                border,
+                target,
+                TIGHT,
+                sweeps,
+                step,
+                tangent,
+                row,
+                corrector.EVERYTHING,
+                self.scale,
+                self.noise,
+            )
         if sweeps < 0 or not np.isfinite(tangent).all():
             return None
         tangent = self.unit(tangent)

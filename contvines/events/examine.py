@@ -15,6 +15,8 @@ from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
+STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
+BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -87,7 +89,10 @@ class Examiner:
                 elif abs(test(root.point)) > REACHED:
                     continue  # two real multipliers met and left the axis; none of them was at the boundary
                 elif not _near(root.position, [e.position for e in folds] + met):
-                    crossings.append(self._located(root, "branch-point", k))
+                    if self._turns_back(segment, root):
+                        folds.append(self._located(root, "fold", 0))
+                    else:
+                        crossings.append(self._located(root, "branch-point", k))
         outside = (after - before) @ np.array([1, 1, 2])
         if discarded and outside != 0 and depth < 10:
             middle = segment.at(0.5)
@@ -124,6 +129,19 @@ class Examiner:
         if root is None or not root.continuous:
             return []
         return [] if _near(root.position, met, 0.02) else [self._located(root, "fold", 0)]
+
+    def _turns_back(self, segment: Segment, root: Root) -> bool:
+        """Whether the parameter has an extremum where a multiplier passes +1, though the ends do not tell."""
+        unit = parameter_unit(self.engine.within, root.point.p)
+        if abs(root.point.tangent[-1]) > STATIONARY * unit:
+            return False
+        reach = min(BESIDE, 0.5 * root.position, 0.5 * (1.0 - root.position)) or BESIDE
+        sides = [segment.at(root.position + step) for step in (-reach, reach)]
+        return (
+            sides[0] is not None
+            and sides[1] is not None
+            and sides[0].tangent[-1] * sides[1].tangent[-1] < 0.0
+        )
 
     def _sharpen(self, segment: Segment, crossings: list[Located]) -> list[Located]:
         """Branch points again, through interpolation; those at one and the same place from the mean of their tests."""

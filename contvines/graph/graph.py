@@ -105,6 +105,11 @@ class Graph:
         state = "" if self.finished else ", unfinished"
         return f"Graph({len(self.branches)} branches, {len(self.special)} special points, {len(self.switches)} switches{state})"
 
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the parameter and the measures by name; none where all are plain numbers."""
+        return next((dict(b.description.get("units") or {}) for b in self.branches.values()), {})
+
     def on(self, branch: str) -> list[SpecialPoint]:
         """The special points of a branch, in order along it."""
         return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
@@ -128,6 +133,7 @@ class Graph:
             "model": self.model,
             "parameter": self.parameter,
             "within": list(self.within),
+            **({"units": self.units} if self.units else {}),
             "finished": self.finished,
             "message": self.message,
             "branches": [branch.to_dict() for branch in self.branches.values()],

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..branch import Branch
 from ..continuation.engine import Engine, Solved
+from ..interrupts import OPEN
 from ..normal_forms import criticality, crossing_speed
 from ..problems.registry import UnknownFactory, rebuild
 from ..special import BORDERS, SpecialPoint
@@ -239,7 +240,8 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
             }
             for i in range(len(problems))
         ]
-    seeds = list(point.problem.beyond(point))
+    with OPEN:
+        seeds = list(point.problem.beyond(point))
     record: dict[str, Any] = {
         "problems": [dict(seed.problem.describe()) for seed in seeds],
         "p": [float(seed.p) for seed in seeds],

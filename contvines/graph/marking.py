@@ -8,6 +8,7 @@ from ..branch import Branch
 from ..continuation.engine import Engine
 from ..events.examine import Located
 from ..half import Half
+from ..interrupts import OPEN
 from ..normal_forms import fold_coefficient
 from ..special import BORDERS, PREFIXES, SpecialPoint
 from ..switching import null_vectors
@@ -203,7 +204,8 @@ def _replay(run: Run, special: SpecialPoint) -> float | None:
     key = f"{run.serial}/replay/{special.label}"
     known = run.journal.recall(key)
     if known is None:
-        error = special.problem.replay(special.u, special.value)
+        with OPEN:
+            error = special.problem.replay(special.u, special.value)
         known = {"error": None if error is None else float(error)}
         run.journal.record(key, known)
     return known["error"]

@@ -12,10 +12,12 @@ if TYPE_CHECKING:
 
 def table(graph: Graph) -> str:
     """Branches, special points and switches, one line each."""
-    name = graph.parameter
+    unit = graph.units.get(graph.parameter, "")
+    low, high = graph.within
     lines = [
-        f"{_counted(len(graph.branches))} in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"
+        f"{_counted(len(graph.branches))} in {graph.parameter} within [{low:.6g}, {high:.6g}] {unit}".rstrip()
     ]
+    name = with_unit(graph.parameter, unit)
     if not graph.finished:
         lines[0] += " (unfinished)"
     rows = [("branch", "what", name, "stable", "points", "ended")]
@@ -61,6 +63,11 @@ def table(graph: Graph) -> str:
             )
         lines += ["", *_columns(rows)]
     return "\n".join(lines)
+
+
+def with_unit(name: str, unit: str | None) -> str:
+    """A name as the head of a column."""
+    return f"{name} [{unit}]" if unit else name
 
 
 def _counted(branches: int) -> str:

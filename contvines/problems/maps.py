@@ -16,6 +16,8 @@ from .parameters import ParameterSet
 from .protocol import Embedding, ProblemDefaults, Symmetry
 from .registry import find_callables
 
+SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
+
 
 class MapProblem(ProblemDefaults):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
@@ -190,6 +192,22 @@ class MapProblem(ProblemDefaults):
         half = 0.5 * (u[: self.dimension // 2] + u[self.dimension // 2 :])
         return self._sibling(half, self.p0, self.cycle // 2), half
 
+    def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, float]:
+        """The points of the shortest cycle of which u is a repetition, and the difference at which points are one."""
+        nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
+        scale = SAME * (1.0 + float(np.abs(nodes).max()))
+        root = next(
+            r
+            for r in range(1, n + 1)
+            if n % r == 0 and np.abs(nodes - np.roll(nodes, r, axis=0)).max() <= scale
+        )
+        return nodes[:root], scale
+
+    def root(self, u: np.ndarray, p: float) -> tuple[MapProblem, np.ndarray] | None:
+        """The problem of the shortest cycle of which u is a repetition, and its points; None if u is no repetition."""
+        nodes, _ = self._shortest(u)
+        return None if len(nodes) == self.cycle else (self._sibling(nodes, p, len(nodes)), nodes.reshape(-1))
+
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
@@ -202,13 +220,8 @@ class MapProblem(ProblemDefaults):
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
         """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
-        nodes = np.asarray(u, dtype=float).reshape(self.cycle, self.node)
-        n = self.cycle
-        scale = 1e-7 * (1.0 + np.abs(nodes).max())
-        for root in range(1, n + 1):
-            if n % root == 0 and np.abs(nodes - np.roll(nodes, root, axis=0)).max() <= scale:
-                break
-        nodes = nodes[:root]
+        nodes, scale = self._shortest(u)
+        root = len(nodes)
         forms = [nodes]
         if self.mirror is not None:
             forms.append(self._mirrored(nodes.reshape(-1)).reshape(root, self.node))
@@ -237,6 +250,12 @@ class MapProblem(ProblemDefaults):
             else:
                 result[name] = getattr(nodes[:, :, j], what)(axis=1)
         return result
+
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
+        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
+        if name not in {f"x{j}" for j in range(self.node)}:
+            return None
+        return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""

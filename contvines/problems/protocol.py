@@ -19,7 +19,8 @@ The contract, in words:
 4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none".
    ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
 5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
-   vector which are the same for solutions that are one and the same thing.
+   vector which are the same for solutions that are one and the same thing. ``root(u, p)`` returns the smaller problem
+   and its unknowns for a solution that only repeats a shorter one (a cycle run through twice), else None.
 6. ``offspring`` hands out the larger problem in which a special point is a branch point, ``beyond`` the solutions
    on the other side of a border.
 
@@ -168,6 +169,8 @@ class Problem(Protocol):
 
     def replay(self, u: np.ndarray, p: float) -> float | None: ...
 
+    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None: ...
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -230,4 +233,7 @@ class ProblemDefaults:
         return Solution(self.parameter, float(p), np.array(u))
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
+        return None
+
+    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None:
         return None

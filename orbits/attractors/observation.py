@@ -136,7 +136,7 @@ class _Tally:
         self.contacts += int(np.count_nonzero(run.codes == HOLD))
         self.speed = max(self.speed, float(hits.max(initial=0.0)))
         reach = np.append(run.states[:, 1], run.end[1])
-        if found.model.friction_acceleration(found.params) == 0.0:  # turns are no events there
+        if found.model.frictionless(found.params):  # turns are no events there
             reach = np.append(reach, run.sample().w)
         self.w = min(1.0, max(self.w, float(np.abs(reach).max())))
         if found.machine.state > V:

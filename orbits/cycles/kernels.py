@@ -31,6 +31,9 @@ from orbits.multipliers import (
     product_of_two,
     small_eigenvalues,
 )
+from orbits.words.alphabet import CODES
+
+STICK = CODES["s"]
 
 # filled in per model by `specialise`
 linearise: Any = None
@@ -45,6 +48,14 @@ def _inspect(data, u, p, work, row):
     """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
     unpin(data, work)
     A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
+    events, length = data[0], A.shape[0]
+    for i in range(length):
+        # Nothing later depends on when a stick began: w' = 0 there and v'' is the same before and after. That phase moves
+        # with 1/w'', which grows without bound where the stick vanishes, so it is held instead.
+        if events[(i + 1) % length] == STICK:
+            A[i, 0, :] = 0.0
+            D[i, 0, :] = 0.0
+            D[i, 0, 0] = 1.0
     multipliers(A, D, data[4], re, im, scratch)
     n = re.size
     count = n

@@ -202,11 +202,12 @@ class Word:
         """The shortest word of which this one is a repetition."""
         return self.head(len(self.events) // self.repetitions)
 
-    def canonical(self) -> Word:
-        """The smallest of all rotations of the word and of its mirror image: one form for one cycle."""
+    def canonical(self, mirror: bool = True) -> Word:
+        """The smallest of all rotations of the word, and of its mirror image if that is a motion of the machine, too."""
         if not self.events:
             return self
-        rotations = [w.rotate(k) for w in (self, self.mirror()) for k in range(len(self.events))]
+        images = (self, self.mirror()) if mirror else (self,)
+        rotations = [w.rotate(k) for w in images for k in range(len(self.events))]
         starts = [w for w in rotations if w.events[0] != "u"]
         return min(starts, key=lambda w: (w.events, w.modes))
 

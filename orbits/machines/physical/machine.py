@@ -16,13 +16,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from orbits.machines.base import POSITIVE, Model
+from orbits.machines.base import Model
+from orbits.machines.parameters import POSITIVE, Parameter
 from orbits.machines.path import along
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent
 
 HEAVY = 0.5  # share of the oscillator's mass from which on an absorber is none
-EXCITATIONS = {"exact": 1.0, "truncated": 0.0}
 
 
 def tables(model: type[Model]) -> ModuleType:
@@ -80,8 +80,8 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
             raise QuantityError(
                 f"{section}{key} = {value!r}: the machine {name!r} has no such quantity; it has {', '.join(known)}"
             )
-        if key == "excitation" and isinstance(value, str):
-            value = EXCITATIONS.get(value, value)
+        if isinstance(value, str) and key in base.parameter_names:
+            value = base.parameter(key).words.get(value, value)
         counted[key] = units.read(known[key], value, section)
         values[key] = units.si(known[key], *counted[key])
         if not unusual:
@@ -152,8 +152,7 @@ def _class_of(base: type[Model]) -> Any:
         "__annotations__": dict.fromkeys(table.SCALES, float),
         "__module__": __name__,
         "__doc__": base.__doc__,
-        "parameter_names": (*base.parameter_names, *table.SCALES),
-        "limits": {**base.limits, **dict.fromkeys(table.SCALES, POSITIVE)},
+        "table": (*base.table, *(Parameter(name, "a scale", POSITIVE, name) for name in table.SCALES)),
         "tables": table,
     }
     made = type(f"Physical{base.__name__}", (Physical, base), body)
@@ -193,17 +192,23 @@ class Physical(Model):
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of every quantity and measure; "" for plain numbers."""
+        """Units of quantities and measures by name; plain numbers have none."""
         from orbits.cycles.measures import KINDS, names
 
         gauges: dict[str, Quantity] = self.tables.GAUGES
         found = dict(zip(self.amount_names, self.said))
-        for name in (*names(self), "x", "impacts_per_period"):
+        for name in names(self):
             kind = KINDS.get(name, "")
             found.setdefault(
                 name, "rad" if kind == "angle" else units.unit_of(gauges[kind]) if kind in gauges else ""
             )
-        return found
+        return {name: unit for name, unit in found.items() if unit}
+
+    def described(self, params: np.ndarray) -> dict[str, Any]:
+        """The quantities with their units, and the numbers behind them."""
+        amounts = dict(zip(self.amount_names, (float(v) for v in self.amounts(params))))
+        numbers = dict(zip(self.parameter_names, (float(v) for v in params)))
+        return {"parameters": amounts, "units": self.units, "numbers": numbers}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure is, in the unit that is shown; params (..., P), result (...)."""
@@ -268,12 +273,12 @@ class Physical(Model):
             q.name: (float(value) / units.si(q, 1.0, units_[q.name]), units_[q.name])
             for q, value in zip(chosen, ones.amounts_of(params))
         }
-        kept = {q: (self.quantities[q], self.units[q]) for q in self.amount_names}
+        kept = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
         return _assembled(self.base, self.tables, chosen, {**counted, **kept}, self.unusual)
 
     @property
     def _texts(self) -> dict[str, Any]:
-        return {name: units.text(value, self.units[name]) for name, value in self.quantities.items()}
+        return {name: units.text(value, self.units.get(name, "")) for name, value in self.quantities.items()}
 
     def settings(self) -> dict[str, Any]:
         """The machine's quantities as text, ready for JSON."""
