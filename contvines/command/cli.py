@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import design, look, run, sweep
+from contvines.command import design, look, prove, run, sweep
 
 app = typer.Typer(
     name="contvines",
@@ -49,6 +49,7 @@ app.command()(run.trace)
 app.command()(run.switch)
 app.command()(look.show)
 app.command()(look.orbit)
+app.command()(prove.prove)
 app.command()(look.plot)
 app.command()(look.export)
 app.command()(sweep.sweep)

@@ -68,7 +68,9 @@ class Reality:
         return [Obstacle(Step.ADMISSIBILITY, Remedy.BORDER, c.event, c.name) for c in self.open]
 
 
-def examine(motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], zero: Zero = NOTHING) -> Reality:
+def examine(
+    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], zero: Zero = NOTHING
+) -> Reality:
     """Decide every condition for all solutions with nodes in these balls.
 
     Parameters
@@ -176,7 +178,9 @@ def _in_flight(
 
             held = zero.name == "stick" and zero.event == i and side == zero.side
             touch = touching if zero.name == "hold" and zero.side == side else None
-            yield Condition("hold", i, None, 0, hold, phases, pace, 1 if held else 0, 1 if side == after else 0, touch)
+            yield Condition(
+                "hold", i, None, 0, hold, phases, pace, 1 if held else 0, 1 if side == after else 0, touch
+            )
     else:
 
         def slide(phase: Any) -> Rates:
@@ -191,7 +195,9 @@ def _in_flight(
             end = 1
         if zero.event == following and zero.name == "stop" and zero.side == mode:
             end = 2  # it would slide on in the same direction
-        yield Condition("flight", i, None, 0, slide, phases, pace, start, end, touching if zero.name == "flight" else None)
+        yield Condition(
+            "flight", i, None, 0, slide, phases, pace, start, end, touching if zero.name == "flight" else None
+        )
 
 
 def _decide(condition: Condition) -> bool | None:

@@ -55,7 +55,9 @@ def decimal(value: Given) -> str | tuple[str, str]:
     if isinstance(value, tuple):
         middle, radius = (str(part) for part in value)
         if _finite(middle) is None or (_finite(radius) or Decimal(-1)) < 0:
-            raise ProofError(f"{value!r} is no ball: give middle and radius as decimals, the radius 0 or above")
+            raise ProofError(
+                f"{value!r} is no ball: give middle and radius as decimals, the radius 0 or above"
+            )
         return middle, radius
     text = value if isinstance(value, str) else repr(float(value))
     if _finite(text) is None:
@@ -86,7 +88,16 @@ def interval(low: Any, high: Any) -> Any:
 def texts(value: Any, digits: int = 40) -> list[str]:
     """Middle and radius of a ball as decimals; the decimal ball holds the given one."""
     middle, radius, exponent = (int(part) for part in value.mid_rad_10exp(digits))
-    return [_text(middle, exponent), _text(radius, exponent)]
+    drop = max(0, len(str(radius)) - 3)
+    radius = -(-radius // 10**drop) if radius else 0
+    return [_text(middle, exponent), f"{radius}e{exponent + drop}" if radius else "0"]
+
+
+def upper_text(radius: Any) -> str:
+    """A short decimal that is at least this radius."""
+    middle, slack, exponent = (int(part) for part in radius.abs_upper().mid_rad_10exp(1))
+    drop = max(0, len(str(middle)) - 3)
+    return f"{(middle + slack) // 10**drop + 1}e{exponent + drop}"
 
 
 def _text(integer: int, exponent: int) -> str:
@@ -100,13 +111,3 @@ def _text(integer: int, exponent: int) -> str:
         cut = len(whole) + exponent
         return sign + whole[:cut] + ("." + whole[cut:] if exponent else "")
     return f"{sign}{shown}e{exponent}"
-
-
-def bounded(value: Any) -> bool:
-    """Whether a ball is finite."""
-    return bool(value.is_finite())
-
-
-def inside(small: Any, large: Any) -> bool:
-    """Whether the first ball lies in the interior of the second."""
-    return bool(large.contains_interior(small))

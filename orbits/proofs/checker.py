@@ -4,9 +4,11 @@
 The equations of motion are in `motion`; all else follows from w and v there. Numbers are truncated power series in time, in the
 directions of eigenvectors and in the unknowns, {(power of time, direction, unknown): interval}: coefficients are derivatives."""
 import math
+from typing import Any
 
-from mpmath import iv
+import mpmath
 
+iv: Any = mpmath.iv
 WALL, ZERO, MIRROR = {"L": 1, "R": -1}, (0, 0, 0), {"L": "R", "R": "L"}
 OWN = {"absorber": "amplitude restitution", "coupled": "forcing damping restitution excitation",
        "cavity": "amplitude restitution_left restitution_right slope"}
@@ -27,7 +29,7 @@ class A:
     def __call__(self): return self.c.get(ZERO, iv.mpf(0))
     def __sub__(self, o): return self + o * -1
     def __truediv__(self, o): return self * (o.f("inv") if isinstance(o, A) else 1 / iv.mpf(o))
-    def rate(self, k): return A({(0, d, v): x * math.factorial(k) for (t, d, v), x in self.c.items() if t == k})
+    def rate(self, k) -> Any: return A({(0, d, v): x * math.factorial(k) for (t, d, v), x in self.c.items() if t == k})
     def __add__(self, o):
         o = (o if isinstance(o, A) else A(o)).c
         return A({k: self.c[k] + o[k] if k in o and k in self.c else self.c.get(k, o.get(k)) for k in self.c | o})
@@ -148,7 +150,7 @@ def conditions(c, p, z, name, event, side, touch):
     for i, letter in enumerate(c["events"]):
         mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
         last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
-        def w(ph, s, i=i): return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
+        def w(ph, s, i=i) -> Any: return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
         def push(ph, i=i):
             v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
             return (v.rate(2) + p["bias"])(), v.rate(3)()
@@ -161,13 +163,13 @@ def conditions(c, p, z, name, event, side, touch):
         yield "duration", i, last - first
         for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
             if c["frictionless"]:
-                def f(ph, w=w, s=s): return [v + (k == 0) for k, v in enumerate(w(ph, -s))]
+                f: Any = lambda ph, w=w, s=s: [v + (k == 0) for k, v in enumerate(w(ph, -s))]  # noqa: E731
                 kind, start, end = "wall", (WALL[letter] == s) * (1 + (here == "approach")), (WALL[wall] == s) * (1 + (there == "approach"))
             elif mode == 0:
-                def f(ph, push=push, s=s): return [a - push(ph)[0] * s, push(ph)[1] * -s]
+                f = lambda ph, push=push, s=s: [a - push(ph)[0] * s, push(ph)[1] * -s]  # noqa: E731
                 kind, start, end = "hold", here == "stick" and side == s, s == signs[i + 1]
             else:
-                def f(ph, w=w, s=s): return w(ph, s)[1:]
+                f = lambda ph, w=w, s=s: w(ph, s)[1:]  # noqa: E731
                 kind, start = "flight", {"t": 1, "u": 2}.get(letter, 0) + (here in ("turn", "approach", "slip"))
                 end = 2 if there == "stop" and side == mode else wall in "ts" or there == "approach"
             at = touch if here == {"wall": "reversal"}.get(kind, kind) and (kind == "flight" or side == s) else None
@@ -183,7 +185,7 @@ def positive(test, pace):
         half, mid, over = (low + high) / 2, first + (last - first) * (low + high) / 2, first + (last - first) * iv.mpf([low.a, high.b])
         value, zero = f(mid)[0], touch is not None and not (over.b < touch.a or over.a > touch.b)
         if value < 0: return False
-        rates = f(iv.mpf([min(over.a, touch.a), max(over.b, touch.b)]) if zero else over)
+        rates = f(iv.mpf([min(over.a, touch.a), max(over.b, touch.b)]) if touch is not None and zero else over)
         ends = [(2, 1)] if zero else [(0, 1), (start * (low == 0), 1), (end * (high == 1), (-1) ** end if high == 1 else 1)]
         if not any(k < len(rates) and rates[k] * s > 0 for k, s in ends) and (zero or not value + rates[1] * (over - mid) * pace > 0):
             todo += [(low, half), (half, high)]
@@ -245,5 +247,5 @@ def verify(c):
     real, stable, broken = claims["real"], claims["stable"], c.get("broken")
     need(real is None or (all(v for *_, v in found) if real else (*broken, False) in found), "it is not proved real, or not virtual")
     if kind != "orbit": return need(stable is None, "stability at a special point")
-    if stuck: return need(stable is None or stable and (c["n"] == 2 or p["damping"]() > 0), "stability")
+    if stuck: return need(stable is None or (stable and (c["n"] == 2 or p["damping"]() > 0)), "stability")
     need(stable is None or steady(c, q, z) is stable, "it is not proved stable, or not unstable")

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from orbits.proofs.balls import ball, bounded, inside, library, texts
+from orbits.proofs.balls import ball, library, texts, upper_text
 from orbits.proofs.elimination import Singular, solve
 from orbits.proofs.equations import System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
@@ -50,7 +50,9 @@ class Box:
         return max((float(rad) for _, rad in every), default=0.0)
 
 
-def refine(system: System, nodes: Sequence[Sequence[Any]], extras: Sequence[Any], bits: int) -> tuple[Any, Any]:
+def refine(
+    system: System, nodes: Sequence[Sequence[Any]], extras: Sequence[Any], bits: int
+) -> tuple[Any, Any]:
     """Newton's method on the middles until it stands still.
 
     Raises
@@ -104,13 +106,13 @@ def enclose(system: System, z: Any, e: Any, bits: int) -> Box:
         dz, de = _step(system, zm, em, zm, em)
         wide = [w + 2 * d.abs_upper() for w, d in zip(wide, [v for part in dz for v in part] + de)]
         for _ in range(ROUNDS):
-            radii = [_upper(w) for w in wide]
+            radii = [upper_text(w) for w in wide]
             box = [library().arb(mid, rad) for mid, rad in zip(mids, radii)]
             dz, de = _step(system, zm, em, *_shape(box, system))
             image = [v - d for v, d in zip(middle, [v for part in dz for v in part] + de)]
-            if not all(bounded(v) for v in image):
+            if not all(v.is_finite() for v in image):
                 break
-            if all(inside(small, large) for small, large in zip(image, box)):
+            if all(large.contains_interior(small) for small, large in zip(image, box)):
                 pairs = [[mid, rad] for mid, rad in zip(mids, radii)]
                 nodes, extras = _shape(pairs, system)
                 return Box(nodes, extras)
@@ -130,10 +132,3 @@ def _shape(flat: list[Any], system: System) -> tuple[list[list[Any]], list[Any]]
 def _scale(value: Any) -> Any:
     size = value.abs_upper()
     return size if size > 1 else library().arb(1)
-
-
-def _upper(radius: Any) -> str:
-    """A short decimal that is at least this radius."""
-    middle, slack, exponent = (int(part) for part in radius.abs_upper().mid_rad_10exp(1))
-    drop = max(0, len(str(middle)) - 3)
-    return f"{(middle + slack) // 10**drop + 1}e{exponent + drop}"

@@ -12,7 +12,7 @@ from typing import Any
 from orbits.proofs.balls import library
 from orbits.proofs.elimination import Blocks
 from orbits.proofs.flights import MACHINES, WALLS, Coupled, Shaken
-from orbits.proofs.jets import Jet, one, partial, variables
+from orbits.proofs.jets import partial, variables
 
 MIRRORED = {"L": "R", "R": "L"}
 
@@ -86,7 +86,9 @@ class Motif:
         """The node at which flight i ends."""
         return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0])
 
-    def residual(self, i: int, flights: Shaken | Coupled, x: Sequence[Any], following: Sequence[Any]) -> list[Any]:
+    def residual(
+        self, i: int, flights: Shaken | Coupled, x: Sequence[Any], following: Sequence[Any]
+    ) -> list[Any]:
         """The elementary map of flight i, zero where `following` is the node that `x` leads to.
 
         At an impact w is at the wall and B+ = v' + r w'; at a turn or stick w' = 0; at a slip the push reaches friction.
@@ -128,7 +130,9 @@ class System:
         """What all blocks share."""
         return self.motif.flights(self.p)
 
-    def block(self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
+    def block(
+        self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]
+    ) -> list[Any]:
         """Residuals of block i."""
         return self.motif.residual(i, shared, z, following)
 
@@ -137,7 +141,9 @@ class System:
         return self.motif.closing(z)
 
     # ------------------------------------------------------------------ evaluation
-    def residuals(self, nodes: Sequence[Sequence[Any]], extras: Sequence[Any]) -> tuple[list[list[Any]], list[Any]]:
+    def residuals(
+        self, nodes: Sequence[Sequence[Any]], extras: Sequence[Any]
+    ) -> tuple[list[list[Any]], list[Any]]:
         """Values of all equations."""
         shared = self.prepare(extras)
         values = []
@@ -169,16 +175,3 @@ class System:
             system.corner.append([partial(value, 2 * k + j) for j in range(m)])
             system.c.append(0)
         return system
-
-
-def lifted(values: Sequence[Any]) -> list[Jet]:
-    """Numbers as jets that depend on nothing, one level up."""
-    return [Jet(value, {}) for value in values]
-
-
-def along(values: Sequence[Any], direction: Sequence[Any]) -> list[Jet]:
-    """Numbers as jets along a direction: variable 0 is the distance in it."""
-    return [Jet(value, {0: part}) for value, part in zip(values, direction)]
-
-
-__all__ = ["Motif", "System", "along", "lifted", "one"]

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from orbits.proofs.jets import exp, sin_cos, sqrt
+from orbits.proofs.obstacles import ProofError
 
 WALLS = {"L": 1, "R": -1}
 
@@ -178,9 +179,7 @@ class Coupled:
             q2_1 = q2r + slide * t
             q2_0 = q2 + (q2r + slide * t / 2) * t
             push = q_2 + eps * slide
-            return Motion(
-                q - q2_0, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q + eps * q2_0, q_1 + eps * q2_1
-            )
+            return Motion(q - q2_0, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q + eps * q2_0, q_1 + eps * q2_1)
 
         return flight
 
@@ -197,3 +196,26 @@ MACHINES: dict[str, type[Shaken] | type[Coupled]] = {
     "cavity": Shaken,
     "coupled": Coupled,
 }
+
+_CAVITY = ("friction", "gravity", "mass_ratio", "frequency")
+NAMES: dict[str, tuple[str, ...]] = {
+    "absorber": ("amplitude", "restitution", *_CAVITY),
+    "cavity": ("amplitude", "restitution_left", "restitution_right", "slope", *_CAVITY),
+    "coupled": ("forcing", "damping", "restitution", "excitation", *_CAVITY),
+}
+
+
+def parameter_names(machine: str) -> tuple[str, ...]:
+    """The numbers that a machine's flights depend on.
+
+    Raises
+    ------
+    ProofError
+        If the machine has no flights in closed form.
+    """
+    if machine not in NAMES:
+        raise ProofError(
+            f"the machine {machine!r} has no flights in closed form, so its orbits cannot be proved; machines that have: "
+            + ", ".join(NAMES)
+        )
+    return NAMES[machine]

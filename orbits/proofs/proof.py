@@ -74,7 +74,8 @@ class Proof:
             return None
         n = self.motif.node
         pairs = [pair for node in self.box.nodes for pair in node[:n]]
-        return max(float(rad) for _, rad in pairs + (self.box.extras[:1] if self.parameter else []))
+        pairs += self.box.extras[:1] if self.parameter else []
+        return max((float(rad) for _, rad in pairs), default=0.0)
 
     @property
     def value(self) -> list[str] | None:
@@ -93,7 +94,10 @@ class Proof:
             shift = library().arb.pi() * self.motif.periods
             digits = int(0.3 * self.bits)
             image = [
-                [texts(ball((node[0][0], node[0][1])) + shift, digits), *(_negated(pair) for pair in node[1:])]
+                [
+                    texts(ball((node[0][0], node[0][1])) + shift, digits),
+                    *(_negated(pair) for pair in node[1:]),
+                ]
                 for node in nodes
             ]
         return nodes + image
@@ -107,7 +111,10 @@ class Proof:
             "stable": self.stable,
             "radius": self.radius,
             "nodes": self.nodes(),
-            "parameters": {name: value if isinstance(value, str) else list(value) for name, value in self.parameters.items()},
+            "parameters": {
+                name: value if isinstance(value, str) else list(value)
+                for name, value in self.parameters.items()
+            },
             "obstacles": [obstacle.to_dict() for obstacle in self.obstacles],
             "bits": self.bits,
         }
@@ -126,7 +133,9 @@ class Proof:
             If existence was not proved.
         """
         if self.box is None:
-            raise ValueError("nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles)))
+            raise ValueError(
+                "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
+            )
         motif = self.motif
         return {
             "format": FORMAT,

@@ -12,7 +12,7 @@ from orbits.proofs.admissible import NOTHING, Zero, examine
 from orbits.proofs.balls import Given, ball, decimal, precision
 from orbits.proofs.enclosing import enclose, refine
 from orbits.proofs.equations import Motif, System
-from orbits.proofs.flights import MACHINES
+from orbits.proofs.flights import parameter_names
 from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import Obstacle, ProofError, Remedy, Step
 from orbits.proofs.proof import Proof
@@ -80,7 +80,9 @@ def prove_orbit(
         steady, why = stable(system, balls)
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
         obstacles = (*reality.obstacles(), *([why] if why else []))
-        return replace(proof, box=box, real=reality.real, stable=steady, broken=broken, obstacles=obstacles, bits=at)
+        return replace(
+            proof, box=box, real=reality.real, stable=steady, broken=broken, obstacles=obstacles, bits=at
+        )
 
     return _with_bits(attempt, proof, bits or 160 + 8 * len(motif), given)
 
@@ -133,11 +135,19 @@ def prove_special(
         inside = [node[: motif.node] for node in balls]
         zero = NOTHING
         if vanishing is not None:
-            zero = Zero(vanishing.name, vanishing.event, extras[1] if vanishing.inside else None, vanishing.side)
+            zero = Zero(
+                vanishing.name, vanishing.event, extras[1] if vanishing.inside else None, vanishing.side
+            )
         reality = examine(motif, p | {parameter: extras[0]}, inside, zero)
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
         return replace(
-            proof, box=box, real=reality.real, broken=broken, obstacles=tuple(reality.obstacles()), details=details, bits=at
+            proof,
+            box=box,
+            real=reality.real,
+            broken=broken,
+            obstacles=tuple(reality.obstacles()),
+            details=details,
+            bits=at,
         )
 
     return _with_bits(attempt, proof, bits or 192 + 8 * len(motif), given)
@@ -169,11 +179,7 @@ def motif_of(
     ProofError
         If the machine has no flights in closed form, or the word is empty.
     """
-    if machine not in MACHINES:
-        raise ProofError(
-            f"the machine {machine!r} has no flights in closed form, so its orbits cannot be proved; machines that have: "
-            + ", ".join(MACHINES)
-        )
+    parameter_names(machine)
     if not events:
         raise ProofError("the absorber is stuck throughout: the empty word has no equations to prove")
     length = len(events) // 2 if half else len(events)
@@ -197,9 +203,15 @@ def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
             good = name == "slope" or value.lower() >= 0
         if not (good and value.is_finite()):
             raise ProofError(f"{name} = {value.str(12)} is out of range for the machine {motif.machine!r}")
+    if motif.half and (motif.machine == "cavity" or motif.periods % 2 == 0):
+        raise ProofError(
+            "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
+        )
     friction = motif.flights(p).friction
     if motif.frictionless != bool(friction == 0):
-        raise ProofError("a word without friction's events needs friction exactly 0, and any other needs friction above 0")
+        raise ProofError(
+            "a word without friction's events needs friction exactly 0, and any other needs friction above 0"
+        )
 
 
 def _defining(
@@ -228,7 +240,7 @@ def _defining(
         mu = MULTIPLIERS[kind]
         phi, normal = eigenvector(factors, mu)
         system, extras = AtMultiplier(motif, p, parameter, mu, normal), [ball(value)]
-    details = {"normal": [normal.block, normal.component]}
+    details: dict[str, Any] = {"normal": [normal.block, normal.component]}
     if kind != "neimark-sacker":
         details["multiplier"] = MULTIPLIERS[kind]
     return system, [a + b for a, b in zip(x, phi)], extras, details
@@ -249,7 +261,9 @@ def _refined(
     if extras:
         away = max(away, abs(float(e[0] - extras[0])))
     if not away < NEAR:
-        raise Obstacle(Step.REFINEMENT, Remedy.START, detail=f"the nearest orbit is {away:.1g} away from these nodes")
+        raise Obstacle(
+            Step.REFINEMENT, Remedy.START, detail=f"the nearest orbit is {away:.1g} away from these nodes"
+        )
     return z, e
 
 

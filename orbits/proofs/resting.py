@@ -10,11 +10,11 @@ from dataclasses import replace
 from typing import Any
 
 from orbits.proofs.balls import Given, ball, decimal, precision
+from orbits.proofs.enclosing import Box
 from orbits.proofs.equations import Motif
 from orbits.proofs.jets import sqrt
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.proof import Proof
-from orbits.proofs.enclosing import Box
 from orbits.proofs.special import AtParameter
 
 

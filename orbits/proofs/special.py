@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from orbits.proofs.equations import Border, Motif, System
+from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, partial, sin_cos
 
 
@@ -159,6 +159,3 @@ class AtBorder(AtParameter):
         if v.name == "slip":
             return m.push1, None
         return 1 - v.side * x[1], None
-
-
-__all__ = ["AtBorder", "AtMultiplier", "AtPair", "Border", "Normal", "Vanishing"]

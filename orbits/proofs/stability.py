@@ -71,8 +71,9 @@ def _without_shift(factor: Any, p: Any) -> Any:
 
 def norm(matrix: Any) -> Any:
     """An upper bound of the largest row sum."""
-    rows = [sum((abs(value) for value in row), start=library().arb(0)).upper() for row in matrix.tolist()]
-    return max(rows)
+    zero = library().arb(0)
+    rows: list[Any] = [sum((abs(value) for value in row), start=zero) for row in matrix.tolist()]
+    return max(row.upper() for row in rows)
 
 
 def _in_frames(factors: list[Any]) -> Any:

@@ -8,7 +8,11 @@ if TYPE_CHECKING:
     from orbits.proofs.proof import Proof
 
 SAYS = {
-    "real": {True: "real", False: "virtual (proved: no machine follows it)", None: "neither proved real nor virtual"},
+    "real": {
+        True: "real",
+        False: "virtual (proved: no machine follows it)",
+        None: "neither proved real nor virtual",
+    },
     "stable": {True: "stable", False: "unstable", None: "stability not proved"},
 }
 
