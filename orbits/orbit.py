@@ -239,6 +239,12 @@ class Orbit:
 
         return portrait(self, **options)
 
+    def scene(self, points: int = 120) -> dict[str, Any]:
+        """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
+        from orbits.plots.scene import scene
+
+        return scene(self, points)
+
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
         table = self.events

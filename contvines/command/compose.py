@@ -42,6 +42,8 @@ def machine(study: "Study") -> Any:
     """The machine of a study, `[start]`'s overrides included."""
     from orbits.machines.catalogue import build
 
+    if study.quantities:
+        return build(study.quantities)
     own = {k: v for k, v in study.parameters.items() if k not in loose(study)}
     return build({"name": study.name, **own})
 
@@ -50,6 +52,8 @@ def loose(study: "Study") -> dict[str, float]:
     """Parameters that belong to the orbit rather than to the machine (the reduced model's amplitude)."""
     from orbits.machines.catalogue import model_class
 
+    if study.quantities:
+        return {}
     own = model_class(study.name).field_names()
     return {k: v for k, v in study.parameters.items() if k not in own}
 

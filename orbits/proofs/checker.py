@@ -150,12 +150,12 @@ def conditions(c, p, z, name, event, side, touch):
     for i, letter in enumerate(c["events"]):
         mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
         last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
-        def w(ph, s, i=i) -> Any: return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
+        def ws(ph, s, i=i): return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
         def push(ph, i=i):
             v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
             return (v.rate(2) + p["bias"])(), v.rate(3)()
         P = push(first)
-        tests = [("approach", 0, w(first, -WALL[letter])[1])] if letter in WALL else [("wall", s, 1 - z[i][1] * s) for s in (1, -1)]
+        tests = [("approach", 0, ws(first, -WALL[letter])[1])] if letter in WALL else [("wall", s, 1 - z[i][1] * s) for s in (1, -1)]
         tests += {"t": [("turn", 0, -c["before"][i] * P[0] - a)], "u": [("slip", 0, mode * P[1])],
                   "s": [("stick", s, a - P[0] * s) for s in (1, -1)]}.get(letter, [])
         yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
@@ -163,13 +163,13 @@ def conditions(c, p, z, name, event, side, touch):
         yield "duration", i, last - first
         for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
             if c["frictionless"]:
-                f: Any = lambda ph, w=w, s=s: [v + (k == 0) for k, v in enumerate(w(ph, -s))]  # noqa: E731
+                f: Any = lambda ph, ws=ws, s=s: [v + (k == 0) for k, v in enumerate(ws(ph, -s))]  # noqa: E731
                 kind, start, end = "wall", (WALL[letter] == s) * (1 + (here == "approach")), (WALL[wall] == s) * (1 + (there == "approach"))
             elif mode == 0:
                 f = lambda ph, push=push, s=s: [a - push(ph)[0] * s, push(ph)[1] * -s]  # noqa: E731
                 kind, start, end = "hold", here == "stick" and side == s, s == signs[i + 1]
             else:
-                f = lambda ph, w=w, s=s: w(ph, s)[1:]  # noqa: E731
+                f = lambda ph, ws=ws, s=s: ws(ph, s)[1:]  # noqa: E731
                 kind, start = "flight", {"t": 1, "u": 2}.get(letter, 0) + (here in ("turn", "approach", "slip"))
                 end = 2 if there == "stop" and side == mode else wall in "ts" or there == "approach"
             at = touch if here == {"wall": "reversal"}.get(kind, kind) and (kind == "flight" or side == s) else None
