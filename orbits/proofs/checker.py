@@ -150,7 +150,7 @@ def conditions(c, p, z, name, event, side, touch):
     for i, letter in enumerate(c["events"]):
         mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
         last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
-        def ws(ph, s, i=i): return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
+        def ws(ph, s, i=i) -> list[Any]: return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
         def push(ph, i=i):
             v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
             return (v.rate(2) + p["bias"])(), v.rate(3)()
