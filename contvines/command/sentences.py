@@ -1,6 +1,5 @@
 """Refusals as sentences that name the field, the value and what would do."""
 
-import difflib
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
@@ -14,6 +13,7 @@ from contvines.command.schema import (
     StartSection,
     SweepSection,
 )
+from contvines.hints import did_you_mean
 from orbits.machines.catalogue import NAMES, model_class
 
 # What would do, for each field of a study that is no parameter; used in every sentence that refuses a value.
@@ -127,11 +127,6 @@ def unknown_field(section: str, key: str, value: Any, known: list[str]) -> str:
         f"[{section}] {_cut(key)} = {_show(value)}: there is no such field{did_you_mean(key, known)}; "
         f"known are {', '.join(known)}."
     )
-
-
-def did_you_mean(given: Any, known: Any) -> str:
-    close = difflib.get_close_matches(str(given)[:60], [str(k) for k in known], n=1, cutoff=0.6)
-    return f" (did you mean {close[0]!r}?)" if close else ""
 
 
 def _show(value: Any) -> str:
