@@ -7,6 +7,7 @@ from typing import Any
 
 _PLACES = {
     "Absorber": "orbits.machines.absorber.machine",
+    "Cavity": "orbits.machines.cavity.machine",
     "Coupled": "orbits.machines.coupled.machine",
     "Scales": "orbits.design.scales",
     "Orbit": "orbits.orbit",
