@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from orbits.compiling.decorators import kernel
+from orbits.machines import pinning as _pinning
 from orbits.machines.cavity import equations as _equations
 from orbits.machines.cavity import law as _law
 from orbits.machines.cavity import margins as _margins
@@ -13,7 +14,13 @@ from orbits.machines.cavity.margins import watch
 from orbits.machines.cavity.numbers import law, rate
 from orbits.machines.path import place
 
-SOURCES = (_law.__file__, _numbers.__file__, _equations.__file__, _margins.__file__)
+SOURCES = (
+    _law.__file__,
+    _numbers.__file__,
+    _equations.__file__,
+    _pinning.__file__,
+    _margins.__file__,
+)
 
 
 @kernel
