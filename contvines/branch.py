@@ -142,6 +142,9 @@ class Branch:
         """The solution at point i as the object that the problem hands to users."""
         if self.problem is None:
             raise ValueError(without_problem(self.label, self.description))
+        n = len(self)
+        if not -n <= i < n:
+            raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         return self.problem.orbit(self.points[i], float(self.values[i]))
 
     def to_dict(self) -> dict[str, Any]:

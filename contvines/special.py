@@ -21,10 +21,12 @@ PREFIXES = {
     "wall-graze": "WG",
     "stick": "ST",
     "chatter": "CH",
+    "switch-graze": "SG",
+    "corner": "CO",
     "user": "US",
     "end": "EP",
 }
-BORDERS = ("velocity-graze", "wall-graze", "stick", "chatter")
+BORDERS = ("velocity-graze", "wall-graze", "stick", "chatter", "switch-graze", "corner")
 
 
 @dataclass(eq=False)

@@ -5,12 +5,15 @@ numpy, numba, matplotlib, rich and pydantic are imported by the commands that ne
 """
 
 import gc
+import re
 import sys
 from typing import Annotated, Any
 
 import typer
 
 from contvines.command import design, look, report, run, sweep
+
+LONGEST = 200  # letters of a word in a sentence (paths aside)
 
 app = typer.Typer(
     name="contvines",
@@ -105,4 +108,5 @@ def sentence(error: Exception) -> str:
             f"something went wrong that should not ({type(error).__name__}: {error}); "
             "the same command with --debug shows where"
         )
+    text = re.sub(rf"[^\s/]{{{LONGEST},}}", lambda m: f"{m[0][:60]}... ({len(m[0])} letters)", text)
     return text if text.endswith((".", "?")) or "\n" in text else text + "."

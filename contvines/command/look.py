@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.options import FileArgument, TrustOption
+from contvines.graph.table import with_unit
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
 
@@ -266,9 +267,9 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
         )
     name, _, place = label.partition(":")
     thing = graph[name]
-    if thing.problem is None:
-        raise ValueError(without_problem(name, graph.branches[getattr(thing, "branch", name)].description))
     if hasattr(thing, "kind") and not place:
+        if thing.problem is None:
+            raise ValueError(without_problem(name, graph.branches[thing.branch].description))
         return thing.orbit
     if hasattr(thing, "kind"):
         raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
@@ -287,6 +288,17 @@ def _plain(found: Any) -> dict[str, Any]:
     return {n: getattr(found, n) for n in names}
 
 
+# which measure's unit an event's number has
+EVENTS = {
+    "B_pre": "B_pre",
+    "B_post": "B_post",
+    "w": "max_abs_w",
+    "w_rate": "B",
+    "v": "max_abs_w",
+    "v_rate": "B",
+}
+
+
 def _describe(found: Any) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
     about = _plain(found)
@@ -296,12 +308,18 @@ def _describe(found: Any) -> str:
         lines.append(f"{about['word'] or 'stuck'}  k = {about['periods']}  ({nature})")
     parameters = about.get("parameters", {})
     if parameters:
-        lines.append("  " + "  ".join(f"{k} = {v:.10g}" for k, v in parameters.items()))
+        units = about.get("units", {})
+        lines.append(
+            "  " + "  ".join(f"{k} = {v:.10g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+        )
     nodes = about.get("nodes", [])
     if nodes:
         names = list(nodes[0])
         table = [
-            names,
+            [
+                with_unit(name, EVENTS.get(name) and about.get("units", {}).get(EVENTS[name]))
+                for name in names
+            ],
             *[[_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
         ]
         widths = [max(len(row[i]) for row in table) for i in range(len(names))]
@@ -335,7 +353,7 @@ def _say_what_lacks(graph: Any) -> None:
     from contvines.problems.registry import without_problem
 
     for branch in graph.branches.values():
-        if branch.problem is None:
+        if branch.problem is None and branch.description.get("factory"):
             typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
             return
 

@@ -60,12 +60,15 @@ MODEL_SECTIONS: dict[str, type[Section]] = {name: _section(name) for name in NAM
 ModelSection: Any = Annotated[Union[tuple(MODEL_SECTIONS.values())], Field(discriminator="name")]  # noqa: UP007
 
 
+LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
+
+
 class StartSection(Section):
     """`[start]`: the first orbit; further keys are parameters and override the model's."""
 
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
 
-    word: str
+    word: Annotated[str, Field(max_length=LONGEST)]
     periods: Annotated[int, Field(ge=1, le=4096)] = 1
     guess: list[list[float]] | None = None
 
@@ -93,11 +96,16 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
-class StudyFile(Section):
-    model: ModelSection  # type: ignore[valid-type]
+class StudySections(Section):
+    """What every study has beside its machine."""
+
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+
+
+class StudyFile(StudySections):
+    model: ModelSection  # type: ignore[valid-type]
 
 
 PARAMETERS: dict[str, dict[str, Any]] = {

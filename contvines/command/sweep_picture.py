@@ -55,6 +55,8 @@ def _study_machine(study: "Study") -> dict[str, Any]:
     from contvines.command.compose import loose, machine
 
     model = machine(study)
+    if study.quantities:
+        return {"name": study.name, **dict(zip(model.parameter_names, model.vector().tolist()))}
     vector = model.vector({**loose(study), study.parameter: study.parameters[study.parameter]})
     return {"name": study.name, **dict(zip(model.parameter_names, vector.tolist()))}
 
@@ -71,15 +73,17 @@ def _shown(value: Any) -> str:
 
 def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
     """The attractors of a sweep as dots, over a graph if there is one."""
+    from contvines.command.compose import machine
     from contvines.plots.sweep import plot_sweep
     from orbits.machines.catalogue import model_class
 
+    units = machine(study).units
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
     measure = model_class(study.name).swept_measure
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
-        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering)
+        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, units=units)
     first: list[tuple[float, float]] = []
     others: list[tuple[float, float]] = []
     lines = _lines(graph) if graph is not None else []
@@ -87,7 +91,7 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
         place = _drawn_impact(row, lines) if graph is not None else None
         for i, dot in enumerate(row.dots):
             (first if graph is None or i == place else others).append((row.value, dot))
-    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering)
+    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, units=units)
 
 
 def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:

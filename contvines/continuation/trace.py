@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
 from . import march as source
@@ -194,6 +195,7 @@ class Point(NamedTuple):
     status: str
 
 
+@hinting
 def trace(
     problem: Any,
     within: tuple[float, float],

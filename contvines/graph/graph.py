@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..hints import did_you_mean
+from ..special import PREFIXES
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -126,7 +129,17 @@ class Graph:
         return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
 
     def of_kind(self, kind: str) -> list[SpecialPoint]:
-        """The special points of a kind, in the order of their labels."""
+        """The special points of a kind, in the order of their labels.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind.
+        """
+        if kind not in PREFIXES:
+            named = next((name for name, prefix in PREFIXES.items() if prefix == kind), None)
+            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, PREFIXES)
+            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(PREFIXES)}")
         return [point for point in self.special.values() if point.kind == kind]
 
     def attach(self, problem: Any) -> None:

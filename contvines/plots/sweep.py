@@ -31,6 +31,7 @@ def plot_sweep(
     legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> "Figure":
     """Draw the attractors of a sweep.
 
@@ -46,7 +47,9 @@ def plot_sweep(
     axes : drawn on; without, a new figure of `figsize` inches.
     legend : whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : a style or rcParams of matplotlib's that come before the house's.
+    units : of the parameter and the measure by name, where they have some.
     """
+    said = dict(units or {})
     at = ("B at every impact" if graph is None else "B at the first impact") if measure == "B" else ""
     size = 2.4 if measure == "B" else 3.0
     own = axes is None
@@ -66,8 +69,11 @@ def plot_sweep(
             plot_diagram(graph, x=parameter, y=measure, axes=axes, legend=legend, style=style)
         elif legend is not False:
             draw_legend(axes, Key(), legend, own, np.empty((0, 2)))
-        axes.set_xlabel(axis_label(parameter))
-        axes.set_ylabel("$B$ at the impacts" if measure == "B" else axis_label(measure))
+        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter)))
+        unit = f" [{said['B']}]" if "B" in said else ""
+        axes.set_ylabel(
+            f"$B$ at the impacts{unit}" if measure == "B" else axis_label(measure, unit=said.get(measure))
+        )
     return figure
 
 

@@ -51,8 +51,8 @@ class Limits:
     @property
     def in_studies(self) -> Limits:
         """The same for values in studies, which are neither huge nor, where 0 is left out, tiny."""
-        if self.open and self.high == math.inf:
-            return Limits(1.0 / LARGEST, LARGEST)
+        if self.open and self.low == 0.0:
+            return Limits(1.0 / LARGEST, min(self.high, LARGEST))
         return Limits(max(self.low, -LARGEST), min(self.high, LARGEST), self.open)
 
 
