@@ -9,6 +9,7 @@ import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from .proving import mark
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def special_table(graph: Graph) -> Table:
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
     rows = []
     for point in graph.special.values():
-        remarks = [point.criticality or "", "" if point.real else "virtual"]
+        remarks = [point.criticality or "", "" if point.real else "virtual", mark(graph, point.label)]
         targets = []
         for switch in graph.switches:
             if switch.point == point.label:
