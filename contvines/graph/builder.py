@@ -224,11 +224,11 @@ def both_ways(
     leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"
     if pending.kind == "rest":
         ahead = go(first, "ahead")
-        # where a stick or flight vanishes p is stationary: the fold at the border itself is the border
+        # where a stick or flight vanishes p is stationary, or another solution crosses: that is the border itself
         ahead.events = [
             (i, e)
             for i, e in ahead.events
-            if e.kind != "fold"
+            if e.kind not in ("fold", "branch-point")
             or engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) > AT_BORDER
         ]
         return ahead, (f"goes on from {pending.source} at {pending.point}", sentence(ahead)), False
