@@ -6,12 +6,14 @@ all such sentences of one study are reported together.
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from contvines.command.page_study import check as check_page
+from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
 from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, StudySections, SweepSection
 from contvines.command.sentences import (
@@ -43,13 +45,16 @@ class Study:
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep : settings of the brute-force sweep.
+    machine : a ready machine, where the study describes one that the catalogue does not have (a page).
+    loose : parameters to hand to the ready machine with each orbit.
+    state : where the simulation starts that looks for a first orbit, if no word is given.
     quantities : of a study in physical units, the machine's settings; its parameters are then counted in their units.
     """
 
     path: Path
     name: str
     parameters: dict[str, float]
-    word: str
+    word: str | None
     periods: int
     guess: list[list[float]] | None
     parameter: str
@@ -58,13 +63,21 @@ class Study:
     virtual: bool
     settings: dict[str, Any]
     sweep: SweepSection
+    machine: Any = None
+    loose: dict[str, float] = field(default_factory=dict)
+    state: dict[str, float] | None = None
     quantities: dict[str, Any] | None = None
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
         return {
-            "model": self.quantities or {"name": self.name, **self.parameters},
-            "start": {"word": self.word, "periods": self.periods, "guess": self.guess},
+            "model": self._model(),
+            "start": {
+                "word": self.word,
+                "periods": self.periods,
+                "guess": self.guess,
+                **({"state": self.state} if self.state else {}),
+            },
             "continue": {
                 "parameter": self.parameter,
                 "within": list(self.within),
@@ -73,6 +86,12 @@ class Study:
                 "settings": self.settings,
             },
         }
+
+    def _model(self) -> dict[str, Any]:
+        if self.quantities:
+            return self.quantities
+        own = {} if self.machine is None else self.machine.settings()
+        return {**own, "name": self.name, **self.parameters}
 
     def fingerprint(self, command: str = "diagram") -> str:
         """Digest of `describe()` and the command: two runs that must give the same graph share it."""
@@ -112,6 +131,11 @@ def read_study(path: str | Path) -> Study:
 
 def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     """Check a study given as nested dicts; see `read_study`."""
+    if is_page(data):
+        try:
+            return Study(**check_page(data, Path(path)))
+        except (ValueError, OSError) as error:
+            raise StudyError(str(error)) from None
     if is_physical(data):
         return _physical(data, Path(path))
     try:

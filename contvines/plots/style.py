@@ -31,6 +31,8 @@ MARKS = {
     "wall-graze": Mark("wall graze", ">", True),
     "stick": Mark("turn to stick", "<", True),
     "chatter": Mark("vanishing event", "X", True),
+    "switch-graze": Mark("switch graze", "d", True),
+    "corner": Mark("two events at once", "P", True),
     "user": Mark("user function", "*", True),
     "end": Mark("end of the interval", "|"),
 }
