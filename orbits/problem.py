@@ -15,7 +15,7 @@ import numpy as np
 from orbits.cycles import measures as measuring
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.kernels import assemble
-from orbits.cycles.margins import PER_NODE, border_kind
+from orbits.cycles.margins import DURATION, FLIGHT, PER_NODE, border_kind, margin_name
 from orbits.elimination.block_cyclic import workspace
 from orbits.machines.base import Model
 from orbits.machines.path import along
@@ -109,6 +109,21 @@ class OrbitProblem:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters that may vary, by name; of the one that does the starting value."""
+        return {
+            name: float(value)
+            for name, value in zip(self.model.amount_names, self.model.amounts(self.params))
+        }
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> OrbitProblem:
+        """The same orbits against another parameter, with other values of some parameters."""
+        params = self.params
+        for name, value in (values or {}).items():
+            params = along(self.model.path(name, params), params, float(value))
+        return OrbitProblem(self.model, self.word, self.periods, parameter, params, self.symmetric)
+
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
         return along(self.path, self.params, p)
@@ -116,6 +131,10 @@ class OrbitProblem:
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
+        return j - FLIGHT + DURATION if margin_name(self.word, j) == "hold" else j
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border at which margin `j` vanishes."""
@@ -298,6 +317,14 @@ class OrbitProblem:
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
         return self.orbit(u, p).replay()
+
+    def prove(
+        self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
+    ) -> Any:
+        """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
+        from orbits.proofs.subjects import of_point
+
+        return of_point(self, kind, u, p, margin, bits)
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""

@@ -69,6 +69,8 @@ class Graph:
         False while the run that builds it goes on, or was interrupted.
     message : str
         How the run ended, in words.
+    proofs : dict of dict
+        By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
     """
 
     parameter: str = "p"
@@ -80,6 +82,7 @@ class Graph:
     settings: dict[str, Any] = field(default_factory=dict)
     finished: bool = False
     message: str = ""
+    proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def __getitem__(self, label: str) -> Any:
         if label in self.special:
@@ -99,10 +102,21 @@ class Graph:
         return len(self.branches)
 
     def __str__(self) -> str:
-        from .table import table
+        from .table import table, terminal_width
 
-        cut = self.message.startswith("stopped") and self.settings.get("max_branches") != 1
-        return f"{table(self)}\n\n{self.message}" if cut else table(self)
+        text = table(self, terminal_width())
+        return f"{text}\n\n{self.message}" if self._cut else text
+
+    @property
+    def _cut(self) -> bool:
+        return self.message.startswith("stopped") and self.settings.get("max_branches") != 1
+
+    def _repr_html_(self) -> str:
+        from .table import branches_table, special_table, title
+
+        parts = [f"<p>{title(self)}</p>", branches_table(self).html()]
+        parts += [special_table(self).html()] if self.special else []
+        return "".join([*parts, f"<p>{self.message}</p>" if self._cut else ""])
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -131,6 +145,12 @@ class Graph:
             raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(PREFIXES)}")
         return [point for point in self.special.values() if point.kind == kind]
 
+    def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
+        """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""
+        from .proving import prove
+
+        return prove(self, labels, **options)
+
     def attach(self, problem: Any) -> None:
         """Give all branches and special points without a problem this one (after loading a callable's graph)."""
         for branch in self.branches.values():
@@ -152,6 +172,14 @@ class Graph:
             "branches": [branch.to_dict() for branch in self.branches.values()],
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],
+            **({"proofs": self._claims()} if self.proofs else {}),
+        }
+
+    def _claims(self) -> dict[str, Any]:
+        """What is proved, without the certificates."""
+        return {
+            label: {name: value for name, value in proof.items() if name != "certificate"}
+            for label, proof in self.proofs.items()
         }
 
     def network(self) -> Any:
@@ -174,6 +202,26 @@ class Graph:
                 note=switch.note,
             )
         return network
+
+    def to_pandas(self) -> Any:
+        """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
+        from ..export.frames import graph_frame
+
+        return graph_frame(self)
+
+    def export(self, path: str | Path, to: str | None = None) -> Path:
+        """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat") is read off the name by default.
+
+        Raises
+        ------
+        ValueError
+            If there is no such format, or the place cannot be written.
+        """
+        from pathlib import Path
+
+        from ..export import export
+
+        return export(self, to or Path(path).suffix.lstrip(".").lower(), path)
 
     def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""

@@ -155,6 +155,11 @@ class MapProblem(ProblemDefaults):
             jacobian[i, :, (i + 1) % n, :] -= np.eye(d)
         return residual.reshape(-1), jacobian.reshape(n * d, n * d), derivative.reshape(-1)
 
+    def turn_closure(self, jacobian: np.ndarray, sign: float) -> None:
+        """x_n = x_0 in the Jacobian becomes x_n = -x_0 (sign = -1) or x_n = x_0 again (sign = 1)."""
+        n, d = self.cycle, self.node
+        jacobian.reshape(n, d, n, d)[n - 1, :, 0, :] -= 2.0 * sign * np.eye(d)
+
     def raw_spectrum(self, work: DenseWork) -> np.ndarray:
         """Multipliers: eigenvalues of the product of the Jacobians along the cycle."""
         n, d = self.cycle, self.node

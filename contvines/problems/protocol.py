@@ -15,6 +15,20 @@ The contract, in words:
    ``inspect(data, u, p, work, row) -> None``
        from the linearisation in ``work``: ``row[:2 m]`` are the m multipliers (or eigenvalues) as re, im pairs,
        ``row[2 m:]`` are the margins. A margin is positive on a real solution, +inf where it does not apply.
+   Loci against a second parameter need five more, optional, entries:
+
+   ``assign(data, other, value) -> None``
+       gives the parameter that varies in the problem of ``other`` (from ``against``) a value in ``data``, in place.
+   ``column``
+       place of F_p in ``work`` (as work[0] that of F; any C-contiguous shape with N entries); it may be overwritten
+       between the calls, and ``bordered`` then takes that column.
+   ``flip(data, work, sign) -> None``
+       maps only: turns F_u in ``work`` into what acts on perturbations that change sign over the period (sign = -1), and
+       back (sign = 1).
+   ``transpose(data, work, column, other) -> None``
+       writes the transposed F_u, with ``column`` in the place of F_p, into another workspace.
+   ``matrix(data, work) -> ndarray``
+       F_u as it stands in ``work``, shape (N, N); always plain Python, for normal forms at single points.
 3. ``data`` and ``workspace()`` are the opaque first and last arguments of the kernels.
 4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none".
    ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
@@ -39,7 +53,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Kernels:
-    """The three functions of a problem (see the contract above).
+    """The functions of a problem (see the contract above).
 
     Parameters
     ----------
@@ -50,6 +64,9 @@ class Kernels:
     digest : str
         Identifies their sources, the files they call included; part of the name under which the compiled
         continuation loop is cached on disk. Empty: taken from the files that define the three functions.
+    assign, flip, transpose, matrix : callable, optional
+    column : int
+        For loci against a second parameter; see the contract.
     """
 
     linearise: Callable[..., float]
@@ -57,6 +74,11 @@ class Kernels:
     inspect: Callable[..., None]
     compiled: bool = False
     digest: str = ""
+    assign: Callable[..., None] | None = None
+    flip: Callable[..., None] | None = None
+    transpose: Callable[..., None] | None = None
+    column: int = -1
+    matrix: Callable[..., np.ndarray] | None = None
 
 
 def kernels_digest(kernels: Any) -> str:
