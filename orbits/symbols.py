@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-
 LARGEST_PRODUCT = 64  # whole powers up to this are written as products
 
 

@@ -96,7 +96,12 @@ def proposals(
 def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Edit, found: Found) -> Found:
     """The orbit found, read from the event from which the border orbit was read before it was turned; never from a slip."""
     ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
-    places = ahead + len(edit.events) - (edit.stop - edit.start)
+    grown_by = len(edit.events) - (edit.stop - edit.start)
+    places = ahead + grown_by
+    if (
+        problem.symmetric and ahead >= problem.length + edit.stop
+    ):  # the mirrored edit stands before it as well
+        places += grown_by
     if ahead == 0 or ahead < edit.stop or places <= 0:
         places = 0
     return _unslipped(_rotated(found, places))
@@ -139,10 +144,15 @@ def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[
     """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
     length = problem.length
     forced = problem.forced
-    if problem.symmetric and len(problem.word):
-        if any(change.stop > length for change in edits):
+    empty = not len(problem.word)
+    halved = (
+        problem.symmetric if not empty else bool(edits[0].events) and problem.word.mirror_symmetric_halves
+    )
+    if halved:  # the same happens half a period later to the mirror image
+        if not empty and any(change.stop > length for change in edits):
             return None
-        word, nodes, first = applied(orbit.word.head(length), orbit.nodes[:length], edits)
+        head = orbit.word if empty else orbit.word.head(length)
+        word, nodes, first = applied(head, orbit.nodes[:length], edits)
         mirrored = word.mirror()
         word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.alphabet)
     else:
@@ -150,7 +160,7 @@ def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[
     if not forced:
         nodes = _durations(orbit, nodes, edits[0])
     try:
-        other = problem.sibling(word, problem.periods, problem.symmetric and bool(len(word)))
+        other = problem.sibling(word, problem.periods, halved and bool(len(word)))
     except ValueError:
         return None
     if not len(word):

@@ -265,6 +265,14 @@ def _stick(orbit: Any, place: int) -> list[Edit]:
         modes = (word.modes[place],)
         note = "a turn before a stick disappears"
         return [Edit(place - 1, place + 1, (letter.text,), modes, node[None], "margin", note)]
+    if (
+        place > 0
+        and word.letter(place - 1).contact == j
+        and word.letter(place - 1).kind == SLIP
+        and gap < SHORT * 100
+    ):
+        note = "a slip vanishes"
+        turned = Edit(place - 1, place + 1, (), (), orbit.nodes[:0], "margin", note)
     if follower.contact != j or follower.kind != SLIP:
         return [turned]
     if out[j] == before[j]:

@@ -230,7 +230,10 @@ class Run:
         system = list(zip(variables, layout.lowered(rates)))
         lowered = layout.lowered(functions)
         self._places = [i for i, f in enumerate(lowered) if not _is_number(f)]
-        events = [heyoka.t_event(lowered[i] + NUDGE, direction=heyoka.event_direction.negative) for i in self._places]
+        events = [
+            heyoka.t_event(lowered[i] + NUDGE, direction=heyoka.event_direction.negative)
+            for i in self._places
+        ]
         self._integrator = heyoka.taylor_adaptive(
             system,
             [0.0] * len(variables),

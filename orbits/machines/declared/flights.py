@@ -37,6 +37,7 @@ class Work(NamedTuple):
     end: np.ndarray
     numbers: np.ndarray
     drift: np.ndarray
+    still: np.ndarray
 
 
 def workspace(length: int, states: int, numbers: int) -> Work:
@@ -54,6 +55,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
         np.zeros(L),
         np.zeros((L, numbers)),
         np.zeros(n),
+        np.zeros((n, d)),
     )
 
 
@@ -129,10 +131,16 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         else:
             own[places, :, 0] = by_end
         derivative[places] = (slopes @ moved[:, :, None])[:, :, 0] + along
-    for j in data.pinned:  # the motion may be shifted along this state: half way between the last and the first node is zero
+    for j in (
+        data.pinned
+    ):  # the motion may be shifted along this state: half way between the last and the first node is zero
         work.drift[j] = residual[-1, 1 + j]
         residual[-1, 1 + j] = 0.5 * (nodes[-1, 1 + j] + nodes[0, 1 + j])
         derivative[-1, 1 + j] = 0.0
+    for row, values in data.still:  # what sticks for ever has no velocity
+        table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
+        residual[-1, 1 + row], derivative[-1, 1 + row] = table[0], table[n + 2]
+        work.still[row, 0], work.still[row, 1:] = table[n + 1], table[1 : n + 1]
     size = float(np.abs(residual).max())
     return size if math.isfinite(size) else math.inf
 
@@ -189,6 +197,9 @@ def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
         for j in data.pinned:
             own[1 + j], following[1 + j] = 0.0, 0.0
             own[1 + j, 1 + j] = following[1 + j, 1 + j] = 0.5
+    for row, _ in data.still:
+        own = own.copy()
+        own[1 + row], following[1 + row] = 0.0, work.still[row]
     return own, following
 
 
@@ -277,7 +288,7 @@ def multipliers(data: Any, work: Work) -> Any:
     else:
         values = _periodic(chain, size)
     values = values[np.argsort(-np.abs(values), kind="stable")]
-    for _ in data.loose:  # a motion that may be shifted as a whole
+    for _ in range(data.trivial):  # a motion that may be shifted as a whole, a friction that sticks for ever
         values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
     return values[: data.n_multipliers]
 

@@ -220,7 +220,9 @@ class Stepper:
                 self.state, self.clock = before, begin
                 return
         for value, guard in zip(values, guards):
-            if value < 0.0 and guard.kind == SWITCH:  # the surface was only touched: the flow stays on its side
+            if (
+                value < 0.0 and guard.kind == SWITCH
+            ):  # the surface was only touched: the flow stays on its side
                 self.state, self.clock = before, begin
                 self.modes = self._with(guard.contact, -self.modes[guard.contact])
                 return
