@@ -131,11 +131,9 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         else:
             own[places, :, 0] = by_end
         derivative[places] = (slopes @ moved[:, :, None])[:, :, 0] + along
-    for j in (
-        data.pinned
-    ):  # the motion may be shifted along this state: half way between the last and the first node is zero
+    for j in data.pinned:  # the motion may be shifted along this state: the mean over the nodes is zero
         work.drift[j] = residual[-1, 1 + j]
-        residual[-1, 1 + j] = 0.5 * (nodes[-1, 1 + j] + nodes[0, 1 + j])
+        residual[-1, 1 + j] = nodes[:, 1 + j].mean()
         derivative[-1, 1 + j] = 0.0
     for row, values in data.still:  # what sticks for ever has no velocity
         table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
@@ -153,7 +151,7 @@ def bordered(
     sides = np.zeros((size + 1, 2), order="F")
     sides[:size, 0] = -work.residual.ravel()
     sides[size, 0], sides[size, 1] = target, 1.0
-    if size > SPARSE:
+    if size > SPARSE and not data.pinned:
         return _sparse(data, work, border, sides, step, tangent)
     matrix = np.zeros((size + 1, size + 1), order="F")
     fill(data, work, matrix)
@@ -187,16 +185,15 @@ def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
     rows = slice((length - 1) * d, length * d)
     matrix[rows, rows] += last_own
     matrix[rows, :d] += last_following
+    for j in data.pinned:
+        row = (length - 1) * d + 1 + j
+        matrix[row] = 0.0
+        matrix[row, 1 + j : length * d : d] = 1.0 / length
 
 
 def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
-    """The blocks of the last row, closed by the mirror or the pin."""
+    """The blocks of the last row, closed by the mirror."""
     own, following = work.own[-1], work.following[-1] * data.turned
-    if data.pinned:
-        own = own.copy()
-        for j in data.pinned:
-            own[1 + j], following[1 + j] = 0.0, 0.0
-            own[1 + j, 1 + j] = following[1 + j, 1 + j] = 0.5
     for row, _ in data.still:
         own = own.copy()
         own[1 + row], following[1 + row] = 0.0, work.still[row]
