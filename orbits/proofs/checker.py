@@ -194,11 +194,16 @@ def positive(test, pace):
 def steady(c, p, z, basis=()):
     """Whether all multipliers lie inside the unit circle, or one outside: by norm and trace of powers of their matrix."""
     n, size, e = c["n"], len(z) * c["n"], p["mass_ratio"]()
-    rows, order = equations(c, p, z, [], size + 1), [*range(n + 1, size + n + 1)]
+    rows = equations(c, p, z, [], size + 1)
     M, B = [[0] * n for _ in range(n)], [[num(x) for x in row] for row in basis] or [[iv.mpf(int(i == j)) for i in range(n)] for j in range(n)]
     for j in range(n):
-        x = solve([{q: row[q] for q in row if q > n} | {0: -sum(row.get(1 + i, iv.mpf(0)) * B[i][j] for i in range(n))} for row in rows], order)
-        for i in range(n): M[i][j] = x[size + 1 + i]
+        x = [row[j] for row in B]
+        for i in range(len(z)):  # from node to node
+            known, new = range(1 + i * n, 1 + i * n + n), range(1 + i * n + n, 1 + i * n + 2 * n)
+            step = solve([{q: row[q] for q in row if q in new} | {0: -sum(row.get(q, iv.mpf(0)) * v for q, v in zip(known, x))}
+                          for row in rows[i * n:i * n + n]], new)
+            x = [step[q] for q in new]
+        for i in range(n): M[i][j] = x[i]
     if not any(letter in WALL for letter in c["events"]):  # shifting w, v + eps w kept, changes nothing: a trivial multiplier
         need(c["half"], "a sliding motion is stable or not on half its word")
         if n == 4: M[2] = [x + e * y for x, y in zip(M[2], M[1])]

@@ -19,7 +19,7 @@ from orbits.proofs.tiles import Tile, joined, lay
 
 BITS = 128
 FIRST = 1 / 16  # first tile's share of the piece
-ROOM = 1.5  # by which a tile is widened where its stability is judged
+ROOM = 0.8  # by which a tile is widened where its stability is judged
 LEAST = 1e-6  # smallest tile's share
 
 
