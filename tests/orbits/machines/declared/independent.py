@@ -69,6 +69,7 @@ class Independent:
 
     def along(self, function, t, x, rates, step=1e-6):
         """Time derivative of a function of (state, phase, p): a central difference along the flow."""
+
         def at(s):
             phase = None if self.omega is None else self.omega * (t + s)
             return function(Numbers(self.machine.states, x + s * rates), phase, self.p)
@@ -80,17 +81,23 @@ class Independent:
         found = []
         for j, (contact, mode) in enumerate(zip(self.machine.contacts, modes)):
             if isinstance(contact, DryFriction) and mode == 0:
+
                 def reserve(t, x, sign, contact=contact):
                     self.rates(t, x, modes)
                     state = Numbers(self.machine.states, x)
-                    return self.number(contact.limit, state, None if self.omega is None else self.omega * t) + sign * self.force
+                    return (
+                        self.number(contact.limit, state, None if self.omega is None else self.omega * t)
+                        + sign * self.force
+                    )
 
                 found += [(j, lambda t, x, f=reserve: f(t, x, 1)), (j, lambda t, x, f=reserve: f(t, x, -1))]
                 continue
             if isinstance(contact, DryFriction) and mode == 2:
                 continue
-            function = contact.gap if isinstance(contact, Wall) else (
-                contact.velocity if isinstance(contact, DryFriction) else contact.surface
+            function = (
+                contact.gap
+                if isinstance(contact, Wall)
+                else (contact.velocity if isinstance(contact, DryFriction) else contact.surface)
             )
             sign = 1 if isinstance(contact, Wall) else mode
 
@@ -152,11 +159,17 @@ def deviation(orbit, motion):
         for (j, function), times in zip(guards, run.t_events):
             for t in times:
                 early = begin + 1e-6 * span < t < begin + span * (1 - 1e-6)
-                if early and function(t, run.y[:, np.searchsorted(run.t, t) - 1]) > -1e-9 and j != letter.contact:
+                if (
+                    early
+                    and function(t, run.y[:, np.searchsorted(run.t, t) - 1]) > -1e-9
+                    and j != letter.contact
+                ):
                     return np.inf
         end = begin + span
         if letter.kind == 0:
-            gap = machine.contacts[letter.contact].gap(Numbers(machine.states, y), omega and omega * end, own.p)
+            gap = machine.contacts[letter.contact].gap(
+                Numbers(machine.states, y), omega and omega * end, own.p
+            )
             worst = max(worst, abs(gap))
             y = own.impact(machine.contacts[letter.contact], end, y, modes)
         else:

@@ -5,9 +5,9 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from tests.orbits.machines.declared.pages import page
 
 import contvines as cv
+from tests.orbits.machines.declared.pages import page
 
 
 def specials(graph, kind):
@@ -70,7 +70,9 @@ def test_period_doubling_of_the_impact_oscillator():
     """A multiplier -1: 1 + trace + e^2 = 0."""
     machine = page("impact_oscillator")
     with mp.workdps(30):
-        exact = mp.findroot(lambda W: 1 + single_impact(W, mp.mpf("0.8"), 0)[0][2] + mp.mpf("0.64"), (2.6, 2.7))
+        exact = mp.findroot(
+            lambda W: 1 + single_impact(W, mp.mpf("0.8"), 0)[0][2] + mp.mpf("0.64"), (2.6, 2.7)
+        )
     graph = cv.diagram(machine.attractor(frequency=2.3), over="frequency", within=(2.2, 2.7), depth=0)
     assert specials(graph, "period-doubling") == pytest.approx([float(exact)], abs=1e-10)
 
