@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .endings import refuse_ending
-from .graph.table import with_unit
+from ..file_names import refuse_ending
+from ..graph.table import with_unit
 
 if TYPE_CHECKING:
-    from .branch import Branch
-    from .graph.graph import Graph
+    from ..branches.branch import Branch
+    from ..graph.graph import Graph
 
 FORMATS = ("csv", "json", "graphml", "mat")
 
