@@ -326,6 +326,18 @@ class OrbitProblem:
 
         return of_point(self, kind, u, p, margin, bits)
 
+    def prove_branch(
+        self,
+        points: np.ndarray,
+        values: np.ndarray,
+        marks: Sequence[int] = (),
+        within: tuple[float, float] | None = None,
+    ) -> Any:
+        """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
+        from orbits.proofs.subjects import of_branch
+
+        return of_branch(self, points, values, marks, within)
+
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {

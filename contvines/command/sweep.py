@@ -33,7 +33,7 @@ def sweep(
     """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
     from contvines.command.compose import beside, say
     from contvines.command.study import read_study
-    from contvines.export.formats import check_target
+    from contvines.export import check_target
 
     read = read_study(study)
     target = output or beside(study, "-sweep.csv")

@@ -1,5 +1,6 @@
-"""Graphs as files that other programs read."""
+"""Results for other programs: files, columns for tables, standard JSON."""
 
-from .formats import FORMATS, check_target, export, json_text
+from .files import FORMATS, check_target, export
+from .standard_json import json_text
 
 __all__ = ["FORMATS", "check_target", "export", "json_text"]

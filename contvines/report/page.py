@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..export.formats import json_text
+from ..export import json_text
 from .contents import contents
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from contvines.export.formats import export, json_text
+from contvines.export import export, json_text
 from tests.contvines import fakes
 
 
