@@ -20,6 +20,9 @@ from .problem import LocusProblem
 Test = Callable[[Plane], float]
 THIRD_ORDER = ("cubic", "lyapunov")
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
+CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
+APART = 1e-5  # a pair is complex if its imaginary part exceeds this
+DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
 
 
@@ -91,11 +94,12 @@ class PlanePoint:
 class References:
     """Borders and positions that belong to one point of a locus, held fixed while tests are compared and solved."""
 
-    def __init__(self, plane: Plane, locus: LocusProblem) -> None:
+    def __init__(self, plane: Plane, locus: LocusProblem, near: References | None = None) -> None:
         problem, maps = plane.problem, plane.problem.spectrum == "map"
-        self.plus: Null = plane.first.null_vectors()
+        self.plus: Null = plane.first.null_vectors(near=None if near is None else near.plus)
         flips = maps and getattr(problem, "pinned", 0) != 2
-        self.minus: Null | None = plane.first.null_vectors(flipped=True) if flips else None
+        before = None if near is None else near.minus
+        self.minus: Null | None = plane.first.null_vectors(True, before) if flips else None
         self.reference = locus.reference
         self.second = 0.0
         if plane.m >= 2:
@@ -207,10 +211,11 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     wanted = looks(plane.problem, problem.condition)
     found: list[tuple[int, PlanePoint]] = []
     costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in THIRD_ORDER}
+    at: References | None = None
     for i in range(len(places) - 1):
         if not plane.at(places[i]) < 1e300:
             continue
-        at = References(plane, problem)
+        at = References(plane, problem, at)
         tests = [
             (look, test)
             for look in wanted
@@ -301,6 +306,8 @@ def solved(
     if not low - 1e-9 <= place.p <= high + 1e-9:
         return None
     residual = plane.at(place)
+    if not _holds(kind, plane):
+        return None
     margins = plane.row[2 * plane.m :]
     zero = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < 1e-8))
     return PlanePoint(
@@ -316,6 +323,23 @@ def solved(
         margins=zero,
         problem=locus.at(place.q),
     )
+
+
+def _holds(kind: str, plane: Plane) -> bool:
+    """Whether the multipliers at a solution are those that the name of the point says."""
+    spectrum = plane.spectrum
+    if not plane.m:
+        return True
+    edge = np.abs(spectrum.real) if plane.flow else np.abs(np.abs(spectrum) - 1.0)
+    pairs = int(np.sum((edge < CRITICAL) & (spectrum.imag > APART)))
+    if kind.endswith("-neimark-sacker") or kind in ("zero-hopf", "double-hopf"):
+        return pairs >= (2 if kind.startswith("double") else 1)
+    doubles = {
+        "bogdanov-takens": (0.0,),
+        "resonance-1-1": (1.0, -1.0) if plane.problem.flip_kind == "symmetry-breaking" else (1.0,),
+        "resonance-1-2": () if plane.problem.flip_kind == "symmetry-breaking" else (-1.0,),
+    }.get(kind, ())
+    return not doubles or any(int(np.sum(np.abs(spectrum - place) < DOUBLE)) >= 2 for place in doubles)
 
 
 BORDER_KINDS = {
