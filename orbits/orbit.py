@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from orbits.cycles.margins import Margin, named_margins
 from orbits.machines.base import Model
 from orbits.problem import OrbitProblem
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.proofs import Proof
 
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
 
@@ -223,6 +226,12 @@ class Orbit:
         from orbits.simulation.deviation import replay_error
 
         return replay_error(self)
+
+    def prove(self, bits: int | None = None, **parameters: Any) -> Proof:
+        """Prove that the orbit exists, is real or virtual, stable or unstable; see `orbits.proofs.subjects.of_orbit`."""
+        from orbits.proofs.subjects import of_orbit
+
+        return of_orbit(self, bits, **parameters)
 
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""

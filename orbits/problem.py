@@ -318,6 +318,14 @@ class OrbitProblem:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
         return self.orbit(u, p).replay()
 
+    def prove(
+        self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
+    ) -> Any:
+        """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
+        from orbits.proofs.subjects import of_point
+
+        return of_point(self, kind, u, p, margin, bits)
+
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import design, look, report, run, sweep
+from contvines.command import design, look, prove, report, run, sweep
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -52,6 +52,7 @@ app.command()(run.trace)
 app.command()(run.switch)
 app.command()(look.show)
 app.command()(look.orbit)
+app.command()(prove.prove)
 app.command()(look.plot)
 app.command()(look.export)
 app.command()(report.report)

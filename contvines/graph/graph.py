@@ -69,6 +69,8 @@ class Graph:
         False while the run that builds it goes on, or was interrupted.
     message : str
         How the run ended, in words.
+    proofs : dict of dict
+        By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
     """
 
     parameter: str = "p"
@@ -80,6 +82,7 @@ class Graph:
     settings: dict[str, Any] = field(default_factory=dict)
     finished: bool = False
     message: str = ""
+    proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def __getitem__(self, label: str) -> Any:
         if label in self.special:
@@ -131,6 +134,12 @@ class Graph:
             raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(PREFIXES)}")
         return [point for point in self.special.values() if point.kind == kind]
 
+    def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
+        """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""
+        from .proving import prove
+
+        return prove(self, labels, **options)
+
     def attach(self, problem: Any) -> None:
         """Give all branches and special points without a problem this one (after loading a callable's graph)."""
         for branch in self.branches.values():
@@ -152,6 +161,14 @@ class Graph:
             "branches": [branch.to_dict() for branch in self.branches.values()],
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],
+            **({"proofs": self._claims()} if self.proofs else {}),
+        }
+
+    def _claims(self) -> dict[str, Any]:
+        """What is proved, without the certificates."""
+        return {
+            label: {name: value for name, value in proof.items() if name != "certificate"}
+            for label, proof in self.proofs.items()
         }
 
     def network(self) -> Any:

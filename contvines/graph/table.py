@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .proving import mark
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def table(graph: Graph) -> str:
             remarks = [point.criticality or ""]
             if not point.real:
                 remarks.append("virtual")
+            remarks.append(mark(graph, point.label))
             targets = []
             for switch in graph.switches:
                 if switch.point == point.label:

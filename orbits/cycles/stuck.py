@@ -18,6 +18,7 @@ from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.cycles.stuck_problem import StuckProblem
+    from orbits.proofs import Proof
 
 EMPTY = Word((), ())
 
@@ -127,6 +128,12 @@ class StuckOrbit:
         start |= {name: float(motion[name][0]) for name in self.model.node_names[2:]}
         run = simulate(self.model, start, periods=2.0, **self.parameters)  # type: ignore[arg-type]
         return float(np.abs(run.sample().w).max())
+
+    def prove(self, bits: int | None = None, **parameters: Any) -> Proof:
+        """Prove that friction holds, or not; see `orbits.proofs.subjects.of_orbit`."""
+        from orbits.proofs.subjects import of_orbit
+
+        return of_orbit(self, bits, **parameters)
 
     @property
     def events(self) -> measuring.EventTable:

@@ -14,8 +14,11 @@ from orbits.cycles.stuck import StuckOrbit
 from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
+from orbits.starts.reading import DirectionError, directed, readings
 from orbits.words import Word
 
+NEARBY = 0.1  # residual of a guess that may be read from another event than its word
+BETTER = 0.1  # part of the residual with which another reading is believed
 TOLERANCE = 1e-12
 LONG = 12  # words with more events are not looked for from random nodes
 
@@ -114,8 +117,14 @@ def find(
     tried = []
     if guess is not None:
         nodes = check_guess(reading, model.node_names, guess)
-        orbit = polish(Orbit(model, reading, periods, nodes, params), limit=100)
-        if orbit is not None and _proper(orbit):
+        if reading.impact_free:
+            nodes[:, 1] -= 0.5 * (nodes[:, 1].max() + nodes[:, 1].min())
+        try:
+            reading = directed(word, reading, nodes)
+        except DirectionError as error:
+            raise StartError(str(error)) from None
+        orbit = _from_guess(model, reading, periods, nodes, params)
+        if orbit is not None:
             return orbit
         tried.append("Newton's method from the guess")
     else:
@@ -148,6 +157,26 @@ def find(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
         f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."
     )
+
+
+def _from_guess(
+    model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
+) -> Orbit | None:
+    """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
+    first = Orbit(model, word, periods, nodes, params)
+    others = [
+        Orbit(model, reading, periods, nodes, params)
+        for reading in readings(word, model.has_mirror(params, model.default_parameter))
+    ]
+    better = [orbit for orbit in others if orbit.residual < min(NEARBY, BETTER * first.residual)]
+    virtual = None
+    for guess in (*sorted(better, key=lambda orbit: orbit.residual), first):
+        orbit = polish(guess, limit=100)
+        if orbit is not None and _proper(orbit):
+            if orbit.real:
+                return orbit
+            virtual = virtual or orbit
+    return virtual
 
 
 def _warn(guess: Any, word: Word, instead: str) -> None:

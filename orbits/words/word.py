@@ -277,7 +277,7 @@ def _modes(
         elif letter in IMPACTS and after[before] is None:
             after[before] = 1 if letter == "L" else -1
     _settle(events, after)
-    if all(mode is None for mode in after):  # only turns: take the first flight to the right
+    if all(mode is None for mode in after):  # only turns: the first flight goes to the left
         after = [-1 if place % 2 else 1 for place in range(n)]
     modes = tuple(int(mode) for mode in after if mode is not None)
     if len(modes) != n:

@@ -7,6 +7,7 @@ gravity g, mass_ratio eps, frequency Omega.
 from __future__ import annotations
 
 from orbits.compiling.decorators import kernel
+from orbits.machines import pinning as _pinning
 from orbits.machines.absorber import law as _law
 from orbits.machines.absorber.law import law, rate
 from orbits.machines.cavity import equations as _equations
@@ -16,7 +17,7 @@ from orbits.machines.cavity.equations import unpin as unpin
 from orbits.machines.cavity.margins import watch
 from orbits.machines.path import place
 
-SOURCES = (_law.__file__, _equations.__file__, _margins.__file__)
+SOURCES = (_law.__file__, _equations.__file__, _pinning.__file__, _margins.__file__)
 
 
 @kernel

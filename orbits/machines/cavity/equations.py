@@ -16,6 +16,7 @@ import numpy as np
 
 from orbits.compiling.decorators import kernel
 from orbits.compiling.trigonometry import sines_cosines
+from orbits.machines.pinning import last_flight
 
 
 @kernel
@@ -161,16 +162,19 @@ def cycle(data, u, work, law, rate):
         if not size <= largest:
             largest = size
     if pinned == 1:
-        pin(F, A, D, Q, u, twist, work[10])
+        largest = max(largest, pin(F, A, D, Q, u, twist, modes, work[10]))
     if not np.isfinite(largest):
         return np.inf
     return largest
 
 
 @kernel
-def pin(F, A, D, Q, u, twist, kept):
-    """Replace the last displacement equation by w_{L-1} + w_L = 0; what was there goes to `kept`."""
-    last = F.shape[0] - 1
+def pin(F, A, D, Q, u, twist, modes, kept):
+    """Replace the displacement equation of the last flight by w_i + w_{i+1} = 0; what was there goes to `kept`.
+
+    Returns what the mean position is off by.
+    """
+    last = last_flight(modes)
     for c in range(2):
         kept[c] = A[last, 1, c]
         kept[2 + c] = D[last, 1, c]
@@ -179,8 +183,9 @@ def pin(F, A, D, Q, u, twist, kept):
     A[last, 1, 1] = 1.0
     D[last, 1, 0] = 0.0
     D[last, 1, 1] = 1.0
-    F[last, 1] = u[2 * last + 1] + twist * u[1]
+    F[last, 1] = u[2 * last + 1] + (u[2 * last + 3] if last + 1 < F.shape[0] else twist * u[1])
     Q[last, 1] = 0.0
+    return abs(F[last, 1])
 
 
 @kernel
@@ -188,7 +193,7 @@ def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
     if data[6] == 1:
         A, D, kept = work[1], work[2], work[10]
-        last = A.shape[0] - 1
+        last = last_flight(data[1])
         for c in range(2):
             A[last, 1, c] = kept[c]
             D[last, 1, c] = kept[2 + c]
