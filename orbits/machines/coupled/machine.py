@@ -130,6 +130,10 @@ class Coupled(Model):
     def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return nodes[:, :, 2], nodes[:, :, 3]
 
+    @classmethod
+    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+
     def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
         start = super().random_start(params, generator)
         return start | {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
