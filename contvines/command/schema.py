@@ -96,12 +96,20 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
+class ChartSection(Section):
+    """`[chart]`, optional: the second parameter of `contvines chart`."""
+
+    parameter: str
+    within: Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
 class StudySections(Section):
     """What every study has beside its machine."""
 
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+    chart: ChartSection | None = None
 
 
 class StudyFile(StudySections):

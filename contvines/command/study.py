@@ -15,7 +15,14 @@ from pydantic import TypeAdapter, ValidationError
 from contvines.command.page_study import check as check_page
 from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
-from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, StudySections, SweepSection
+from contvines.command.schema import (
+    EXCITATION,
+    PARAMETERS,
+    ChartSection,
+    StudyFile,
+    StudySections,
+    SweepSection,
+)
 from contvines.command.sentences import (
     refusal_of,
     sentence_of,
@@ -45,6 +52,7 @@ class Study:
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep : settings of the brute-force sweep.
+    chart : second parameter and its interval, of a chart.
     machine : a ready machine, where the study describes one that the catalogue does not have (a page).
     loose : parameters to hand to the ready machine with each orbit.
     state : where the simulation starts that looks for a first orbit, if no word is given.
@@ -63,6 +71,7 @@ class Study:
     virtual: bool
     settings: dict[str, Any]
     sweep: SweepSection
+    chart: ChartSection | None = None
     machine: Any = None
     loose: dict[str, float] = field(default_factory=dict)
     state: dict[str, float] | None = None
@@ -235,6 +244,15 @@ def _resolve(file: StudyFile, path: Path) -> Study:
     swept = file.sweep.within
     if swept is not None and go.parameter in known:
         wrong += _check_interval("sweep", go.parameter, swept, name)
+    if file.chart is not None:
+        other = file.chart.parameter
+        if other not in known:
+            wrong.append(
+                f"[chart] parameter = {other!r}: the model {name!r} has no such parameter{did_you_mean(other, known)}; "
+                f"it has {', '.join(known)}."
+            )
+        else:
+            wrong += _check_interval("chart", other, file.chart.within, name)
     wrong += _check_guess(file.start.guess, name)
     if wrong:
         raise StudyError(together(wrong))
@@ -269,6 +287,7 @@ def _study(
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         sweep=file.sweep,
+        chart=file.chart,
         quantities=quantities,
     )
 

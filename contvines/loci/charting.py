@@ -22,7 +22,7 @@ from .coefficients_at import coefficients
 from .departures import Candidate, leaving
 from .kernels import MARGIN
 from .kinds import PREFIXES
-from .locus import Locus, checked_ends, trace_locus
+from .locus import Locus, checked_ends, locus, trace_locus
 from .plane_point import PlanePoint
 from .problem import condition
 from .regions import divide
@@ -39,6 +39,11 @@ class ChartProgress(NamedTuple):
     loci: int
     points: int
     waiting: int
+
+    @property
+    def sentence(self) -> str:
+        """For a progress line."""
+        return f"{self.message}  |  {self.loci} loci, {self.points} points, {self.waiting} waiting"
 
 
 def chart(
@@ -97,6 +102,56 @@ def chart(
     run.work(depth)
     if regions:
         run.divide()
+    run.finish()
+    return run.chart
+
+
+def chart_of_one(
+    graph: Graph,
+    label: str,
+    over: str,
+    within: tuple[float, float],
+    virtual: bool = False,
+    settings: Settings | Mapping[str, Any] | None = None,
+    progress: Callable[[ChartProgress], None] | None = None,
+) -> Chart:
+    """The locus of one special point of a graph with the points of codimension two on it, as a chart.
+
+    Parameters
+    ----------
+    graph : Graph
+    label : str
+        Of the special point.
+    over, within, virtual, settings, progress
+        As for :func:`chart`.
+
+    Raises
+    ------
+    ValueError
+        As :func:`contvines.locus` does.
+    """
+    run = _Charting(
+        graph,
+        over,
+        check_interval(within),
+        check_interval(graph.within),
+        virtual,
+        Settings.of(settings),
+        None,
+        progress,
+    )
+    found = locus(
+        graph.special[label],
+        over,
+        within,
+        bounds=graph.within,
+        virtual=virtual,
+        settings=settings,
+        progress=lambda name, count, value: run.tell(f"{name}: {count} points"),
+    )
+    run.chart.loci[label] = found
+    run.mark(found)
+    run.chart.message = "finished"
     run.finish()
     return run.chart
 
@@ -306,9 +361,9 @@ class _Charting:
     def divide(self) -> None:
         """Regions between the real parts of the loci, and what a simulation finds in each."""
         curves = []
-        for locus in self.chart.loci.values():
-            values = locus.values.copy()
-            values[~locus.real] = np.nan
+        for each in self.chart.loci.values():
+            values = each.values.copy()
+            values[~each.real] = np.nan
             curves.append(values)
         problem = next(iter(self.graph.branches.values())).problem
         regions = divide(curves, self.chart.within)

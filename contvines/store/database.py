@@ -179,7 +179,7 @@ class Store:
                 self._version = version
             if not self._kept:
                 self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
-            entries = graph.entries() if hasattr(graph, "entries") else graph_entries(graph)
+            entries: Any = graph.entries() if hasattr(graph, "entries") else graph_entries(graph)
             present = {self._renew(*entry) for entry in entries}
             for place in self._kept.keys() - present:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
