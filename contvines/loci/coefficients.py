@@ -23,6 +23,8 @@ import numpy as np
 
 from .taylor import Line, along_line
 
+NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
+
 
 class Coefficient(NamedTuple):
     """A normal-form coefficient with an estimate of its error."""
@@ -145,12 +147,16 @@ class Forms:
         return Coefficient(value, abs(0.5 * self.n * line.second_error / weight))
 
     def size_of_quadratic(self, along: np.ndarray) -> float:
-        """What the quadratic coefficient would be if the second derivative pointed along the left null vector."""
+        """What the quadratic coefficient would be if the second derivative pointed along the left null vector.
+
+        At a cusp it may vanish; what the third derivative makes of it a little further along counts, too.
+        """
         v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
         if v @ along < 0.0:
             v = -v
-        second = self.line(v, 1.0).second @ self.extended(v, 1.0)
-        return 0.5 * float(np.linalg.norm(second)) / (abs(float(w @ self.K @ v)) or np.nan)
+        line, x = self.line(v, 1.0), self.extended(v, 1.0)
+        size = float(np.linalg.norm(line.second @ x) + NEAR * np.linalg.norm(line.third @ x))
+        return 0.5 * size / (abs(float(w @ self.K @ v)) or np.nan)
 
     def cubic(self, factor: float) -> Coefficient:
         """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
@@ -176,6 +182,8 @@ class Forms:
         Source: Kuznetsov, section 8.4, with q0, q1 and p1, p0 the right and left chains of the double zero.
         """
         q0, p1 = (np.real(x) for x in self.null(0.0))
+        if q0[np.argmax(np.abs(q0))] < 0.0:  # a and b change their signs with q0
+            q0 = -q0
         q1, p0 = self._solve(self.J, q0), self._solve(self.J.T, p1)
         q1 = q1 - (q0 @ q1) * q0
         scale = p1 @ q1

@@ -25,7 +25,13 @@ COLORS = {
     "neimark-sacker": "#7c3aed",
     "hopf": "#7c3aed",
 }
-BORDER_COLOR = "#6b6b6b"
+BORDER_COLORS = {
+    "wall-graze": "#8b5e3c",
+    "velocity-graze": "#4b5563",
+    "stick": "#a3861a",
+    "chatter": "#a21caf",
+}
+BORDER_COLOR = "#6b6b6b"  # of any other border
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
 HATCH_LENGTH = 0.012  # of the axes
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
@@ -80,15 +86,8 @@ def plot_chart(
                 markersize=4,
                 zorder=5,
             )
-            if labels:
-                axes.annotate(
-                    point.label,
-                    (point.value[1], point.value[0]),
-                    textcoords="offset points",
-                    xytext=(4, 4),
-                    fontsize="x-small",
-                    zorder=6,
-                )
+        if labels:
+            _label(axes, chart)
         if names:
             _name(axes, chart)
         unit = chart.units
@@ -108,7 +107,7 @@ def plot_chart(
 def _look(locus: Locus) -> dict[str, Any]:
     border = locus.kind not in COLORS
     return {
-        "color": BORDER_COLOR if border else COLORS[locus.kind],
+        "color": BORDER_COLORS.get(locus.kind, BORDER_COLOR) if border else COLORS[locus.kind],
         "linewidth": 1.1 if border else 1.6,
     }
 
@@ -148,9 +147,28 @@ def _hatch(axes: Any, locus: Locus) -> None:
             [here[0], end[0]],
             [here[1], end[1]],
             transform=axes.transAxes,
-            color=BORDER_COLOR,
+            color=_look(locus)["color"],
             linewidth=0.6,
             zorder=2,
+        )
+
+
+def _label(axes: Any, chart: Chart) -> None:
+    """Labels of the points, those at one place together."""
+    places: dict[tuple[float, float], list[str]] = {}
+    for point in chart.points.values():
+        place = (float(f"{point.value[1]:.6g}"), float(f"{point.value[0]:.6g}"))
+        places.setdefault(place, []).append(point.label)
+    for i, (place, names) in enumerate(sorted(places.items())):
+        above = i % 2 == 0  # neighbours on one curve get out of each other's way
+        axes.annotate(
+            ", ".join(names),
+            place,
+            textcoords="offset points",
+            xytext=(-2, 7) if above else (2, -11),
+            ha="center",
+            fontsize="x-small",
+            zorder=6,
         )
 
 
