@@ -147,6 +147,21 @@ class Branch:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         return self.problem.orbit(self.points[i], float(self.values[i]))
 
+    def prove(self, within: tuple[float, float] | None = None, bits: int | None = None) -> Any:
+        """Prove the branch between its special points, or the part of it ``within`` an interval of the parameter.
+
+        Raises
+        ------
+        ValueError
+            If the problem has no proofs.
+        """
+        prove = getattr(self.problem, "prove_branch", None)
+        if prove is None:
+            raise ValueError(
+                f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
+            )
+        return prove(self.points, self.values, [i for i, _ in self.marks], within)
+
     def to_dict(self) -> dict[str, Any]:
         """The entry of this branch in the JSON of a graph."""
         about = self.description
