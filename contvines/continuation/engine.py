@@ -64,8 +64,11 @@ class Engine:
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
+        self.detection = str(getattr(problem, "detection", "") or problem.spectrum)
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem_scale(problem, self.within), float(getattr(problem, "noise", 0.0))
+        scales = getattr(problem, "scales", None)
+        self.rate = 1.0 if scales is None or self.detection != "flow" else float(scales.rate)  # of one raw eigenvalue
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
@@ -91,6 +94,11 @@ class Engine:
     def norm(self, a: np.ndarray) -> float:
         """Length of a vector."""
         return math.sqrt(max(self.inner(a, a), 0.0))
+
+    def amplitude(self, a: np.ndarray) -> float:
+        """Length of a unit vector as normal forms measure it; 1 where the metric does."""
+        own = getattr(self.problem, "amplitude", None)
+        return 1.0 if own is None else float(own(a))
 
     def unit(self, a: np.ndarray) -> np.ndarray:
         """The vector scaled to length 1."""

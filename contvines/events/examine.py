@@ -60,7 +60,7 @@ class Examiner:
     def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
         self.engine = engine
         problem = engine.problem
-        self.kind = problem.spectrum
+        self.kind = engine.detection
         self.symmetries = [SymmetryTest(s, engine.n, problem.period_shift) for s in problem.symmetries]
         self.users = {name: user_function(engine, f) for name, f in (user_functions or {}).items()}
 

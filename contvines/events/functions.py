@@ -21,7 +21,8 @@ LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbou
 def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
 
-    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part.
+    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part; where only branch points are looked
+    for ("real"), the first of these.
     """
     result = np.zeros((len(spectrum), 3), dtype=np.int64)
     real = spectrum.imag == 0.0
@@ -32,6 +33,8 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
             real & (spectrum.real < -1.0 - PAST),
             upper & (np.abs(spectrum) > 1.0 + PAST),
         )
+    elif kind == "real":
+        columns = (real & (spectrum.real > PAST),)
     elif kind == "flow":
         columns = (real & (spectrum.real > PAST), np.zeros_like(real), upper & (spectrum.real > PAST))
     else:
@@ -54,7 +57,7 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
             return -LIMIT
         # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
         # as it does in conservative systems
-        place = 0.0 if kind == "flow" else (-1.0 if name == "minus" else 1.0)
+        place = 0.0 if kind != "map" else (-1.0 if name == "minus" else 1.0)
         return -min(float(np.abs(spectrum[spectrum.imag != 0.0] - place).min()), LIMIT)
     value = float(values[k - 1])
     if kind == "map":

@@ -83,7 +83,9 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             transcritical = abs(departure.slope) > 0.1 * run.unit(point.value) * departure.amplitude
             if point.criticality is None and not transcritical:
                 point.criticality, point.coefficient = criticality(
-                    departure.curvature, speed, flip=name == "minus"
+                    departure.curvature / target.amplitude(departure.direction) ** 2,
+                    speed,
+                    flip=name == "minus",
                 )
             elif transcritical:
                 run.remark(point.label, "transcritical")

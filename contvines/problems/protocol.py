@@ -16,7 +16,8 @@ The contract, in words:
        from the linearisation in ``work``: ``row[:2 m]`` are the m multipliers (or eigenvalues) as re, im pairs,
        ``row[2 m:]`` are the margins. A margin is positive on a real solution, +inf where it does not apply.
 3. ``data`` and ``workspace()`` are the opaque first and last arguments of the kernels.
-4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none".
+4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none". A problem without one
+   may still have real eigenvalues watched for branch points: ``detection`` is then "real".
    ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
 5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
    vector which are the same for solutions that are one and the same thing.
@@ -183,6 +184,7 @@ class ProblemDefaults:
 
     parameter = "p"
     spectrum = "none"
+    detection = ""
     flip_kind = "period-doubling"
     n_multipliers = 0
     n_margins = 0

@@ -107,6 +107,7 @@ class Scanned(cv.AlgebraicProblem):
     def __init__(self):
         super().__init__(lambda u, p: u - p, [0.0, 0.0], 0.0)
         self.n_multipliers, self.n_margins, self.spectrum = 2, 5, "map"
+        self.detection = ""
         self.symmetries = (Symmetry("symmetry-breaking", lambda u: -u),)
 
 
