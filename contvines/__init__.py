@@ -30,6 +30,7 @@ _HOME = {
     "Symmetry": ".problems.protocol",
     "diagram": ".graph.automatic",
     "load": ".store",
+    "locus": ".loci.locus",
     "register": ".problems.registry",
     "resume": ".store",
     "save": ".store",
@@ -53,6 +54,7 @@ __all__ = [
     "Symmetry",
     "diagram",
     "load",
+    "locus",
     "register",
     "resume",
     "save",
@@ -80,6 +82,7 @@ if TYPE_CHECKING:
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
     from .journal import MemoryJournal, NullJournal
+    from .loci.locus import locus
     from .problems.algebraic import AlgebraicProblem
     from .problems.maps import MapProblem
     from .problems.protocol import Embedding, Kernels, Seed, Symmetry

@@ -101,16 +101,23 @@ class Branch:
 
     def measure(self, name: str) -> np.ndarray:
         """A measure along the branch, shape (n,). The parameter's own name is a measure, too."""
+        return self.measure_of(name, self.points, self.values)
+
+    def measure_of(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """A measure of other solutions of this branch's problem: `u` of shape (m, N), `p` and the result of shape (m,)."""
         if name == self.parameter:
-            return self.values
+            return np.asarray(p, dtype=float)
         if self.problem is None:
-            return _bare_measure(self, name)
-        return self.problem.measures((name,), self.points, self.values)[name]
+            return _bare_measure(self.label, name, u)
+        return self.problem.measures((name,), u, p)[name]
 
     def orbit(self, i: int) -> Any:
         """The solution at point i as the object that the problem hands to users."""
         if self.problem is None:
             raise ValueError(without_problem(self.label, self.description))
+        n = len(self)
+        if not -n <= i < n:
+            raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         return self.problem.orbit(self.points[i], float(self.values[i]))
 
     def to_dict(self) -> dict[str, Any]:
@@ -132,11 +139,11 @@ class Branch:
         }
 
 
-def _bare_measure(branch: Branch, name: str) -> np.ndarray:
+def _bare_measure(label: str, name: str, u: np.ndarray) -> np.ndarray:
     if name == "norm":
-        return np.linalg.norm(branch.points, axis=1)
-    if name.startswith("u") and name[1:].isdigit() and int(name[1:]) < branch.points.shape[1]:
-        return branch.points[:, int(name[1:])]
+        return np.linalg.norm(u, axis=1)
+    if name.startswith("u") and name[1:].isdigit() and int(name[1:]) < u.shape[1]:
+        return u[:, int(name[1:])]
     raise KeyError(
-        f"{branch.label} was loaded without its problem; only norm and u0, u1 ... can be measured, not {name!r}"
+        f"{label} was loaded without its problem; only norm and u0, u1 ... can be measured, not {name!r}"
     )

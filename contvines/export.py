@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .endings import refuse_ending
+from .graph.table import with_unit
 
 if TYPE_CHECKING:
     from .branch import Branch
@@ -101,6 +102,7 @@ def _finite(data: Any) -> Any:
 def _csv(graph: "Graph", path: Path) -> None:
     unknowns = max((b.points.shape[1] for b in graph.branches.values()), default=0)
     multipliers = max((b.multipliers.shape[1] for b in graph.branches.values()), default=0)
+    units = graph.units
     head = ["branch", "index", graph.parameter, "stable", "real", "margin", "special"]
     head += [f"u{i}" for i in range(unknowns)]
     head += [f"multiplier{j}_{part}" for j in range(multipliers) for part in ("re", "im")]
@@ -110,7 +112,7 @@ def _csv(graph: "Graph", path: Path) -> None:
     head += more
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(head)
+        writer.writerow([with_unit(name, units.get(name)) for name in head])
         for branch in graph.branches.values():
             marks = dict(branch.marks)
             about = [branch.description.get("word", ""), branch.description.get("periods", "")]

@@ -21,10 +21,12 @@ PREFIXES = {
     "wall-graze": "WG",
     "stick": "ST",
     "chatter": "CH",
+    "switch-graze": "SG",
+    "corner": "CO",
     "user": "US",
     "end": "EP",
 }
-BORDERS = ("velocity-graze", "wall-graze", "stick", "chatter")
+BORDERS = ("velocity-graze", "wall-graze", "stick", "chatter", "switch-graze", "corner")
 
 
 @dataclass(eq=False)
@@ -106,6 +108,21 @@ class SpecialPoint:
         if self.problem is None:
             raise ValueError(without_problem(self.label))
         return self.problem.orbit(self.u, self.value)
+
+    def prove(self, **options: Any) -> Any:
+        """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.
+
+        Raises
+        ------
+        ValueError
+            If the problem has no proofs.
+        """
+        prove = getattr(self.problem, "prove", None)
+        if prove is None:
+            raise ValueError(
+                f"{self.label}: its problem offers no proofs; machines of orbits with flights in closed form do"
+            )
+        return prove(self.kind, self.u, self.value, margin=self.margin_index, **options)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this point in the JSON of a graph."""

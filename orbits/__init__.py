@@ -8,14 +8,18 @@ from typing import Any
 _PLACES = {
     "Absorber": "orbits.machines.absorber.machine",
     "Coupled": "orbits.machines.coupled.machine",
+    "DryFriction": "orbits.contacts.dry_friction",
+    "Machine": "orbits.machines.declared.machine",
     "Scales": "orbits.design.scales",
     "Orbit": "orbits.orbit",
     "OrbitProblem": "orbits.problem",
-    "ParameterError": "orbits.machines.base",
+    "ParameterError": "orbits.machines.parameters",
+    "Switch": "orbits.contacts.switch",
+    "Wall": "orbits.contacts.wall",
     "Word": "orbits.words",
     "WordError": "orbits.words",
 }
-_ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "theory", "words")
+_ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
 __all__ = sorted([*_PLACES, *_ROOMS])
 
 

@@ -8,4 +8,5 @@ FACTORIES = {
     "orbits.problem:rebuild": "orbits.problem:rebuild",
     "orbits.cycles.stuck_problem:rebuild": "orbits.cycles.stuck_problem:rebuild",
     "orbits.stuck_problem:rebuild": "orbits.cycles.stuck_problem:rebuild",
+    "orbits.machines.declared.stored:rebuild": "orbits.machines.declared.stored:rebuild",
 }

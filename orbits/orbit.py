@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from orbits.cycles.margins import Margin, named_margins
 from orbits.machines.base import Model
 from orbits.problem import OrbitProblem
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.proofs import Proof
 
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
 
@@ -62,7 +65,7 @@ class Orbit:
     @cached_property
     def symmetric(self) -> bool:
         """Whether the orbit equals its mirror image after half its period."""
-        return is_symmetric(self.word, self.periods, self.nodes)
+        return self.model.has_mirror(self.params) and is_symmetric(self.word, self.periods, self.nodes)
 
     @cached_property
     def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
@@ -167,7 +170,18 @@ class Orbit:
         )
 
     def mirror(self) -> Orbit:
-        """The mirror image: L and R change places, half a forcing period later."""
+        """The mirror image: L and R change places, half a forcing period later.
+
+        Raises
+        ------
+        ValueError
+            If it is no motion of this machine.
+        """
+        if not self.model.has_mirror(self.params):
+            raise ValueError(
+                f"the model {self.model.name!r} has no mirror symmetry with these parameters: the image of "
+                f"{self.word.text!r} is not one of its orbits"
+            )
         nodes = -self.nodes
         nodes[:, 0] = self.nodes[:, 0] + np.pi
         return Orbit(self.model, self.word.mirror(), self.periods, nodes, self.params)
@@ -191,10 +205,10 @@ class Orbit:
         symmetric : bool, optional
             Solve on half the word; default: whether the orbit is symmetric.
         """
-        half = self.symmetric if symmetric is None else symmetric
-        return OrbitProblem(
-            self.model, self.word, self.periods, parameter or self.model.default_parameter, self.params, half
-        )
+        parameter = parameter or self.model.default_parameter
+        lasting = self.symmetric and self.model.has_mirror(self.params, parameter)
+        half = lasting if symmetric is None else symmetric
+        return OrbitProblem(self.model, self.word, self.periods, parameter, self.params, half)
 
     def seed(self, problem: OrbitProblem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
@@ -213,34 +227,47 @@ class Orbit:
 
         return replay_error(self)
 
+    def prove(self, bits: int | None = None, **parameters: Any) -> Proof:
+        """Prove that the orbit exists, is real or virtual, stable or unstable; see `orbits.proofs.subjects.of_orbit`."""
+        from orbits.proofs.subjects import of_orbit
+
+        return of_orbit(self, bits, **parameters)
+
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
         from orbits.plots.portrait import portrait
 
         return portrait(self, **options)
 
+    def scene(self, points: int = 120) -> dict[str, Any]:
+        """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
+        from orbits.plots.scene import scene
+
+        return scene(self, points)
+
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
         table = self.events
+        long, fast = (float(self.model.gauge(kind, self.params)) for kind in ("length", "velocity"))
         nodes = []
         for i, letter in enumerate(self.word.events):
             entry = {
                 "event": letter,
                 "phase": float(table.phase[i]),
-                "B_pre": float(table.B_pre[i]),
-                "B_post": float(table.B_post[i]),
-                "w": float(table.w[i]),
-                "w_rate": float(table.rate_post[i]),
+                "B_pre": float(table.B_pre[i]) * fast,
+                "B_post": float(table.B_post[i]) * fast,
+                "w": float(table.w[i]) * long,
+                "w_rate": float(table.rate_post[i]) * fast,
             }
-            if self.model.node == 4:
-                entry |= {"v": float(table.v[i]), "v_rate": float(table.v_rate[i])}
+            for name in self.model.node_names[2:]:
+                entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
             nodes.append(entry)
         return {
             "word": self.word.text,
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,
-            "parameters": self.parameters,
+            **self.model.described(self.params),
             "nodes": nodes,
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],

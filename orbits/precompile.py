@@ -11,28 +11,15 @@ import importlib
 import os
 import subprocess
 import sys
-from typing import Any
 
 import numpy as np
 from numba import config, typeof
 
 from orbits.cycles import kernels
 from orbits.elimination import by_address
-from orbits.machines.catalogue import build
+from orbits.machines.catalogue import model_class, usual
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
-
-SMALL: dict[str, dict[str, float]] = {
-    "absorber": {"restitution": 0.5, "friction": 0.1, "gravity": 0.1, "mass_ratio": 0.01},
-    "coupled": {
-        "restitution": 0.5,
-        "friction": 0.1,
-        "gravity": 0.1,
-        "mass_ratio": 0.01,
-        "forcing": 1.0,
-        "frequency": 0.9,
-    },
-}
 
 
 def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
@@ -55,7 +42,7 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         return running
     if _cores() < 2 or not _missing(name):
         return None
-    digest = kernels.assemble(build({"name": name} | SMALL[name])).digest
+    digest = kernels.assemble(usual(name)[0]).digest
     program = f"from orbits.precompile import compile_as; compile_as({digest!r}, {name!r}, *{more!r})"
     # the very modules and the very cache of this process, wherever it was started
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
@@ -80,7 +67,7 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
 
 def compile_as(digest: str, name: str, *more: str) -> None:
     """`compile_now`, if the sources are those with this digest: others would be compiled for nobody."""
-    if kernels.assemble(build({"name": name} | SMALL[name])).digest == digest:
+    if kernels.assemble(usual(name)[0]).digest == digest:
         compile_now(name, *more)
 
 
@@ -90,7 +77,7 @@ def compile_now(name: str, *more: str) -> None:
     from orbits.simulation.driver import simulate
     from orbits.words import Word
 
-    model = build({"name": name} | SMALL[name])
+    model, given = usual(name)
     problem = OrbitProblem(
         model, Word.parse("LR"), 1, model.parameter_names[0], np.zeros(len(model.parameter_names))
     )
@@ -100,8 +87,7 @@ def compile_now(name: str, *more: str) -> None:
     for place in more:
         module, _, function = place.partition(":")
         getattr(importlib.import_module(module), function)()
-    values: dict[str, Any] = {"amplitude": 0.1} if name == "absorber" else {}
-    simulate(model, periods=0.5, **values).sample()
+    simulate(model, periods=0.5, **given)  # type: ignore[arg-type].sample()
     if model.node == 2:
         by_address.functions()
     else:
@@ -119,6 +105,6 @@ def _cores() -> int:
 
 def _missing(name: str) -> bool:
     """Whether numba's cache lacks the kernel `inspect` or the stepper; False where that cannot be told."""
-    module = importlib.import_module(f"orbits.machines.{name}.stepper")
-    compiled = kernels.assemble(build({"name": name} | SMALL[name]))
+    module = model_class(name).stepper()
+    compiled = kernels.assemble(usual(name)[0])
     return not (kernels.cached(compiled.inspect) and kernels.cached(module.advance))

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from orbits.cycles import measures as measuring
+from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.kernels import assemble
-from orbits.cycles.margins import PER_NODE, border_kind
+from orbits.cycles.margins import DURATION, FLIGHT, PER_NODE, border_kind, margin_name
 from orbits.elimination.block_cyclic import workspace
 from orbits.machines.base import Model
 from orbits.machines.path import along
@@ -56,6 +57,11 @@ class OrbitProblem:
         params: np.ndarray,
         symmetric: bool = False,
     ) -> None:
+        self.mirrored = model.has_mirror(np.asarray(params, dtype=float), parameter)
+        if symmetric and not self.mirrored:
+            raise ValueError(
+                f"the model {model.name!r} has no mirror image along {parameter}, so no symmetric orbits"
+            )
         if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
             raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
         if len(word) == 0:
@@ -103,6 +109,21 @@ class OrbitProblem:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters that may vary, by name; of the one that does the starting value."""
+        return {
+            name: float(value)
+            for name, value in zip(self.model.amount_names, self.model.amounts(self.params))
+        }
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> OrbitProblem:
+        """The same orbits against another parameter, with other values of some parameters."""
+        params = self.params
+        for name, value in (values or {}).items():
+            params = along(self.model.path(name, params), params, float(value))
+        return OrbitProblem(self.model, self.word, self.periods, parameter, params, self.symmetric)
+
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
         return along(self.path, self.params, p)
@@ -110,6 +131,10 @@ class OrbitProblem:
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
+        return j - FLIGHT + DURATION if margin_name(self.word, j) == "hold" else j
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border at which margin `j` vanishes."""
@@ -142,7 +167,7 @@ class OrbitProblem:
         if self.symmetric:
             return ()
         found = []
-        places = self._mirror_places()
+        places = self._mirror_places() if self.mirrored else 0
         if places:
             half = self.sibling(
                 self.word.head(2 * places), 2 * self.periods * places // self.length, symmetric=True
@@ -164,6 +189,14 @@ class OrbitProblem:
                 )
             )
         return tuple(found)
+
+    def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
+        """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
+        word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u))
+        if len(word) == len(self.word):
+            return None
+        found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes))
+        return found, found.reduce(nodes)
 
     def _mirror_places(self) -> int:
         """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
@@ -238,7 +271,8 @@ class OrbitProblem:
         """
         from orbits.cycles.identity import canonical
 
-        return canonical(self.word, self.periods, self.expand(u))
+        mirrored = self.model.has_mirror(self.values(p))
+        return canonical(self.word, self.periods, self.expand(u), mirrored)
 
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
@@ -249,7 +283,8 @@ class OrbitProblem:
 
         if not isinstance(other, OrbitProblem):
             return False
-        return distance(self.orbit(u, p), other.orbit(v, p), mirror=True) <= SAME
+        mirrored = self.model.has_mirror(self.values(p))
+        return distance(self.orbit(u, p), other.orbit(v, p), mirrored) <= SAME
 
     # ------------------------------------------------------------------ for people
     @property
@@ -283,6 +318,14 @@ class OrbitProblem:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
         return self.orbit(u, p).replay()
 
+    def prove(
+        self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
+    ) -> Any:
+        """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
+        from orbits.proofs.subjects import of_point
+
+        return of_point(self, kind, u, p, margin, bits)
+
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {
@@ -297,6 +340,7 @@ class OrbitProblem:
             "impacts": self.word.impacts,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
+            **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
         }
 

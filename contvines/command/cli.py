@@ -5,12 +5,15 @@ numpy, numba, matplotlib, rich and pydantic are imported by the commands that ne
 """
 
 import gc
+import re
 import sys
 from typing import Annotated, Any
 
 import typer
 
-from contvines.command import design, look, run, sweep
+from contvines.command import design, look, prove, report, run, sweep
+
+LONGEST = 200  # letters of a word in a sentence (paths aside)
 
 app = typer.Typer(
     name="contvines",
@@ -49,8 +52,10 @@ app.command()(run.trace)
 app.command()(run.switch)
 app.command()(look.show)
 app.command()(look.orbit)
+app.command()(prove.prove)
 app.command()(look.plot)
 app.command()(look.export)
+app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(design.design)
 
@@ -104,4 +109,5 @@ def sentence(error: Exception) -> str:
             f"something went wrong that should not ({type(error).__name__}: {error}); "
             "the same command with --debug shows where"
         )
+    text = re.sub(rf"[^\s/]{{{LONGEST},}}", lambda m: f"{m[0][:60]}... ({len(m[0])} letters)", text)
     return text if text.endswith((".", "?")) or "\n" in text else text + "."

@@ -31,8 +31,10 @@ def checked_study(path: Path) -> "Study":
         vector = model.vector(loose(study))
     except ValueError as error:
         raise ValueError(f"{path}: [model] {error}") from error
+    if study.machine is not None:
+        return study
     try:
-        Word.parse(study.word, frictionless=model.friction_acceleration(vector) == 0.0)
+        Word.parse(study.word or "", frictionless=model.frictionless(vector))
     except ValueError as error:
         raise ValueError(f"{path}: [start] {error}") from error
     return study
@@ -42,13 +44,24 @@ def machine(study: "Study") -> Any:
     """The machine of a study, `[start]`'s overrides included."""
     from orbits.machines.catalogue import build
 
+    if study.machine is not None:
+        return study.machine
+    if study.quantities:
+        return build(study.quantities)
     own = {k: v for k, v in study.parameters.items() if k not in loose(study)}
     return build({"name": study.name, **own})
 
 
 def loose(study: "Study") -> dict[str, float]:
     """Parameters that belong to the orbit rather than to the machine (the reduced model's amplitude)."""
-    return {k: v for k, v in study.parameters.items() if study.name == "absorber" and k == "amplitude"}
+    from orbits.machines.catalogue import model_class
+
+    if study.machine is not None:
+        return study.loose
+    if study.quantities:
+        return {}
+    own = model_class(study.name).field_names()
+    return {k: v for k, v in study.parameters.items() if k not in own}
 
 
 def first_orbit(study: "Study") -> Any:
@@ -62,8 +75,11 @@ def first_orbit(study: "Study") -> Any:
     from orbits.precompile import compile_ahead
     from orbits.starts.find import StartWarning
 
-    compile_ahead(study.name, "contvines.events.scan:prepare")
+    if study.machine is None:
+        compile_ahead(study.name, "contvines.events.scan:prepare")
     try:
+        if study.word is None:
+            return machine(study).attractor(study.state, **loose(study)).found
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", StartWarning)

@@ -109,7 +109,7 @@ def draw(design: Design) -> Figure:
     """Amplitude bounds and operating ratio over friction and over the cavity's half-width; a map of both."""
     import numpy as np
 
-    from contvines.plots.style import new_figure, styled
+    from contvines.plots.figures import new_figure, styled
 
     mu0, b0 = float(design.friction), float(design.cavity)
     mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)
@@ -196,7 +196,7 @@ def design(
 ) -> None:
     """Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and
     sliding limits."""
-    from contvines.plots.style import check_picture, save_figure
+    from contvines.plots.figures import check_picture, save_figure
 
     from .study import read_study
 

@@ -7,11 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import TrustOption
+from contvines.command.options import FileArgument, TrustOption
+from contvines.graph.table import with_unit
 
-FileArgument = Annotated[
-    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
-]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
 
 
@@ -30,6 +28,14 @@ class Picture(StrEnum):
     diagram = "diagram"
     multipliers = "multipliers"
     network = "network"
+
+
+class Colors(StrEnum):
+    """What a colour of a diagram stands for."""
+
+    branch = "branch"
+    word = "word"
+    stability = "stability"
 
 
 def show(file: FileArgument, json: JsonOption = False) -> None:
@@ -65,7 +71,7 @@ def orbit(
 ) -> None:
     """One orbit: its events, multipliers and margins."""
     if plot is not None:
-        from contvines.plots.style import check_picture
+        from contvines.plots.figures import check_picture
 
         check_picture(plot)
     found = _orbit(file, label, trust)
@@ -77,8 +83,8 @@ def orbit(
         typer.echo(_describe(found))
     if plot is not None:
         from contvines.command.compose import say
+        from contvines.plots.figures import save_figure
         from contvines.plots.portrait import plot_portrait
-        from contvines.plots.style import save_figure
 
         save_figure(plot_portrait(found), plot)
         say(f"drawn in {plot}")
@@ -89,22 +95,55 @@ def plot(
     x: Annotated[
         str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")
     ] = None,
-    y: Annotated[str | None, typer.Option("-y", help="Measure on the y axis; by default B.")] = None,
+    y: Annotated[
+        str | None,
+        typer.Option(
+            "-y",
+            help="Measure on the y axis; by default what the machine is judged by: B (velocity at the first impact) "
+            "of the absorber, max_abs_q1 of the coupled machine, the first measure of other problems.",
+        ),
+    ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
     ] = None,
     kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
     branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
+    xlim: Annotated[
+        tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
+    ] = None,
+    ylim: Annotated[
+        tuple[float, float] | None, typer.Option("--ylim", metavar="LOW HIGH", help="Limits of the y axis.")
+    ] = None,
+    size: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--size", metavar="WIDTH HEIGHT", help="Inches; 3.4 2.4 is a column of a journal."),
+    ] = None,
+    color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
+    words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
+    legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,
+    style: Annotated[
+        str | None, typer.Option("--style", help="A style or style sheet of matplotlib's, before ours.")
+    ] = None,
     trust: TrustOption = False,
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
     from contvines.command.compose import beside
-    from contvines.plots.style import check_picture, save_figure
+    from contvines.plots.figures import check_picture, check_style, save_figure
     from contvines.store import load
 
-    _refuse_ignored(kind, {"-x": x, "-y": y, "--branch": branch})
+    asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
+    asked |= {"--no-legend": None if legend else "", "--branch": branch}
+    _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
     check_picture(target)
+    check_style(style)
+    for name, pair in (("--xlim", xlim), ("--ylim", ylim)):
+        if pair is not None and not (math.isfinite(sum(pair)) and pair[0] < pair[1]):
+            raise ValueError(
+                f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
+            )
+    if size is not None and not all(1.0 <= side <= 60.0 for side in size):
+        raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
     graph = load(file, trust=trust)
     _say_what_lacks(graph)
     if not graph.finished:
@@ -114,11 +153,22 @@ def plot(
     if kind is Picture.diagram:
         from contvines.plots.diagram import plot_diagram
 
-        figure = plot_diagram(graph, x, y)
+        figure = plot_diagram(
+            graph,
+            x,
+            y,
+            words=words,
+            color=(color or Colors.branch).value,
+            legend=legend,
+            xlim=xlim,
+            ylim=ylim,
+            figsize=size,
+            style=style,
+        )
     elif kind is Picture.network:
         from contvines.plots.network import plot_network
 
-        figure = plot_network(graph)
+        figure = plot_network(graph, figsize=size, style=style)
     else:
         from contvines.plots.multipliers import plot_multipliers
 
@@ -127,7 +177,7 @@ def plot(
             raise ValueError(
                 f"--branch {label}: there is no such branch in {file}; it has {', '.join(graph.branches)}."
             )
-        figure = plot_multipliers(graph.branches[label])
+        figure = plot_multipliers(graph.branches[label], figsize=size, style=style)
     save_figure(figure, target)
     typer.echo(str(target))
 
@@ -171,10 +221,11 @@ def export(
     typer.echo(str(write(graph, to.value, target)))
 
 
-def _refuse_ignored(kind: Picture, options: dict[str, str | None]) -> None:
+def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
     """Options that this kind of picture would ignore are refused."""
+    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend")
     takes = {
-        Picture.diagram: (("-x", "-y"), "draws all branches"),
+        Picture.diagram: (of_diagrams, "draws all branches"),
         Picture.multipliers: (("--branch",), "draws over the parameter"),
         Picture.network: ((), "draws boxes and arrows"),
     }
@@ -183,9 +234,16 @@ def _refuse_ignored(kind: Picture, options: dict[str, str | None]) -> None:
         if value is not None and name not in known:
             other = Picture.multipliers if name == "--branch" else Picture.diagram
             raise ValueError(
-                f"{name} {value}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
+                f"{name}{_given(value)}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
                 f"or choose --kind {other.value}."
             )
+
+
+def _given(value: Any) -> str:
+    """An option's value as it was typed; nothing for a switch."""
+    if isinstance(value, bool) or value == "":
+        return ""
+    return " " + (" ".join(f"{v:g}" for v in value) if isinstance(value, tuple) else str(value))
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> Any:
@@ -209,9 +267,9 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
         )
     name, _, place = label.partition(":")
     thing = graph[name]
-    if thing.problem is None:
-        raise ValueError(without_problem(name, graph.branches[getattr(thing, "branch", name)].description))
     if hasattr(thing, "kind") and not place:
+        if thing.problem is None:
+            raise ValueError(without_problem(name, graph.branches[thing.branch].description))
         return thing.orbit
     if hasattr(thing, "kind"):
         raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
@@ -230,6 +288,17 @@ def _plain(found: Any) -> dict[str, Any]:
     return {n: getattr(found, n) for n in names}
 
 
+# which measure's unit an event's number has
+EVENTS = {
+    "B_pre": "B_pre",
+    "B_post": "B_post",
+    "w": "max_abs_w",
+    "w_rate": "B",
+    "v": "max_abs_w",
+    "v_rate": "B",
+}
+
+
 def _describe(found: Any) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
     about = _plain(found)
@@ -239,12 +308,18 @@ def _describe(found: Any) -> str:
         lines.append(f"{about['word'] or 'stuck'}  k = {about['periods']}  ({nature})")
     parameters = about.get("parameters", {})
     if parameters:
-        lines.append("  " + "  ".join(f"{k} = {v:.10g}" for k, v in parameters.items()))
+        units = about.get("units", {})
+        lines.append(
+            "  " + "  ".join(f"{k} = {v:.10g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+        )
     nodes = about.get("nodes", [])
     if nodes:
         names = list(nodes[0])
         table = [
-            names,
+            [
+                with_unit(name, EVENTS.get(name) and about.get("units", {}).get(EVENTS[name]))
+                for name in names
+            ],
             *[[_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
         ]
         widths = [max(len(row[i]) for row in table) for i in range(len(names))]
@@ -278,7 +353,7 @@ def _say_what_lacks(graph: Any) -> None:
     from contvines.problems.registry import without_problem
 
     for branch in graph.branches.values():
-        if branch.problem is None:
+        if branch.problem is None and branch.description.get("factory"):
             typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
             return
 

@@ -25,7 +25,7 @@ def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -
     if not given:
         return
     from contvines.command.compose import machine
-    from contvines.command.sentences import did_you_mean
+    from contvines.hints import did_you_mean
     from orbits.cycles.measures import names
 
     known = list(dict.fromkeys([study.parameter, *names(machine(study))]))

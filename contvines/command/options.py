@@ -1,8 +1,13 @@
 """Options that several commands share."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
+
+FileArgument = Annotated[
+    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
+]
 
 TrustOption = Annotated[
     bool,

@@ -178,13 +178,13 @@ def _interruptible(note: str) -> Iterator[None]:
 
 def _check_picture(path: Path) -> None:
     # kept apart from matplotlib: a wrong name is refused at once
-    from contvines.plots.style import check_picture
+    from contvines.plots.figures import check_picture
 
     check_picture(path)
 
 
 def _draw(graph: Any, x: str | None, y: str | None, path: Path) -> None:
     from contvines.plots.diagram import plot_diagram
-    from contvines.plots.style import save_figure
+    from contvines.plots.figures import save_figure
 
     save_figure(plot_diagram(graph, x, y), path)

@@ -1,52 +1,66 @@
 """What a TOML study may hold: its sections, their fields and the range of every parameter."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Union
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-Restitution = Annotated[float, Field(gt=0, le=1)]
-LARGEST = (
-    1e6  # in the machine's own units, where all numbers are of order one; squares stay far from overflow
-)
-Positive = Annotated[float, Field(ge=1 / LARGEST, le=LARGEST)]
-NonNegative = Annotated[float, Field(ge=0, le=LARGEST)]
+from orbits.machines.catalogue import NAMES, model_class
+from orbits.machines.parameters import Parameter
 
 
-def _excitation(value: Any) -> Any:
-    """The words of the coupled machine for the two ends of the scale."""
-    return {"exact": 1.0, "truncated": 0.0}.get(value, value) if isinstance(value, str) else value
+def kind(entry: Parameter) -> Any:
+    """The type of a parameter's values in a study: a number within its limits, or one of its words."""
+    limits = entry.limits.in_studies
+    low = {"gt": limits.low} if limits.open else {"ge": limits.low}
+    number = Annotated[float, Field(**low, le=limits.high)]  # type: ignore[arg-type]
+    if not entry.words:
+        return number
+
+    def coded(value: Any) -> Any:
+        return entry.words.get(value, value) if isinstance(value, str) else value
+
+    return Annotated[float, BeforeValidator(coded), Field(**low, le=limits.high)]  # type: ignore[arg-type]
 
 
-Excitation = Annotated[float, BeforeValidator(_excitation), Field(ge=0, le=1)]
+def would_do(entry: Parameter) -> str:
+    """What a parameter may be, as a sentence ends with it."""
+    limits = entry.limits.in_studies
+    if limits.open:
+        return f"a number in ({limits.low:g}, {limits.high:g}], for example {entry.example:g}"
+    span = f"a number from {shown(limits.low)} to {shown(limits.high)}"
+    if entry.words:
+        return f"{', '.join(repr(word) for word in entry.words)}, or {span} ({entry.meaning})"
+    return f"{span}, for example {entry.example:g}"
+
+
+def shown(number: float) -> str:
+    """A limit as people write it: 1e6, not 1e+06."""
+    return f"{number:g}".replace("e+0", "e").replace("e-0", "e-")
 
 
 class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class AbsorberSection(Section):
-    """`[model]` of the reduced absorber: a cavity shaken harmonically."""
+def _section(name: str) -> type[Section]:
+    """`[model]` of one machine: its fields, with the machine's own defaults."""
+    machine = model_class(name)
+    fields: dict[str, Any] = {"name": (Literal[name], ...)}  # type: ignore[valid-type]
+    defaults = machine.defaults()
+    for entry in machine.table:
+        if entry.name in defaults:
+            default = defaults[entry.name]
+            optional = default is None
+            wanted = kind(entry) | None if optional else kind(entry)
+            fields[entry.name] = (wanted, default if optional or default is ... else entry.number(default))
+    return create_model(f"{machine.__name__}Section", __base__=Section, **fields)
 
-    name: Literal["absorber"]
-    restitution: Restitution
-    friction: NonNegative
-    gravity: NonNegative
-    mass_ratio: NonNegative = 0.0
-    frequency: Positive = 1.0
+
+MODEL_SECTIONS: dict[str, type[Section]] = {name: _section(name) for name in NAMES}
+ModelSection: Any = Annotated[Union[tuple(MODEL_SECTIONS.values())], Field(discriminator="name")]  # noqa: UP007
 
 
-class CoupledSection(Section):
-    """`[model]` of the absorber on its oscillator, exact."""
-
-    name: Literal["coupled"]
-    restitution: Restitution
-    friction: NonNegative
-    gravity: NonNegative
-    mass_ratio: Positive
-    damping: NonNegative = 0.9
-    frequency: Positive = 1.0
-    forcing: NonNegative | None = None
-    excitation: Excitation = 1.0
+LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
 
 
 class StartSection(Section):
@@ -54,7 +68,7 @@ class StartSection(Section):
 
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
 
-    word: str
+    word: Annotated[str, Field(max_length=LONGEST)]
     periods: Annotated[int, Field(ge=1, le=4096)] = 1
     guess: list[list[float]] | None = None
 
@@ -82,32 +96,20 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
-class StudyFile(Section):
-    model: Annotated[AbsorberSection | CoupledSection, Field(discriminator="name")]
+class StudySections(Section):
+    """What every study has beside its machine."""
+
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
 
 
-# Type of every parameter of every model; the excited amplitude of the reduced model comes from [start].
+class StudyFile(StudySections):
+    model: ModelSection  # type: ignore[valid-type]
+
+
 PARAMETERS: dict[str, dict[str, Any]] = {
-    "absorber": {
-        "amplitude": NonNegative,
-        "restitution": Restitution,
-        "friction": NonNegative,
-        "gravity": NonNegative,
-        "mass_ratio": NonNegative,
-        "frequency": Positive,
-    },
-    "coupled": {
-        "forcing": NonNegative,
-        "frequency": Positive,
-        "damping": NonNegative,
-        "mass_ratio": Positive,
-        "restitution": Restitution,
-        "friction": NonNegative,
-        "gravity": NonNegative,
-        "excitation": Excitation,
-    },
+    name: {entry.name: kind(entry) for entry in model_class(name).table} for name in NAMES
 }
-EXCITATION = {"absorber": "amplitude", "coupled": "forcing"}
+"""Type of every parameter of every machine; those that are given with each orbit come from [start]."""
+EXCITATION: dict[str, str] = {name: model_class(name).driven_by for name in NAMES}

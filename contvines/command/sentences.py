@@ -1,32 +1,24 @@
 """Refusals as sentences that name the field, the value and what would do."""
 
-import difflib
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
+from contvines.command import schema
 from contvines.command.schema import (
     EXCITATION,
+    MODEL_SECTIONS,
     PARAMETERS,
-    AbsorberSection,
     ContinueSection,
-    CoupledSection,
     StartSection,
     SweepSection,
 )
+from contvines.hints import did_you_mean
+from orbits.machines.catalogue import NAMES, model_class
 
-# What would do, for each field; used in every sentence that refuses a value.
+# What would do, for each field of a study that is no parameter; used in every sentence that refuses a value.
 WOULD_DO = {
-    "name": "'absorber' or 'coupled'",
-    "restitution": "a number in (0, 1], for example 0.76",
-    "friction": "a number from 0 to 1e6, for example 0.5",
-    "gravity": "a number from 0 to 1e6, for example 0.211",
-    "mass_ratio": "a number from 0 to 1e6 (coupled machine: at least 1e-6), for example 0.006",
-    "frequency": "a number from 1e-6 to 1e6, for example 1.0",
-    "amplitude": "a number from 0 to 1e6, for example 0.55",
-    "forcing": "a number from 0 to 1e6, for example 3.3",
-    "damping": "a number from 0 to 1e6, for example 0.9",
-    "excitation": "'exact', 'truncated' (without the damper's share of the base's motion), or a number from 0 to 1",
+    "name": " or ".join(repr(name) for name in NAMES),
     "word": "a word of events such as 'LR', 'LtL' or 'tt', or of maps such as 'LR RL'",
     "periods": "a whole number from 1 to 4096",
     "guess": "a list with one [phase, B or w] per event of the word",
@@ -43,6 +35,7 @@ WOULD_DO = {
     "transient": "a whole number of forcing periods from 0 to 1000000, for example 200",
     "max_period": "a whole number of forcing periods from 1 to 256, for example 16",
 }
+MOST = 20  # sentences in one refusal
 SECTIONS = {
     "model": 'name = "absorber" and its parameters',
     "start": 'a word, its periods and a first amplitude, for example word = "LR", periods = 1, amplitude = 0.55',
@@ -50,20 +43,30 @@ SECTIONS = {
 }
 
 
-def refusal_of(kind: Any, section: str, key: str, value: Any) -> str | None:
+def would_do(key: str, machine: Any = None) -> str:
+    """What would do for a field: a parameter of the machine of that name, or a field of the study."""
+    if machine in NAMES and key in PARAMETERS[machine]:
+        return schema.would_do(model_class(machine).parameter(key))
+    return WOULD_DO.get(key, "another value")
+
+
+def refusal_of(machine: str, section: str, key: str, value: Any) -> str | None:
     """The sentence that refuses a parameter's value, or None if it is fine."""
     try:
+        kind = PARAMETERS[machine][key]
         TypeAdapter(kind, config=ConfigDict(strict=True, allow_inf_nan=False)).validate_python(value)
     except ValidationError as error:
-        return sentence_of({**error.errors()[0], "loc": (section, key), "input": value}, {})
+        return sentence_of(
+            {**error.errors()[0], "loc": (section, key), "input": value}, {"model": {"name": machine}}
+        )
     return None
 
 
 def sentence_of(error: Any, data: dict[str, Any]) -> str:
     """One pydantic error as a sentence: field, value, what would do."""
     kind = error["type"]
-    loc = [p for p in error["loc"] if p not in ("absorber", "coupled")]
-    section = str(loc[0])
+    loc = [p for p in error["loc"] if p not in NAMES]
+    section = _cut(str(loc[0]))
     value = error.get("input")
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         given = value.get("name") if isinstance(value, dict) else None
@@ -79,9 +82,10 @@ def sentence_of(error: Any, data: dict[str, Any]) -> str:
             known = ", ".join(f"[{s}]" for s in [*SECTIONS, "sweep"])
             return f"{section} = {_show(value)}: no such section{hint}; a study has {known}."
         return f"{section} = {_show(value)} is not a section; write [{section}] on a line of its own, its keys below."
-    key = str(loc[1])
+    key = _cut(str(loc[1]))
     place = f"[{section}] {key}" + "".join(f"[{i}]" for i in loc[2:])
-    would = WOULD_DO.get(key, "another value")
+    model = data.get("model")
+    would = would_do(key, model.get("name") if isinstance(model, dict) else None)
     if kind == "missing":
         return f"[{section}] {key} is missing; {would} would do."
     if kind == "extra_forbidden":
@@ -90,6 +94,8 @@ def sentence_of(error: Any, data: dict[str, Any]) -> str:
         return f"{place} = {_show(value)} is not a finite number; {would} would do."
     if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
         return f"{place} = {_show(value)} is out of range; {would} would do."
+    if kind in ("string_too_long", "string_too_short"):
+        return f"{place} has {len(value)} letters; {would} would do."
     if kind in ("too_short", "too_long"):
         return f"{place} = {_show(value)} has {len(value)} entries; {would} would do."
     wanted = {
@@ -110,7 +116,7 @@ def _fields(section: str, data: dict[str, Any]) -> list[str]:
     }
     if section == "model":
         name = data.get("model", {}).get("name")
-        return list((CoupledSection if name == "coupled" else AbsorberSection).model_fields)
+        return list(MODEL_SECTIONS.get(name, MODEL_SECTIONS[NAMES[0]]).model_fields)
     return list(models[section].model_fields)
 
 
@@ -118,18 +124,16 @@ def unknown_field(section: str, key: str, value: Any, known: list[str]) -> str:
     if section == "model" and key in EXCITATION.values():
         return f"[model] {key} = {_show(value)}: this belongs to [start], beside the word."
     return (
-        f"[{section}] {key} = {_show(value)}: there is no such field{did_you_mean(key, known)}; "
+        f"[{section}] {_cut(key)} = {_show(value)}: there is no such field{did_you_mean(key, known)}; "
         f"known are {', '.join(known)}."
     )
 
 
-def did_you_mean(given: Any, known: Any) -> str:
-    close = difflib.get_close_matches(str(given), [str(k) for k in known], n=1, cutoff=0.6)
-    return f" (did you mean {close[0]!r}?)" if close else ""
-
-
 def _show(value: Any) -> str:
-    text = repr(value)
+    return _cut(repr(value))
+
+
+def _cut(text: str) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -137,4 +141,5 @@ def together(sentences: list[str]) -> str:
     unique = list(dict.fromkeys(sentences))
     if len(unique) == 1:
         return unique[0]
-    return f"{len(unique)} things to mend:\n" + "\n".join(f"  - {s}" for s in unique)
+    more = [f"and {len(unique) - MOST} more"] if len(unique) > MOST else []
+    return f"{len(unique)} things to mend:\n" + "\n".join(f"  - {s}" for s in unique[:MOST] + more)

@@ -6,22 +6,26 @@ all such sentences of one study are reported together.
 
 import hashlib
 import json
-import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, SweepSection
+from contvines.command.page_study import check as check_page
+from contvines.command.page_study import is_page
+from contvines.command.physical_study import converted, is_physical
+from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, StudySections, SweepSection
 from contvines.command.sentences import (
-    WOULD_DO,
-    did_you_mean,
     refusal_of,
     sentence_of,
     together,
     unknown_field,
+    would_do,
 )
+from contvines.command.toml_text import TomlError, toml_data
+from contvines.hints import did_you_mean
+from orbits.machines.catalogue import model_class
 
 
 class StudyError(ValueError):
@@ -35,18 +39,22 @@ class Study:
     Attributes
     ----------
     path : Path of the TOML file.
-    name : "absorber" or "coupled".
+    name : of the machine, as in `orbits.machines.catalogue`.
     parameters : every parameter of the model at the start, by name.
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep : settings of the brute-force sweep.
+    machine : a ready machine, where the study describes one that the catalogue does not have (a page).
+    loose : parameters to hand to the ready machine with each orbit.
+    state : where the simulation starts that looks for a first orbit, if no word is given.
+    quantities : of a study in physical units, the machine's settings; its parameters are then counted in their units.
     """
 
     path: Path
     name: str
     parameters: dict[str, float]
-    word: str
+    word: str | None
     periods: int
     guess: list[list[float]] | None
     parameter: str
@@ -55,12 +63,21 @@ class Study:
     virtual: bool
     settings: dict[str, Any]
     sweep: SweepSection
+    machine: Any = None
+    loose: dict[str, float] = field(default_factory=dict)
+    state: dict[str, float] | None = None
+    quantities: dict[str, Any] | None = None
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
         return {
-            "model": {"name": self.name, **self.parameters},
-            "start": {"word": self.word, "periods": self.periods, "guess": self.guess},
+            "model": self._model(),
+            "start": {
+                "word": self.word,
+                "periods": self.periods,
+                "guess": self.guess,
+                **({"state": self.state} if self.state else {}),
+            },
             "continue": {
                 "parameter": self.parameter,
                 "within": list(self.within),
@@ -69,6 +86,12 @@ class Study:
                 "settings": self.settings,
             },
         }
+
+    def _model(self) -> dict[str, Any]:
+        if self.quantities:
+            return self.quantities
+        own = {} if self.machine is None else self.machine.settings()
+        return {**own, "name": self.name, **self.parameters}
 
     def fingerprint(self, command: str = "diagram") -> str:
         """Digest of `describe()` and the command: two runs that must give the same graph share it."""
@@ -86,7 +109,7 @@ def read_study(path: str | Path) -> Study:
     """
     path = Path(path)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = toml_data(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise StudyError(f"{path}: there is no such file; give the path of a TOML study.") from None
     except IsADirectoryError:
@@ -98,8 +121,8 @@ def read_study(path: str | Path) -> Study:
             " It is a database: commands that take a study want the .toml file." if is_database(path) else ""
         )
         raise StudyError(f"{path}: this is not a TOML file (it is not text).{hint}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise StudyError(f"{path}: this is not valid TOML: {error}.") from None
+    except TomlError as error:
+        raise StudyError(f"{path}: {error}.") from None
     try:
         return check_study(data, path)
     except StudyError as error:
@@ -108,11 +131,52 @@ def read_study(path: str | Path) -> Study:
 
 def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     """Check a study given as nested dicts; see `read_study`."""
+    if is_page(data):
+        try:
+            return Study(**check_page(data, Path(path)))
+        except (ValueError, OSError) as error:
+            raise StudyError(str(error)) from None
+    if is_physical(data):
+        return _physical(data, Path(path))
     try:
         file = StudyFile.model_validate(data)
     except ValidationError as error:
         raise StudyError(together([sentence_of(e, data) for e in error.errors()])) from None
     return _resolve(file, Path(path))
+
+
+def _physical(data: dict[str, Any], path: Path) -> Study:
+    """A study in physical units."""
+    machine, plain, wrong = converted(data)
+    try:
+        file = StudySections.model_validate(plain)
+    except ValidationError as error:
+        raise StudyError(together([*wrong, *(sentence_of(e, data) for e in error.errors())])) from None
+    if machine is None and not wrong:
+        wrong = ["the section [model] is missing; it holds the machine's name and its quantities."]
+    if machine is None:
+        raise StudyError(together(wrong))
+    go = file.continue_
+    own = machine.quantities
+    if go.parameter in own:
+        wrong += _check_ends("continue", go.within) or _check_first(go, own[go.parameter], machine)
+    wrong += _check_ends("sweep", file.sweep.within) if file.sweep.within else []
+    wrong += _check_guess(file.start.guess, machine.name)
+    if wrong:
+        raise StudyError(together(wrong))
+    return _study(path, machine.name, own, file, machine.settings())
+
+
+def _check_first(go: Any, first: float, machine: Any) -> list[str]:
+    low, high = go.within
+    if low <= first <= high:
+        return []
+    unit = machine.units.get(go.parameter, "")
+    return [
+        f"[start] {go.parameter} = {first:g} {unit}".rstrip()
+        + f" lies outside [continue] within = [{low:g}, {high:g}] {unit}".rstrip()
+        + "; start inside the interval, or widen it."
+    ]
 
 
 def is_database(path: str | Path) -> bool:
@@ -136,7 +200,7 @@ def _resolve(file: StudyFile, path: Path) -> Study:
         if key not in known:
             wrong.append(unknown_field("start", key, value, ["word", "periods", "guess", *known]))
             continue
-        refusal = refusal_of(known[key], "start", key, value)
+        refusal = refusal_of(name, "start", key, value)
         if refusal:
             wrong.append(refusal)
         else:
@@ -149,7 +213,7 @@ def _resolve(file: StudyFile, path: Path) -> Study:
             f"{did_you_mean(go.parameter, known)}; it has {', '.join(known)}."
         )
     else:
-        wrong += _check_interval("continue", go.parameter, go.within, known[go.parameter])
+        wrong += _check_interval("continue", go.parameter, go.within, name)
         if go.parameter not in parameters and not any(go.parameter in w for w in wrong):
             wrong.append(
                 f"[start] {go.parameter} is missing: it is the continuation parameter's first value; "
@@ -167,49 +231,65 @@ def _resolve(file: StudyFile, path: Path) -> Study:
         and excitation != go.parameter
         and not any(excitation in w for w in wrong)
     ):
-        wrong.append(f"[start] {excitation} is missing; {WOULD_DO[excitation]} would do.")
+        wrong.append(f"[start] {excitation} is missing; {would_do(excitation, name)} would do.")
     swept = file.sweep.within
     if swept is not None and go.parameter in known:
-        wrong += _check_interval("sweep", go.parameter, swept, known[go.parameter])
-    guess = file.start.guess
-    if guess is not None:
-        width = 2 if name == "absorber" else 4
-        for i, node in enumerate(guess):
-            if len(node) != width:
-                form = "[phase, B or w]" if width == 2 else "[phase, B or w, v, v_rate]"
-                wrong.append(
-                    f"[start] guess[{i}] = {node!r} has {len(node)} numbers; each event needs {form}."
-                )
+        wrong += _check_interval("sweep", go.parameter, swept, name)
+    wrong += _check_guess(file.start.guess, name)
     if wrong:
         raise StudyError(together(wrong))
+    return _study(path, name, {k: float(parameters[k]) for k in known if k in parameters}, file)
+
+
+def _check_guess(guess: list[list[float]] | None, name: str) -> list[str]:
+    names = model_class(name).node_names
+    return [
+        f"[start] guess[{i}] = {node!r} has {len(node)} numbers; each event needs [{', '.join(names)}]."
+        for i, node in enumerate(guess or ())
+        if len(node) != len(names)
+    ]
+
+
+def _study(
+    path: Path, name: str, parameters: dict[str, float], file: StudySections, quantities: Any = None
+) -> Study:
+    go = file.continue_
     return Study(
         path=path,
         name=name,
-        parameters={k: float(parameters[k]) for k in known if k in parameters},
+        parameters=parameters,
         word=file.start.word,
         periods=file.start.periods,
-        guess=guess,
+        guess=file.start.guess,
         parameter=go.parameter,
-        within=(float(low), float(high)),
+        within=(float(go.within[0]), float(go.within[1])),
         depth=go.depth,
         virtual=go.virtual,
         settings=go.model_dump(
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         sweep=file.sweep,
+        quantities=quantities,
     )
 
 
-def _check_interval(section: str, parameter: str, within: list[float], kind: Any) -> list[str]:
+def _check_ends(section: str, within: list[float]) -> list[str]:
     low, high = within
     if low == high:
         return [f"[{section}] within = {within!r} is empty; low < high would do."]
     if low > high:
         return [f"[{section}] within = {within!r} is reversed; within = [{high!r}, {low!r}] would do."]
+    return []
+
+
+def _check_interval(section: str, parameter: str, within: list[float], machine: str) -> list[str]:
+    ends = _check_ends(section, within)
+    if ends:
+        return ends
     for value in within:
-        if refusal_of(kind, section, parameter, value):
+        if refusal_of(machine, section, parameter, value):
             return [
                 f"[{section}] within = {within!r} leaves the range of {parameter} at {value!r}; "
-                f"{WOULD_DO[parameter]} would do at both ends."
+                f"{would_do(parameter, machine)} would do at both ends."
             ]
     return []

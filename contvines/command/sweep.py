@@ -48,7 +48,7 @@ def sweep(
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
     if plot is not None:
-        from contvines.plots.style import check_picture
+        from contvines.plots.figures import check_picture
 
         check_picture(plot)
     rows = _simulate(read, down, target, quiet)
@@ -57,7 +57,7 @@ def sweep(
         typer.echo(_summary(rows, read.parameter))
     if plot is not None:
         from contvines.command.sweep_picture import picture
-        from contvines.plots.style import save_figure
+        from contvines.plots.figures import save_figure
 
         save_figure(picture(rows, read, graph), plot)
         say(f"drawn in {plot}", quiet)

@@ -40,12 +40,12 @@ def graph_beneath(path: Path, study: "Study") -> Any:
 
 def _graph_machine(graph: Any) -> dict[str, Any]:
     """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
-    from orbits.machines.catalogue import build
+    from orbits.machines.catalogue import NAMES, build
 
     known = dict(graph.model)
     for branch in graph.branches.values():
         params = branch.description.get("params")
-        if params is None or known.get("name") not in ("absorber", "coupled"):
+        if params is None or known.get("name") not in NAMES:
             continue
         return {"name": known["name"], **dict(zip(build(known).parameter_names, params))}
     return known
@@ -55,6 +55,8 @@ def _study_machine(study: "Study") -> dict[str, Any]:
     from contvines.command.compose import loose, machine
 
     model = machine(study)
+    if study.quantities:
+        return {"name": study.name, **dict(zip(model.parameter_names, model.vector().tolist()))}
     vector = model.vector({**loose(study), study.parameter: study.parameters[study.parameter]})
     return {"name": study.name, **dict(zip(model.parameter_names, vector.tolist()))}
 
@@ -71,13 +73,17 @@ def _shown(value: Any) -> str:
 
 def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
     """The attractors of a sweep as dots, over a graph if there is one."""
+    from contvines.command.compose import machine
     from contvines.plots.sweep import plot_sweep
+    from orbits.machines.catalogue import model_class
 
+    units = machine(study).units
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
-    if study.name == "coupled":  # what a frequency response shows
+    measure = model_class(study.name).swept_measure
+    if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
-        return plot_sweep(points, study.parameter, graph, "max_abs_q1", wandering=wandering)
+        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, units=units)
     first: list[tuple[float, float]] = []
     others: list[tuple[float, float]] = []
     lines = _lines(graph) if graph is not None else []
@@ -85,7 +91,7 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
         place = _drawn_impact(row, lines) if graph is not None else None
         for i, dot in enumerate(row.dots):
             (first if graph is None or i == place else others).append((row.value, dot))
-    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering)
+    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, units=units)
 
 
 def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:

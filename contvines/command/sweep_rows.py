@@ -9,6 +9,9 @@ from pathlib import Path
 from tempfile import gettempdir
 from typing import IO, TYPE_CHECKING, Any
 
+from contvines.command.compose import machine
+from contvines.graph.table import with_unit
+
 if TYPE_CHECKING:
     from contvines.command.study import Study
 
@@ -91,7 +94,7 @@ def _impacts(found: Any) -> list[float]:
     if found.periods and len(found.nodes):
         since = run.phases[hits] - found.nodes[0, 0] + 1e-4
         jumps = jumps[np.argsort(since % (2.0 * np.pi * found.periods))]
-    return [float(b) for b in jumps]
+    return [float(b * found.model.gauge("velocity", found.params)) for b in jumps]
 
 
 class Rows:
@@ -103,6 +106,11 @@ class Rows:
 
     def __init__(self, target: Path, study: "Study", down: bool, names: list[str]) -> None:
         self.target, self.names = target, names
+        units = machine(study).units if study.quantities else {}
+        self.units = {
+            "value": units.get(study.parameter, ""),
+            **{name: units.get(name, "") for name in names},
+        }
         self.journal = target.with_name(target.name + ".unfinished")
         self.header = {"contvines": "unfinished sweep", "of": _digest(study, down)}
         self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
@@ -117,7 +125,9 @@ class Rows:
             table = self.target.open("w", newline="", encoding="utf-8")
             self.files.append(table)
             self.writer = csv.writer(table)
-            self.writer.writerow([*FIRST, *self.names, *LAST])
+            self.writer.writerow(
+                [with_unit(name, self.units.get(name)) for name in (*FIRST, *self.names, *LAST)]
+            )
             self.writer.writerows(row.cells for row in self.rows)
             table.flush()
             if self.lasting:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..interrupts import HELD, OPEN
 from . import corrector
 from . import march as source
 from .binding import bind
@@ -17,9 +18,9 @@ TIGHT = 1e-12
 NO_ROW = np.zeros(1)
 
 
-def parameter_unit(within: tuple[float, float], p: float) -> float:
+def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) -> float:
     """Length of the parameter near p: the interval's, but an interval of silly width does not make neighbours the same."""
-    return min(within[1] - within[0], max(1.0, abs(p)))
+    return min(within[1] - within[0], max(scale, abs(p)))
 
 
 def problem_scale(problem: Any, within: tuple[float, float]) -> np.ndarray:
@@ -61,6 +62,7 @@ class Engine:
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
         self.bound = bind(problem.kernels)
+        self.section = HELD if problem.kernels.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
@@ -68,7 +70,10 @@ class Engine:
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem_scale(problem, self.within), float(getattr(problem, "noise", 0.0))
         scales = getattr(problem, "scales", None)
-        self.rate = 1.0 if scales is None or self.detection != "flow" else float(scales.rate)  # of one raw eigenvalue
+        self.rate = (
+            1.0 if scales is None or self.detection != "flow" else float(scales.rate)
+        )  # of one raw eigenvalue
+        self.row_sizes = np.ones(n) if scales is None else scales.rows
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
@@ -85,6 +90,14 @@ class Engine:
         self._rows = np.zeros((0, self.row_size))
         self.at_parameter = np.zeros(n + 1)
         self.at_parameter[n] = 1.0
+
+    def parameter_unit(self, p: float) -> float:
+        """What differences of the parameter near p are compared with."""
+        return parameter_unit(self.within, p, float(self.scale[-1]))
+
+    def size(self, u: np.ndarray) -> float:
+        """1 + the largest unknown, in units of the scale."""
+        return 1.0 + float((np.abs(u) / self.scale[:-1]).max())
 
     # ------------------------------------------------------------------ metric
     def inner(self, a: np.ndarray, b: np.ndarray) -> float:
@@ -146,22 +159,23 @@ class Engine:
         here[:] = u
         row = np.zeros(self.row_size)
         step, tangent = self.step, self.tangent
-        p, sweeps, residual, sign, size = self.bound.solve(
-            self.data,
-            self.work,
-            here,
-            p,
-            border,
-            target,
-            TIGHT,
-            sweeps,
-            step,
-            tangent,
-            row,
-            corrector.EVERYTHING,
-            self.scale,
-            self.noise,
-        )
+        with self.section:
+            p, sweeps, residual, sign, size = self.bound.solve(
+                self.data,
+                self.work,
+                here,
+                p,
+                border,
+                target,
+                TIGHT,
+                sweeps,
+                step,
+                tangent,
+                row,
+                corrector.EVERYTHING,
+                self.scale,
+                self.noise,
+            )
         if sweeps < 0 or not np.isfinite(tangent).all():
             return None
         tangent = self.unit(tangent)

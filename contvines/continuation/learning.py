@@ -77,7 +77,7 @@ class Scout:
         if first:
             self.low = self.high = z
         self.low, self.high = np.minimum(self.low, z), np.maximum(self.high, z)
-        extent = (self.high - self.low)[:-1]
+        extent = 0.5 * (self.high - self.low)[:-1]
         self.scale = in_fields(np.maximum(self.first, extent))
         rows = self.problem.row_sizes(self.work, self.scale, self.width)
         self.rows = np.maximum(self.rows, rows)
@@ -120,15 +120,15 @@ class Scout:
 
     def scales(self, given: np.ndarray | None) -> Scales:
         """What was seen; ``given`` wins over it."""
-        extent = self.high - self.low
+        extent = 0.5 * (self.high - self.low)
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         bends, first = np.asarray(self.problem.bends), self.first
         moved = extent[:-1] > 1e-6 * np.where(bends, first, np.maximum(size, 1e-300))
         rest = np.where(bends, first, np.where(size > 0.0, size, 1.0))
-        seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 30.0 * extent[:-1])), extent[:-1])
+        seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
         unknowns = in_fields(own) if given is None else given
-        unit = self.width if extent[-1] <= 0.0 else float(min(self.width, extent[-1]))
+        unit = self.width if extent[-1] <= 0.0 else float(min(self.width, 2.0 * extent[-1]))
         rows = np.where(self.rows > 0.0, self.rows, 1.0)
         rate = float(np.exp(np.mean(np.log(self.rates)))) if self.rates else 1.0
         return Scales(unknowns, unit, rows, rate, self.noise)

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..hints import hinting
+from ..interrupts import listening
 from ..journal import NullJournal
 from . import march as source
 from .chunk import Chunk
@@ -118,25 +120,26 @@ def _march(
         rows[i], signs[i], corrections[i] = point.row, point.sign, point.correction
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     engine.control[source.MAX_STEP] = longest
-    filled, h, status = engine.bound.march(
-        engine.data,
-        engine.work,
-        points,
-        values,
-        tangents,
-        rows,
-        signs,
-        corrections,
-        first,
-        float(h),
-        engine.control,
-        engine.weights,
-        engine.scale,
-        engine.u,
-        engine.border,
-        engine.step,
-        engine.tangent,
-    )
+    with engine.section:
+        filled, h, status = engine.bound.march(
+            engine.data,
+            engine.work,
+            points,
+            values,
+            tangents,
+            rows,
+            signs,
+            corrections,
+            first,
+            float(h),
+            engine.control,
+            engine.weights,
+            engine.scale,
+            engine.u,
+            engine.border,
+            engine.step,
+            engine.tangent,
+        )
     part = slice(first - 1, filled)
     return (
         Chunk(
@@ -192,6 +195,7 @@ class Point(NamedTuple):
     status: str
 
 
+@hinting
 def trace(
     problem: Any,
     within: tuple[float, float],
@@ -241,7 +245,12 @@ def trace(
     if start.tangent[-1] * direction < 0.0:
         start = start._replace(tangent=-start.tangent, sign=-start.sign)
     first = True
-    for chunk in chunks(engine, start, stop_at_border=stop_at_border):
+    walk = chunks(engine, start, stop_at_border=stop_at_border)
+    while True:
+        with listening():
+            chunk = next(walk, None)
+        if chunk is None:
+            return
         multipliers, stable = engine.multipliers(chunk.rows), engine.stable(chunk.rows)
         margin = engine.smallest_margin(chunk.rows)
         for i in range(0 if first else 1, len(chunk)):

@@ -7,14 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..continuation.engine import Engine, Solved, parameter_unit
+from ..continuation.engine import Engine, Solved
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .locate import Root, locate, locate_singular
 from .scan import FLAT, MARGIN
 from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
+FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
+STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
+BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -61,7 +64,9 @@ class Examiner:
         self.engine = engine
         problem = engine.problem
         self.kind = engine.detection
-        self.symmetries = [SymmetryTest(s, engine.n, problem.period_shift) for s in problem.symmetries]
+        self.symmetries = [
+            SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
+        ]
         self.users = {name: user_function(engine, f) for name, f in (user_functions or {}).items()}
 
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
@@ -87,7 +92,12 @@ class Examiner:
                 elif abs(test(root.point)) > REACHED:
                     continue  # two real multipliers met and left the axis; none of them was at the boundary
                 elif not _near(root.position, [e.position for e in folds] + met):
-                    crossings.append(self._located(root, "branch-point", k))
+                    if self._turns_back(segment, root):
+                        folds.append(self._located(root, "fold", 0))
+                    elif self._regular(root.point):
+                        folds.append(self._located(root, "astray", 0))
+                    else:
+                        crossings.append(self._located(root, "branch-point", k))
         outside = (after - before) @ np.array([1, 1, 2])
         if discarded and outside != 0 and depth < 10:
             middle = segment.at(0.5)
@@ -116,14 +126,38 @@ class Examiner:
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
         ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
-        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * parameter_unit(
-            self.engine.within, segment.a.p
-        ):
+        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * self.engine.parameter_unit(segment.a.p):
             return []
         root = locate(segment, lambda point: float(point.tangent[-1]))
         if root is None or not root.continuous:
             return []
         return [] if _near(root.position, met, 0.02) else [self._located(root, "fold", 0)]
+
+    def _regular(self, point: Solved) -> bool:
+        """Whether the branch is alone at a point where a multiplier passes +1: the segment has led from one to another.
+
+        Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
+        """
+        engine = self.engine
+        if abs(point.tangent[-1]) > STATIONARY * engine.parameter_unit(point.p):
+            return False
+        engine.residual(point.u, point.p)
+        side = np.append(engine.row_sizes * np.random.default_rng(7).standard_normal(engine.n), 0.0)
+        image = engine.apply_inverse(engine.weights * point.tangent, side)
+        return bool(np.isfinite(image).all() and engine.norm(image) < FAR)
+
+    def _turns_back(self, segment: Segment, root: Root) -> bool:
+        """Whether the parameter has an extremum where a multiplier passes +1, though the ends do not tell."""
+        unit = self.engine.parameter_unit(root.point.p)
+        if abs(root.point.tangent[-1]) > STATIONARY * unit:
+            return False
+        reach = min(BESIDE, 0.5 * root.position, 0.5 * (1.0 - root.position)) or BESIDE
+        sides = [segment.at(root.position + step) for step in (-reach, reach)]
+        return (
+            sides[0] is not None
+            and sides[1] is not None
+            and sides[0].tangent[-1] * sides[1].tangent[-1] < 0.0
+        )
 
     def _sharpen(self, segment: Segment, crossings: list[Located]) -> list[Located]:
         """Branch points again, through interpolation; those at one and the same place from the mean of their tests."""

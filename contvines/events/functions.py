@@ -66,12 +66,15 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
 
 
 class SymmetryTest:
-    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period.
+    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 
     T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks.
     """
 
-    def __init__(self, symmetry: Any, n: int, period_shift: np.ndarray | None) -> None:
+    def __init__(
+        self, symmetry: Any, n: int, period_shift: np.ndarray | None, scale: np.ndarray | None = None
+    ) -> None:
+        self.scale = None if scale is None or (scale == 1.0).all() else scale
         self.symmetry, self.kind = symmetry, symmetry.kind
         self.shift = (
             None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
@@ -101,7 +104,7 @@ class SymmetryTest:
         if self.shift is not None:
             turns = np.round(gap @ self.shift / (self.shift @ self.shift))
             gap = gap - turns[:, None] * self.shift
-        return gap
+        return gap if self.scale is None else gap / self.scale
 
     def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Derivative of T at u applied to v."""

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..continuation.engine import Engine, parameter_unit
+from ..continuation.engine import Engine
 from . import functions
 from .functions import PAST, SymmetryTest
 
@@ -25,7 +25,7 @@ COLUMNS = 16  # a cycle is known from any of its nodes: a few unknowns tell whet
 APART = 1e-6  # parts that a symmetry changes below this are zero
 
 # what a segment may hold, as bits
-FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED = 1, 2, 4, 8, 16, 32, 64
+FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED, HUMP = 1, 2, 4, 8, 16, 32, 64, 128
 
 NONE, MAP, FLOW, REAL = 0, 1, 2, 3
 KINDS = {"none": NONE, "map": MAP, "flow": FLOW, "real": REAL}
@@ -163,6 +163,14 @@ def mark_segments(
             square += change * change
         change = values[i] - values[i - 1]
         length = math.sqrt(metric_u * square + metric_p * change * change)
+        here, there = slopes[i - 1], slopes[i]
+        if here * there > 0.0 and abs(here) > flat and abs(there) > flat and length > 0.0:
+            side = 1.0 if here > 0.0 else -1.0
+            if turns_twice(side * here, side * there, side * change / length):
+                flags[i - 1] |= HUMP
+            if i > 1 and dips(side * slopes[i - 2], side * here, side * there, short, length):
+                flags[i - 2] |= HUMP
+                flags[i - 1] |= HUMP
         if i > 1:
             if real and dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length):
                 flags[i - 2] |= SHALLOW
@@ -188,19 +196,26 @@ def dips(left, middle, right, h1, h2):
     return -h1 < vertex < h2 and middle - 0.25 * slope * slope / bend < 0.0
 
 
+def turns_twice(here, there, mean):
+    """Whether the cubic with these positive slopes at its ends, and this mean slope, falls in between: two folds."""
+    bend = 3.0 * (here + there - 2.0 * mean)
+    middle = 2.0 * here + there - 3.0 * mean
+    return bend > 0.0 and 0.0 < middle < bend and here * bend < middle * middle
+
+
 @cache
 def _compiled() -> Callable[..., Any]:
     from numba import njit
 
     from ..continuation.binding import OPTIONS, copy_with
 
-    inner = njit(forceinline=True, **OPTIONS)(dips)
+    inner = {f.__name__: njit(forceinline=True, **OPTIONS)(f) for f in (dips, turns_twice)}
     # numba looks at this file only, not at where the constants come from
     sources = (Path(__file__), Path(str(functions.__file__)))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
     return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(
-        copy_with(mark_segments, f"_{digest}", dips=inner)
+        copy_with(mark_segments, f"_{digest}", **inner)
     )
 
 
@@ -235,8 +250,9 @@ class Scanner:
         self.kind = KINDS[engine.detection]
         self.mark = _compiled() if engine.problem.kernels.compiled else mark_segments
         columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
-        affine = [test.affine for test in symmetries if test.affine is not None]
-        self.left_out = [test for test in symmetries if test.affine is None]
+        plain = (engine.scale[:-1] == 1.0).all()
+        affine = [test.affine for test in symmetries if test.affine is not None and plain]
+        self.left_out = [test for test in symmetries if test.affine is None or not plain]
         shape = (len(affine), columns)
         self.orders = np.array([order[:columns] for order, _, _ in affine], np.int64).reshape(shape)
         self.images = np.array([signs[:columns] for _, signs, _ in affine], float).reshape(shape)
@@ -266,7 +282,7 @@ class Scanner:
             2 * engine.m,
             self.kind,
             bool(real),
-            FLAT * parameter_unit(engine.within, float(values[0])),
+            FLAT * engine.parameter_unit(float(values[0])),
             float(engine.weights[0]),
             float(engine.weights[-1]),
             self.orders,

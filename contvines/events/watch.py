@@ -12,10 +12,10 @@ from ..continuation.engine import Engine, Solved
 from .dips import before_border, below_zero
 from .examine import Examiner, Located, changes
 from .leaps import ends_branch, leap
-from .scan import APART, BORDER, DAMPED, MARGIN, MEETING, SHALLOW, Scan, Scanner
+from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, SHALLOW, Scan, Scanner
 from .segment import Segment
 
-USER = 128  # beside the bits of a scan: a user function changes its sign
+USER = 256  # beside the bits of a scan: a user function changes its sign
 BESIDE = 0.02  # part of the segment next to a branch point that is left out
 
 
@@ -76,7 +76,7 @@ class Watch(Examiner):
                 s, middle = split
                 plain = Located(s, "plain", 0, middle, (np.nan, np.nan), 0.0)
                 found = [*self.both(segment, s, middle, real), plain]
-            elif bits & ~(SHALLOW | DAMPED):
+            elif bits & ~(SHALLOW | DAMPED | HUMP):
                 found = self.examine(segment, real=real)
                 border = min((e for e in found if e.note == "border"), key=lambda e: e.position, default=None)
                 split = before_border(segment, border.position, border.point) if real and border else None
@@ -91,6 +91,7 @@ class Watch(Examiner):
             leaping = leap(segment, found)
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
+            found = [e for e in found if e.kind != "astray"]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if ends_branch(e)), None)
@@ -121,13 +122,19 @@ class Watch(Examiner):
         return before_stop(sorted(found, key=lambda e: e.position))
 
     def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
-        """A point of the segment where the smallest margin is negative, or stability lost, though not at its ends."""
+        """A point of the segment where the smallest margin is negative, the parameter turns back, or stability is lost, though
+        not at its ends."""
         if bits & MEETING:
             bits &= ~DAMPED  # a branch that comes back to a symmetry is marginal there: no point to cut it at
-        tests = {SHALLOW: lambda row: float(self.engine.smallest_margin(row)), DAMPED: self._damping}
+        side = np.sign(segment.a.tangent[-1]) / self.engine.parameter_unit(segment.a.p)
+        tests = {
+            SHALLOW: lambda point: float(self.engine.smallest_margin(point.row)),
+            HUMP: lambda point: float(side * point.tangent[-1]),
+            DAMPED: lambda point: float(self._damping(point.row)),
+        }
         for bit, test in tests.items():
             if bits & bit:
-                found = below_zero(segment, lambda point, test=test: float(test(point.row)))
+                found = below_zero(segment, test)
                 if found is not None:
                     return found
         return None

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
+from ..hints import hinting
 from ..journal import NullJournal
 from ..problems.registry import without_problem
 from .builder import adopt, begin, work
@@ -15,6 +16,7 @@ from .leaving import leave
 from .run import Progress, Run
 
 
+@hinting
 def diagram(
     seed: Any,
     over: str | None = None,
@@ -87,6 +89,7 @@ def diagram(
     return graph
 
 
+@hinting
 def switch(
     graph: Graph,
     label: str,

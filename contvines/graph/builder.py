@@ -15,6 +15,7 @@ from ..events.watch import Watch
 from ..finish import filled, make_branch
 from ..follow import follow
 from ..half import Half
+from ..interrupts import listening, take
 from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
@@ -57,32 +58,44 @@ def work(run: Run) -> None:
     """Work until the queue is empty."""
     graph = run.graph
     graph.finished = False
-    try:
-        while run.queue:
-            if len(graph.branches) >= run.settings.max_branches:
-                graph.message = (
-                    f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
-                    "the graph is not complete; raise max_branches, or lower depth"
-                )
-                break
-            trace_pending(run, run.queue.popleft())
-    except KeyboardInterrupt:
-        graph.message = "interrupted; run the same command again to go on"
+    with listening():
+        try:
+            while run.queue:
+                if len(graph.branches) >= run.settings.max_branches:
+                    graph.message = (
+                        f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
+                        "the graph is not complete; raise max_branches, or lower depth"
+                    )
+                    break
+                trace_pending(run, run.queue.popleft())
+            tie_borders(run)
+        except KeyboardInterrupt:
+            take()
+            graph.message = "interrupted; run the same command again to go on"
+            run.journal.checkpoint(graph)
+            raise
+        graph.finished = True
+        graph.message = graph.message or "finished"
         run.journal.checkpoint(graph)
-        raise
-    tie_borders(run)
-    graph.finished = True
-    graph.message = graph.message or "finished"
-    run.journal.checkpoint(graph)
     run.tell(graph.message, float("nan"))
 
 
 def trace_pending(run: Run, pending: Pending) -> None:
     """Trace a branch unless it is known, and queue what leaves it."""
-    engine, watch = run.engine(pending.problem)
-    first = first_point(run, engine, pending)
+    first = first_point(run, run.engine(pending.problem)[0], pending)
+    shorter = None if first is None else pending.problem.root(first.u, first.p)
+    if first is not None and shorter is not None:
+        # a solution that only repeats a shorter one is followed as that one
+        pending.problem, pending.u = shorter
+        pending.kind, pending.p, pending.tangent = (
+            "root" if pending.kind == "switch" else pending.kind,
+            first.p,
+            None,
+        )
+        first = first_point(run, run.engine(pending.problem)[0], pending)
     if first is None:
         return
+    engine, watch = run.engine(pending.problem)
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..hints import did_you_mean
+from ..special import PREFIXES
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -66,6 +69,8 @@ class Graph:
         False while the run that builds it goes on, or was interrupted.
     message : str
         How the run ended, in words.
+    proofs : dict of dict
+        By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
     """
 
     parameter: str = "p"
@@ -77,6 +82,7 @@ class Graph:
     settings: dict[str, Any] = field(default_factory=dict)
     finished: bool = False
     message: str = ""
+    proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def __getitem__(self, label: str) -> Any:
         if label in self.special:
@@ -105,13 +111,34 @@ class Graph:
         state = "" if self.finished else ", unfinished"
         return f"Graph({len(self.branches)} branches, {len(self.special)} special points, {len(self.switches)} switches{state})"
 
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the parameter and the measures by name; none where all are plain numbers."""
+        return next((dict(b.description.get("units") or {}) for b in self.branches.values()), {})
+
     def on(self, branch: str) -> list[SpecialPoint]:
         """The special points of a branch, in order along it."""
         return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
 
     def of_kind(self, kind: str) -> list[SpecialPoint]:
-        """The special points of a kind, in the order of their labels."""
+        """The special points of a kind, in the order of their labels.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind.
+        """
+        if kind not in PREFIXES:
+            named = next((name for name, prefix in PREFIXES.items() if prefix == kind), None)
+            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, PREFIXES)
+            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(PREFIXES)}")
         return [point for point in self.special.values() if point.kind == kind]
+
+    def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
+        """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""
+        from .proving import prove
+
+        return prove(self, labels, **options)
 
     def attach(self, problem: Any) -> None:
         """Give all branches and special points without a problem this one (after loading a callable's graph)."""
@@ -128,11 +155,20 @@ class Graph:
             "model": self.model,
             "parameter": self.parameter,
             "within": list(self.within),
+            **({"units": self.units} if self.units else {}),
             "finished": self.finished,
             "message": self.message,
             "branches": [branch.to_dict() for branch in self.branches.values()],
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],
+            **({"proofs": self._claims()} if self.proofs else {}),
+        }
+
+    def _claims(self) -> dict[str, Any]:
+        """What is proved, without the certificates."""
+        return {
+            label: {name: value for name, value in proof.items() if name != "certificate"}
+            for label, proof in self.proofs.items()
         }
 
     def network(self) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..branch import Branch
 from ..continuation.engine import Engine, Solved
+from ..interrupts import OPEN
 from ..normal_forms import criticality, crossing_speed
 from ..problems.registry import UnknownFactory, rebuild
 from ..special import BORDERS, SpecialPoint
@@ -17,6 +18,11 @@ from .pending import Pending
 from .run import Run
 
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
+
+FAMILY = (
+    "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
+    "give the problem conditions= that pick one of them"
+)
 
 
 def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
@@ -89,6 +95,9 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 )
             elif transcritical:
                 run.remark(point.label, "transcritical")
+            if departure.family:
+                run.remark(point.label, FAMILY)
+                continue
             if depth + 1 > run.depth:
                 continue
             run.queue.append(
@@ -241,7 +250,8 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
             }
             for i in range(len(problems))
         ]
-    seeds = list(point.problem.beyond(point))
+    with OPEN:
+        seeds = list(point.problem.beyond(point))
     record: dict[str, Any] = {
         "problems": [dict(seed.problem.describe()) for seed in seeds],
         "p": [float(seed.p) for seed in seeds],

@@ -8,6 +8,7 @@ from ..branch import Branch
 from ..continuation.engine import Engine
 from ..events.examine import Located
 from ..half import Half
+from ..interrupts import OPEN
 from ..normal_forms import fold_coefficient
 from ..special import BORDERS, PREFIXES, SpecialPoint
 from ..switching import null_vectors
@@ -153,7 +154,7 @@ def _known(
         if kind == "user" and known.note != event.note:
             continue
         form = problem.canonical(point.u, point.p) if form is None else form
-        if same_form(form, run.form(known)):
+        if same_form(form, run.form(known), engine.scale):
             return known.label
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree
@@ -203,7 +204,8 @@ def _replay(run: Run, special: SpecialPoint) -> float | None:
     key = f"{run.serial}/replay/{special.label}"
     known = run.journal.recall(key)
     if known is None:
-        error = special.problem.replay(special.u, special.value)
+        with OPEN:
+            error = special.problem.replay(special.u, special.value)
         known = {"error": None if error is None else float(error)}
         run.journal.record(key, known)
     return known["error"]

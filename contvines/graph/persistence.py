@@ -16,7 +16,7 @@ from .graph import Graph, Switch
 
 Entry = tuple[str, str, dict[str, Any]]
 
-_MEMBERS = ("branches", "special", "switches")
+_MEMBERS = ("branches", "special", "switches", "proofs")
 
 
 def graph_entries(graph: Graph) -> Iterator[Entry]:
@@ -26,6 +26,8 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
         yield "branch", branch.label, _content(branch)
     for point in graph.special.values():
         yield "special", point.label, _content(point)
+    for label, proof in graph.proofs.items():
+        yield "proof", label, proof
     for i, switch in enumerate(graph.switches):
         yield "switch", str(i), {f.name: getattr(switch, f.name) for f in fields(switch)}
 
@@ -56,6 +58,7 @@ def graph_from_entries(
         branch = graph.branches.get(content["branch"])
         graph.special[label] = SpecialPoint(problem=branch.problem if branch else None, **content)
     graph.switches += [Switch(**content) for content in entries.get("switch", {}).values()]
+    graph.proofs.update(entries.get("proof", {}))
     return graph
 
 

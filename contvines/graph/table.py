@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .proving import mark
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
@@ -12,10 +13,12 @@ if TYPE_CHECKING:
 
 def table(graph: Graph) -> str:
     """Branches, special points and switches, one line each."""
-    name = graph.parameter
+    unit = graph.units.get(graph.parameter, "")
+    low, high = graph.within
     lines = [
-        f"{_counted(len(graph.branches))} in {name} within [{graph.within[0]:.6g}, {graph.within[1]:.6g}]"
+        f"{_counted(len(graph.branches))} in {graph.parameter} within [{low:.6g}, {high:.6g}] {unit}".rstrip()
     ]
+    name = with_unit(graph.parameter, unit)
     if not graph.finished:
         lines[0] += " (unfinished)"
     rows = [("branch", "what", name, "stable", "points", "ended")]
@@ -44,6 +47,7 @@ def table(graph: Graph) -> str:
             remarks = [point.criticality or ""]
             if not point.real:
                 remarks.append("virtual")
+            remarks.append(mark(graph, point.label))
             targets = []
             for switch in graph.switches:
                 if switch.point == point.label:
@@ -61,6 +65,11 @@ def table(graph: Graph) -> str:
             )
         lines += ["", *_columns(rows)]
     return "\n".join(lines)
+
+
+def with_unit(name: str, unit: str | None) -> str:
+    """A name as the head of a column."""
+    return f"{name} [{unit}]" if unit else name
 
 
 def _counted(branches: int) -> str:

@@ -7,7 +7,7 @@ _HOMES = {
     "plot_multipliers": "contvines.plots.multipliers",
     "plot_network": "contvines.plots.network",
     "plot_portrait": "contvines.plots.portrait",
-    "save_figure": "contvines.plots.style",
+    "save_figure": "contvines.plots.figures",
 }
 
 __all__ = ["plot_diagram", "plot_multipliers", "plot_network", "plot_portrait", "save_figure"]

@@ -1,12 +1,19 @@
 """The bifurcation diagram: branches as curves, special points as labelled marks."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .labels import merge_labels, place_labels
-from .style import LINES, MARKS, PLAIN, STATES, axis_label, freeze, new_axes, settle, styled
-from .wraps import angles_of, broken
+from ..graph.shortening import short_word
+from .curves import Curve
+from .figures import freeze, new_axes, scale, settle, styled
+from .labels import Label, grouped, place_labels
+from .legends import Key, draw_legend, hold_legend
+from .style import LINES, MARKS, PLAIN, STATE_COLORS, STATES, WIDTHS, axis_label
+from .views import frame
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,112 +21,288 @@ if TYPE_CHECKING:
 
     from ..graph.graph import Graph
 
+LOW = 2.6  # inches: lower axes have the symbol of a measure alone at their side
+COLORS = ("branch", "word", "stability")
+TEXT = 0.85  # size of labels in units of font.size
+#: kinds whose labels are named first where many lie at one place
+FIRST = ("fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "hopf", "branch-point")
+
 
 def plot_diagram(
-    graph: "Graph",
+    graph: Graph,
     x: str | None = None,
     y: str | None = None,
     *,
-    axes: "Axes | None" = None,
-    labels: bool = True,
+    axes: Axes | None = None,
+    labels: bool | Sequence[str] = True,
     ends: bool = False,
-) -> "Figure":
+    words: bool = False,
+    color: str = "branch",
+    legend: bool | str = True,
+    name: str | None = None,
+    xlim: tuple[float, float] | None = None,
+    ylim: tuple[float, float] | None = None,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
     """Draw a graph: solid stable, dashed unstable, dotted virtual, special points marked and labelled.
 
     Parameters
     ----------
     graph : Graph
-    x, y : names of measures; the continuation parameter, and the problem's `default_measure` or first measure, by default.
-    axes : drawn on; a new figure without.
-    labels : write the labels of branches and special points.
-    ends : mark the ends of the interval, too.
+    x, y : str, optional
+        Names of measures; by default the continuation parameter, and the problem's `default_measure` or first measure.
+        Where a measure has a value at each point of a cycle (`x0` of a map), every one is drawn.
+    axes : Axes, optional
+        Drawn on; without, a new figure. A second graph on the same axes shares the legend; its labels have a prime, or `name`.
+    labels : bool or sequence of str
+        Write the labels of branches and special points: all for which there is room, none, or exactly these.
+    ends : bool
+        Mark the ends of the interval, too.
+    words : bool
+        Write the words of the motions along the branches instead of the branches' labels.
+    color : {"branch", "word", "stability"}
+        What a colour stands for.
+    legend : bool or str
+        Whether, or where: "inside", "beside", "below", or a place that matplotlib knows.
+    name : str, optional
+        Put before the labels, to tell graphs on the same axes apart.
+    xlim, ylim : (float, float), optional
+        Limits; labels are placed and curves refined for what is seen then, and again when the limits change later.
+    figsize : (float, float), optional
+        Inches, of a new figure.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
+
+    Returns
+    -------
+    Figure
 
     Raises
     ------
     ValueError
-        If the problem has no such measure.
+        If the problem has no such measure, a label is unknown, or an option has no such value.
     """
+    if color not in COLORS:
+        raise ValueError(f"color = {color!r} is unknown; choose one of {', '.join(COLORS)}")
+    _check_labels(graph, labels)
     x = x or graph.parameter
     y = y or default_measure(graph)
     own = axes is None
-    with styled():
-        figure, axes = new_axes(axes)
-        obstacles, used, states = [], {}, {}
-        cycle = [c["color"] for c in _cycle()]
-        tint: dict[str, str] = {}
-        for i, branch in enumerate(graph.branches.values()):
-            color = tint[branch.label] = cycle[i % len(cycle)]
-            xs, ys = measured(branch, x), measured(branch, y)
-            turning = (x in angles_of(branch), y in angles_of(branch))
-            for first, last, stable in branch.pieces():
-                state = ("stable" if stable else "unstable") if branch.real else "virtual"
-                states.setdefault(state, None)
-                axes.plot(
-                    *broken(xs[first : last + 1], ys[first : last + 1], turning),
-                    linestyle=LINES[state],
-                    color=color,
-                    linewidth=2.1 if state == "stable" else 1.5,
-                    zorder=3 if state == "stable" else 2.5,
-                )
-            if len(branch):
-                obstacles.append(_dense(axes, *broken(xs, ys, turning)))
-        special: list[tuple[str, float, float]] = []
-        for point in graph.special.values():
-            if point.kind == "end" and not ends:
-                continue
-            branch = graph.branches.get(point.branch)
-            if branch is None:
-                continue
-            px, py = _at(branch, point, x), _at(branch, point, y)
-            if not (np.isfinite(px) and np.isfinite(py)):
-                continue  # such as B of a motion without impacts
-            mark = MARKS.get(point.kind, PLAIN)
-            used.setdefault(mark.name, mark)
-            color = tint[branch.label]
-            axes.plot(
-                [px],
-                [py],
-                linestyle="none",
-                marker=mark.marker,
-                color=color,
-                markerfacecolor=color if mark.filled else "white",
-                markeredgecolor="black" if mark.filled else color,
-                markeredgewidth=0.5 if mark.filled else 1.3,
-                zorder=6,
+    with styled(style):
+        figure, axes = new_axes(axes, figsize=figsize)
+        picture = _Picture(axes, graph, x, y, color, name)
+        picture.draw_branches()
+        picture.draw_points(ends)
+        frame(axes, graph, picture.curves, x, y, xlim, ylim)
+        if own or not axes.get_xlabel():
+            axes.set_xlabel(axis_label(x, unit=graph.units.get(x)))
+        if own or not axes.get_ylabel():
+            axes.set_ylabel(
+                axis_label(y, axes.get_window_extent().height < LOW * figure.dpi, graph.units.get(y))
             )
-            special.append((point.label, px, py))
-        axes.margins(0.04)
-        axes.set_xlabel(axis_label(x))
-        axes.set_ylabel(axis_label(y))
-        _legend(axes, states, used, undrawn(graph, x, y))
-        if labels:
-            settle(figure)
-            if _clear_legend(axes, obstacles):
-                settle(figure)
-            if own:
-                freeze(figure)
-            taken = _hold_legend(axes)
-            spots, names = merge_labels(axes, [(px, py) for _, px, py in special], [t for t, _, _ in special])
-            middles = _middles(graph, x, y, tint, axes) if len(graph.branches) > 1 else []
-            anchors = [*spots, *((px, py) for _, px, py, _ in middles)]
-            colors = ["black"] * len(spots) + [color for *_, color in middles]
-            if anchors:
-                texts = [*names, *(text for text, *_ in middles)]
-                place_labels(
-                    axes,
-                    anchors,
-                    texts,
-                    np.vstack(obstacles),
-                    colors=colors,
-                    optional=len(middles),
-                    taken=taken,
-                )
+        settle(figure)
+        picture.refine()
+        picture.key_of_marks()
+        draw_legend(axes, picture.key, legend, own, picture.obstacles())
+        settle(figure)
+        if own:
+            freeze(figure)
+        taken = hold_legend(axes)
+        if labels is not False:
+            picture.write_labels(labels, words, taken)
+            picture.follow_zoom()
         if not graph.finished:
             axes.set_title("unfinished", color="0.4")
     return figure
 
 
-def default_measure(graph: "Graph") -> str:
+class _Picture:
+    """One graph on some axes: its curves, marks and labels, which are laid out again when the limits change."""
+
+    def __init__(self, axes: Axes, graph: Graph, x: str, y: str, color: str, name: str | None) -> None:
+        import matplotlib as mpl
+
+        self.axes, self.graph, self.x, self.y, self.color = axes, graph, x, y, color
+        known = [p for p in getattr(axes, "contvines_pictures", []) if p.axes is axes]
+        axes.contvines_pictures = [*known, self]  # type: ignore[attr-defined]
+        self.before, self.after = (f"{name} ", "") if name else ("", "′" * len(known))
+        self.first_color = sum(len(p.graph.branches) for p in known)
+        self.rc = mpl.rcParams.copy()
+        self.key = Key()
+        self.curves: list[Curve] = []
+        self.tint: dict[str, str] = {}
+        self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
+        self.written: list[Any] = []
+        self.options: tuple[Any, bool, Any] = (True, False, [])
+        if (remark := undrawn(graph, x, y)) != "":
+            self.key.remarks.append(remark)
+
+    def draw_branches(self) -> None:
+        import matplotlib as mpl
+
+        width = mpl.rcParams["lines.linewidth"]
+        colors = [entry.get("color", "black") for entry in mpl.rcParams["axes.prop_cycle"]]
+        words: dict[str, str] = {}
+        for i, branch in enumerate(self.graph.branches.values()):
+            tint = colors[(self.first_color + i) % len(colors)]
+            if self.color == "word":
+                word = str(branch.description.get("word") or branch.description.get("name", ""))
+                tint = words.setdefault(short_word(word, 24), colors[len(words) % len(colors)])
+            self.tint[branch.label] = tint
+            (
+                measured(branch, self.x),
+                measured(branch, self.y),
+            )  # refused in a sentence before anything is drawn
+            for first, last, stable in branch.pieces():
+                state = ("stable" if stable else "unstable") if branch.real else "virtual"
+                self.key.states.setdefault(state, None)
+                shade = STATE_COLORS[state] if self.color == "stability" else tint
+                if self.color == "stability":
+                    self.key.colors[STATES[state]] = shade
+                curve = Curve(branch, self.x, self.y, first, last)
+                curve.draw(
+                    self.axes,
+                    linestyle=LINES[state],
+                    color=shade,
+                    linewidth=WIDTHS[state] * width,
+                    zorder=3 if state == "stable" else 2.5,
+                )
+                self.curves.append(curve)
+        if self.color == "word":
+            self.key.colors |= words
+
+    def draw_points(self, ends: bool) -> None:
+        import matplotlib as mpl
+
+        size = mpl.rcParams["lines.markersize"]
+        for point in self.graph.special.values():
+            branch = self.graph.branches.get(point.branch)
+            if branch is None or (point.kind == "end" and not ends):
+                continue
+            px, py = _at(branch, point, self.x), _at(branch, point, self.y)
+            if not (np.isfinite(px) and np.isfinite(py)):
+                continue  # such as B of a motion without impacts
+            mark = MARKS.get(point.kind, PLAIN)
+            tint = "0.15" if self.color == "stability" else self.tint[branch.label]
+            self.axes.plot(
+                [px],
+                [py],
+                linestyle="none",
+                marker=mark.marker,
+                color=tint,
+                markersize=size,
+                markerfacecolor=tint if mark.filled else "white",
+                markeredgecolor="black" if mark.filled else tint,
+                markeredgewidth=(0.5 if mark.filled else 1.3) * size / 6.0,
+                zorder=6,
+            )
+            self.spots.append((point.label, point.kind, px, py))
+
+    def key_of_marks(self) -> None:
+        """Say in the legend what the marks mean that can be seen."""
+        for _, kind, px, py in self.spots:
+            if self._inside(px, py):
+                mark = MARKS.get(kind, PLAIN)
+                self.key.marks.setdefault(mark.name, mark)
+
+    def refine(self) -> None:
+        for curve in self.curves:
+            curve.refine(self.axes)
+
+    def obstacles(self) -> np.ndarray:
+        """Points close together along all curves on these axes, so that a label cannot slip between two of them."""
+        found = [np.empty((0, 2))]
+        for line in self.axes.lines:
+            xy = np.asarray(line.get_xydata(), dtype=float)
+            if len(xy) > 1 and line.get_transform().contains_branch(self.axes.transData):
+                page = self.axes.transData.transform(xy)
+                steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T))
+                total = np.concatenate([[0.0], np.cumsum(steps)])
+                at = np.linspace(0.0, total[-1], int(np.clip(total[-1] / 1.5, 2, 20000)))
+                found.append(np.column_stack([np.interp(at, total, v) for v in xy.T]))
+        return np.vstack(found)
+
+    def write_labels(self, labels: bool | Sequence[str], words: bool, taken: list[Any]) -> None:
+        """Lay labels out for the limits that the axes have now."""
+        self.options = (labels, words, taken)
+        for artist in self.written:
+            artist.remove()
+        chosen = None if isinstance(labels, bool) else list(labels)
+        figure = self.axes.get_figure(root=True)
+        assert figure is not None
+        size = TEXT * self.rc["font.size"] * (1.0 if self.rc["font.size"] < 9.0 else scale(figure))
+        places = {kind: i for i, kind in enumerate(FIRST)}
+        wanted = [
+            Label(self._named(label), px, py, "black", places.get(kind, len(FIRST)), chosen is not None)
+            for label, kind, px, py in self.spots
+            if chosen is None or label in chosen
+        ]
+        wanted = [entry for entry in wanted if self._inside(entry.x, entry.y)]
+        wanted = wanted if chosen is not None else grouped(self.axes, wanted)
+        others = [p for p in getattr(self.axes, "contvines_pictures", []) if p is not self]
+        boxes = [a.get_window_extent() for p in others for a in p.written]
+        taken = [*taken, *((b.x0, b.y0, b.x1, b.y1) for b in boxes)]
+        wanted += self._middles(words, chosen)
+        self.written, left_out = place_labels(self.axes, wanted, self.obstacles(), size=size, taken=taken)
+        self.left_out = left_out
+
+    def follow_zoom(self) -> None:
+        """Lay out again when the limits of the axes change."""
+
+        def again(_: Any) -> None:
+            import matplotlib as mpl
+
+            labels, words, _ = self.options
+            with mpl.rc_context(self.rc):
+                self.refine()
+                self.write_labels(labels, words, hold_legend(self.axes))
+
+        for change in ("xlim_changed", "ylim_changed"):
+            self.axes.callbacks.connect(change, again)
+
+    def _named(self, label: str) -> str:
+        return f"{self.before}{label}{self.after}"
+
+    def _inside(self, x: float, y: float) -> bool:
+        (x0, x1), (y0, y1) = sorted(self.axes.get_xlim()), sorted(self.axes.get_ylim())
+        return x0 <= x <= x1 and y0 <= y <= y1
+
+    def _middles(self, words: bool, chosen: list[str] | None) -> list[Label]:
+        """A point halfway along what is seen of each branch, for its name."""
+        if len(self.graph.branches) < 2 and not words and chosen is None:
+            return []
+        found: dict[str, Label] = {}
+        lengths: dict[str, float] = {}
+        for curve in self.curves:
+            label = curve.branch.label
+            if not curve.lines or (chosen is not None and label not in chosen):
+                continue
+            xy = np.asarray(curve.lines[0].get_xydata(), dtype=float)
+            page = self.axes.transData.transform(xy)
+            box = self.axes.bbox
+            inside = (
+                (box.x0 <= page[:, 0])
+                & (page[:, 0] <= box.x1)
+                & (box.y0 <= page[:, 1])
+                & (page[:, 1] <= box.y1)
+            )
+            steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T)) * (inside[1:] & inside[:-1])
+            total = np.concatenate([[0.0], np.cumsum(steps)])
+            if total[-1] < 12 or total[-1] <= lengths.get(label, 0.0):
+                continue
+            lengths[label] = total[-1]
+            i = int(np.searchsorted(total, 0.5 * total[-1]))  # never at a gap: nothing is added there
+            text = self._named(label)
+            if words:
+                text = short_word(str(curve.branch.description.get("word") or "stuck"), 24)
+            found[label] = Label(
+                text, float(xy[i, 0]), float(xy[i, 1]), self.tint[label], 0, chosen is not None, True
+            )
+        return list(found.values())
+
+
+def default_measure(graph: Graph) -> str:
     """The measure on the y axis when none is named: one that is a number on some branch, at least.
 
     Motions without impacts have no velocity B there; where none of the graph has, the largest |w| is shown.
@@ -135,7 +318,7 @@ def default_measure(graph: "Graph") -> str:
     return "norm"
 
 
-def undrawn(graph: "Graph", x: str, y: str) -> str:
+def undrawn(graph: Graph, x: str, y: str) -> str:
     """Which branches have no number to draw, as a line of the legend; empty if all have one."""
     missing = [b for b in graph.branches.values() if len(b) and not _finite(b, x, y)]
     if not missing:
@@ -147,17 +330,14 @@ def undrawn(graph: "Graph", x: str, y: str) -> str:
     return f"not drawn: {listed} ({'no impacts' if still else f'no {y} there'})"
 
 
-def _shown(graph: "Graph", name: str) -> bool:
-    return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
-
-
-def _finite(branch: Any, x: str, y: str) -> bool:
-    """Whether some point of a branch has both measures."""
-    return bool(np.any(np.isfinite(measured(branch, x)) & np.isfinite(measured(branch, y))))
-
-
 def measured(branch: Any, name: str) -> np.ndarray:
-    """A measure along a branch, shape (n,); what cannot be had is refused with the names that can."""
+    """A measure along a branch, shape (n,); what cannot be had is refused with the names that can.
+
+    Raises
+    ------
+    ValueError
+        If the branch has no such measure.
+    """
     try:
         return np.asarray(branch.measure(name), float)
     except (KeyError, ValueError) as error:
@@ -165,6 +345,26 @@ def measured(branch: Any, name: str) -> np.ndarray:
         raise ValueError(
             f"{branch.label} has no measure {name!r}; choose one of {', '.join(names)}."
         ) from error
+
+
+def _check_labels(graph: Graph, labels: bool | Sequence[str]) -> None:
+    if isinstance(labels, bool):
+        return
+    if isinstance(labels, str):
+        raise ValueError(f"labels = {labels!r}: give True, False or a list, for example [{labels!r}]")
+    unknown = [label for label in labels if label not in graph]
+    if unknown:
+        known = ", ".join([*graph.branches, *graph.special])
+        raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {known}")
+
+
+def _shown(graph: Graph, name: str) -> bool:
+    return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
+
+
+def _finite(branch: Any, x: str, y: str) -> bool:
+    """Whether some point of a branch has both measures."""
+    return bool(np.any(np.isfinite(measured(branch, x)) & np.isfinite(measured(branch, y))))
 
 
 def _at(branch: Any, point: Any, name: str) -> float:
@@ -176,94 +376,3 @@ def _at(branch: Any, point: Any, name: str) -> float:
         nearest = int(np.argmin(np.abs(branch.points - point.u).max(axis=1)))
         return float(measured(branch, name)[nearest])
     return float(branch.problem.measures((name,), point.u[None, :], np.array([point.value]))[name][0])
-
-
-def _cycle() -> list[dict[str, str]]:
-    import matplotlib as mpl
-
-    return list(mpl.rcParams["axes.prop_cycle"])
-
-
-def _middles(
-    graph: "Graph", x: str, y: str, tint: dict[str, str], axes: "Axes"
-) -> list[tuple[str, float, float, str]]:
-    """A point halfway along each branch as drawn, for its label."""
-    found = []
-    for branch in graph.branches.values():
-        if len(branch) < 2:
-            continue
-        turning = (x in angles_of(branch), y in angles_of(branch))
-        points = np.column_stack(broken(measured(branch, x), measured(branch, y), turning))
-        screen = axes.transData.transform(points)
-        steps = np.hypot(*np.diff(screen, axis=0).T)
-        length = np.concatenate([[0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])
-        if length[-1] < 12:
-            continue
-        i = int(np.searchsorted(length, 0.5 * length[-1]))  # never at a gap: nothing is added there
-        found.append((branch.label, float(points[i, 0]), float(points[i, 1]), tint[branch.label]))
-    return found
-
-
-def _dense(axes: "Axes", xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
-    """Points close together along a curve, so that a label cannot slip between two of them."""
-    if len(xs) < 2:
-        return np.column_stack([xs, ys])
-    at = np.linspace(0, len(xs) - 1, max(400, len(xs)))
-    return np.column_stack([np.interp(at, np.arange(len(xs)), v) for v in (xs, ys)])
-
-
-def _clear_legend(axes: "Axes", obstacles: list[np.ndarray]) -> bool:
-    """Put a legend beside the axes if it would cover curves or marks inside, and the figure can make room: whether so."""
-    legend, figure = axes.get_legend(), axes.get_figure(root=True)
-    if legend is None or figure is None or figure.get_layout_engine() is None:
-        return False
-    box = legend.get_window_extent()
-    drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
-    points = axes.transData.transform(np.vstack([*obstacles, *drawn, np.empty((0, 2))]))
-    if not any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)]):
-        return False
-    legend.set_loc("upper left")
-    legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
-    return True
-
-
-def _hold_legend(axes: "Axes") -> list[tuple[float, float, float, float]]:
-    """Keep the legend where it is now, whatever is written later; its box on the page."""
-    legend = axes.get_legend()
-    if legend is None:
-        return []
-    box = legend.get_window_extent()
-    (left, low) = axes.transAxes.inverted().transform((box.x0, box.y0))
-    legend.set_bbox_to_anchor(None)
-    legend.set_loc((float(left), float(low)))
-    return [(box.x0, box.y0, box.x1, box.y1)]
-
-
-def _legend(axes: "Axes", states: dict[str, None], used: dict[str, Any], remark: str) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = [
-        Line2D(
-            [], [], color="0.2", linestyle=LINES[s], linewidth=2.1 if s == "stable" else 1.5, label=STATES[s]
-        )
-        for s in STATES
-        if s in states
-    ]
-    handles += [
-        Line2D(
-            [],
-            [],
-            linestyle="none",
-            marker=m.marker,
-            color="0.2",
-            markerfacecolor="0.2" if m.filled else "white",
-            markersize=5.5,
-            label=m.name,
-        )
-        for m in used.values()
-    ]
-    handles += axes.get_legend_handles_labels()[0]  # what was drawn before on these axes
-    if remark:
-        handles.append(Line2D([], [], linestyle="none", label=remark))
-    if handles:
-        axes.legend(handles=handles, loc="best", handlelength=2.6)

@@ -1,121 +1,229 @@
-"""Labels that keep clear of curves, of marks and of one another."""
+"""Labels that keep clear of curves, of marks and of one another; what finds no clean place is left out and counted."""
 
-from typing import TYPE_CHECKING
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_DIRECTIONS = [(1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1), (1, 0), (-1, 0), (0, -1)]
+Box = tuple[float, float, float, float]
+
+RADII = (7, 11, 16, 24, 34, 46, 62)  # points on the page between an anchor and its text
+LEADER = 14  # from this radius on a thin line leads from the text to its anchor
+DIRECTIONS = [(np.cos(a), np.sin(a)) for a in np.pi * (0.25 + np.arange(16) / 8)]
+CELL = 2.0  # pixels of the raster in which curves are drawn for the search
+IMPOSSIBLE = 1e6
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text that belongs to a place.
+
+    Attributes
+    ----------
+    text : str
+    x, y : float
+        Data coordinates of what it names.
+    color : str
+    rank : int
+        Smaller ones are placed first; from labels at one place the first few are named.
+    kept : bool
+        Placed whatever it covers; else left out where no clean place is found.
+    near : bool
+        Left out rather than put far from its place (names of branches).
+    """
+
+    text: str
+    x: float
+    y: float
+    color: str = "black"
+    rank: int = 0
+    kept: bool = False
+    near: bool = False
 
 
 def place_labels(
-    axes: "Axes",
-    anchors: list[tuple[float, float]],
-    texts: list[str],
-    obstacles: np.ndarray,
-    *,
-    size: float = 8.5,
-    colors: list[str] | None = None,
-    optional: int = 0,
-    taken: list[tuple[float, float, float, float]] | None = None,
-) -> None:
-    """Write each text near its anchor where it covers least.
+    axes: Axes, labels: list[Label], obstacles: np.ndarray, *, size: float, taken: list[Box] | None = None
+) -> tuple[list[Any], int]:
+    """Write each label where it covers nothing.
 
     Parameters
     ----------
     axes : drawn on; its limits must be final.
-    anchors, texts : data coordinates and labels, in order of precedence.
-    obstacles : data coordinates to keep clear of, shape (n, 2).
+    labels : in any order; places outside the axes are ignored.
+    obstacles : float array (n, 2), data coordinates of curves and marks to keep clear of.
     size : font size in points.
-    colors : one per text.
-    optional : how many of the last texts are left out rather than put far from their anchors.
     taken : boxes on the page (x0, y0, x1, y1) that no text may touch, such as the legend's.
+
+    Returns
+    -------
+    artists : list
+        The annotations written.
+    left_out : int
+        How many found no clean place.
     """
-    transform = axes.transData.transform
     figure = axes.get_figure(root=True)
     assert figure is not None
     unit = figure.dpi / 72.0
-    anchors_ = transform(np.asarray(anchors, float).reshape(-1, 2))
-    blocked = transform(np.asarray(obstacles, float).reshape(-1, 2))
-    blocked = blocked[np.isfinite(blocked).all(axis=1)]
     frame = axes.bbox
-    boxes: list[tuple[float, float, float, float]] = []
-    for i, (anchor, text) in enumerate(zip(anchors_, texts)):
-        if not np.isfinite(anchor).all():
+    anchors = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
+    ground = _Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
+    boxes, leaders, written, left_out = list(taken or ()), [], [], 0
+    marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors]
+    for i in sorted(range(len(labels)), key=lambda i: (not labels[i].kept, labels[i].near, labels[i].rank)):
+        label, (ax, ay) = labels[i], anchors[i]
+        if not (
+            np.isfinite(ax + ay) and frame.x0 - 1 <= ax <= frame.x1 + 1 and frame.y0 - 1 <= ay <= frame.y1 + 1
+        ):
             continue
-        width, height = (0.62 * size * len(text) + 2) * unit, 1.25 * size * unit
-        best = None
-        for radius in (7, 13, 22, 34, 50, 75, 110):
-            for dx, dy in _DIRECTIONS:
-                norm = np.hypot(dx, dy)
-                cx = anchor[0] + dx / norm * radius * unit + 0.5 * dx * width
-                cy = anchor[1] + dy / norm * radius * unit + 0.5 * dy * height
+        width, height = (0.6 * size * len(label.text) + 2) * unit, 1.2 * size * unit
+        best: tuple[float, float, float, Box, int] | None = None
+        for radius in RADII[:2] if label.near else RADII:
+            for dx, dy in DIRECTIONS:
+                cx = ax + (dx * radius + 0.5 * np.sign(round(dx, 6)) * width / unit) * unit
+                cy = ay + (dy * radius + 0.5 * np.sign(round(dy, 6)) * height / unit) * unit
                 box = (cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2)
-                out = max(frame.x0 - box[0], box[2] - frame.x1, frame.y0 - box[1], box[3] - frame.y1, 0)
-                pad = 1.5 * unit
-                inside = (
-                    (blocked[:, 0] > box[0] - pad)
-                    & (blocked[:, 0] < box[2] + pad)
-                    & (blocked[:, 1] > box[1] - pad)
-                    & (blocked[:, 1] < box[3] + pad)
-                )
-                met = sum(_overlap(box, other) for other in boxes)
-                others = np.delete(anchors_, i, axis=0)
-                on_marks = _inside(others, box, 4 * unit)
-                met += 4 * sum(_overlap(box, other) for other in taken or ())
-                cost = min(inside.sum(), 40) + 60 * met + 25 * on_marks + 10 * out / unit + 0.25 * radius
+                far = radius >= LEADER
+                line = (ax, ay, cx, cy) if far else None
+                cost = _cost(box, line, frame, ground, boxes, leaders, marks[:i] + marks[i + 1 :], unit)
+                cost += 0.3 * radius
                 if best is None or cost < best[0]:
                     best = (cost, cx, cy, box, radius)
+            if best is not None and best[0] < RADII[0]:
+                break
         assert best is not None
         cost, cx, cy, box, radius = best
-        far = radius > 15
-        if i >= len(texts) - optional and (far or cost > 30):
+        if cost > 60 and not label.kept:
+            left_out += not label.near
             continue
         boxes.append(box)
-        color = colors[i] if colors else "black"
-        axes.annotate(
-            text,
-            xy=tuple(axes.transData.inverted().transform(anchor)),
-            xytext=((cx - anchor[0]) / unit, (cy - anchor[1]) / unit),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=size,
-            color=color,
-            arrowprops={"arrowstyle": "-", "color": "0.55", "lw": 0.6, "shrinkA": 1, "shrinkB": 3}
-            if far
-            else None,
-            bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.75},
-            zorder=8,
-        )
+        far = radius >= LEADER
+        if far:
+            leaders.append((ax, ay, cx, cy))
+        written.append(_write(axes, label, (ax, ay), (cx, cy), unit, size, far))
+    return written, left_out
 
 
-def merge_labels(
-    axes: "Axes", anchors: list[tuple[float, float]], texts: list[str], near: float = 9.0
-) -> tuple[list[tuple[float, float]], list[str]]:
-    """One label for marks that lie within `near` points of one another on the page; "+n" stands for n more."""
+def grouped(axes: Axes, labels: list[Label], near: float = 9.0) -> list[Label]:
+    """One label for those that lie within `near` points of one another on the page; "+n" stands for n more."""
     figure = axes.get_figure(root=True)
     assert figure is not None
-    screen = axes.transData.transform(np.asarray(anchors, float).reshape(-1, 2)) * 72.0 / figure.dpi
-    merged: list[list[int]] = []
+    spots = np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2)
+    screen = axes.transData.transform(spots) * 72.0 / figure.dpi
+    groups: list[list[int]] = []
     for i, point in enumerate(screen):
-        for group in merged:
-            if np.hypot(*(screen[group[0]] - point)) < near:
+        for group in groups:
+            if np.hypot(*(screen[group[0]] - point)) < near and not labels[i].kept:
                 group.append(i)
                 break
         else:
-            merged.append([i])
-    names = [list(dict.fromkeys(texts[i] for i in group)) for group in merged]
-    short = [", ".join(n) if len(n) <= 4 else f"{', '.join(n[:3])} +{len(n) - 3}" for n in names]
-    return [anchors[group[0]] for group in merged], short
+            groups.append([i])
+    found = []
+    for group in groups:
+        ranked = sorted(group, key=lambda i: labels[i].rank)
+        first = labels[ranked[0]]
+        names = list(dict.fromkeys(labels[i].text for i in ranked))
+        text = ", ".join(names) if len(names) <= 3 else f"{', '.join(names[:2])} +{len(names) - 2}"
+        found.append(Label(text, first.x, first.y, first.color, first.rank, first.kept, first.near))
+    return found
 
 
-def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+class _Ground:
+    """How much of a box is covered by curves: sums over a raster of the axes."""
+
+    def __init__(self, frame: Any, points: np.ndarray) -> None:
+        self.x0, self.y0 = frame.x0, frame.y0
+        shape = (int(frame.height / CELL) + 2, int(frame.width / CELL) + 2)
+        raster = np.zeros(shape)
+        points = points[np.isfinite(points).all(axis=1)]
+        columns = ((points[:, 0] - self.x0) / CELL).astype(int)
+        rows = ((points[:, 1] - self.y0) / CELL).astype(int)
+        inside = (rows >= 0) & (rows < shape[0]) & (columns >= 0) & (columns < shape[1])
+        raster[rows[inside], columns[inside]] = 1.0
+        self.sums = np.zeros((shape[0] + 1, shape[1] + 1))
+        self.sums[1:, 1:] = raster.cumsum(0).cumsum(1)
+
+    def covered(self, box: Box) -> float:
+        """Cells of the raster with a curve in the box."""
+        rows, columns = self.sums.shape
+        c0, c1 = (int(np.clip((x - self.x0) / CELL, 0, columns - 1)) for x in (box[0], box[2] + CELL))
+        r0, r1 = (int(np.clip((y - self.y0) / CELL, 0, rows - 1)) for y in (box[1], box[3] + CELL))
+        s = self.sums
+        return float(s[r1, c1] - s[r0, c1] - s[r1, c0] + s[r0, c0])
+
+
+def _cost(
+    box: Box,
+    line: Box | None,
+    frame: Any,
+    ground: _Ground,
+    boxes: list[Box],
+    leaders: list[Box],
+    marks: list[Box],
+    unit: float,
+) -> float:
+    out = max(frame.x0 - box[0], box[2] - frame.x1, frame.y0 - box[1], box[3] - frame.y1, 0.0)
+    if out > 3 * unit or any(_overlap(box, other) for other in boxes):
+        return IMPOSSIBLE
+    cost = (
+        10 * out / unit + 6 * min(ground.covered(box), 40) + 25 * sum(_overlap(box, mark) for mark in marks)
+    )
+    if any(_crosses(other, box) for other in leaders):
+        return IMPOSSIBLE
+    if line is not None:
+        if any(_crosses(line, other) for other in boxes) or any(_meet(line, other) for other in leaders):
+            return IMPOSSIBLE
+        cost += 8 * sum(_crosses(line, mark) for mark in marks)
+    return cost
+
+
+def _write(
+    axes: Axes,
+    label: Label,
+    at: tuple[float, float],
+    to: tuple[float, float],
+    unit: float,
+    size: float,
+    far: bool,
+) -> Any:
+    leader = {"arrowstyle": "-", "color": "0.55", "lw": 0.6, "shrinkA": 1, "shrinkB": 3} if far else None
+    return axes.annotate(
+        label.text,
+        xy=(label.x, label.y),
+        xytext=((to[0] - at[0]) / unit, (to[1] - at[1]) / unit),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=size,
+        color=label.color,
+        arrowprops=leader,
+        bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.75},
+        zorder=8,
+    )
+
+
+def _overlap(a: Box, b: Box) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
-def _inside(points: np.ndarray, box: tuple[float, ...], pad: float) -> int:
-    x, y = points[:, 0], points[:, 1]
-    return int(((x > box[0] - pad) & (x < box[2] + pad) & (y > box[1] - pad) & (y < box[3] + pad)).sum())
+def _crosses(line: Box, box: Box) -> bool:
+    """Whether a line from (x0, y0) to (x1, y1) passes through a box."""
+    along = np.linspace(0.0, 1.0, 24)
+    xs, ys = line[0] + along * (line[2] - line[0]), line[1] + along * (line[3] - line[1])
+    return bool(((xs > box[0]) & (xs < box[2]) & (ys > box[1]) & (ys < box[3])).any())
+
+
+def _meet(a: Box, b: Box) -> bool:
+    """Whether two line segments cross."""
+
+    def side(p: tuple[float, float], line: Box) -> float:
+        return (line[2] - line[0]) * (p[1] - line[1]) - (line[3] - line[1]) * (p[0] - line[0])
+
+    return bool(
+        side((a[0], a[1]), b) * side((a[2], a[3]), b) < 0.0
+        and side((b[0], b[1]), a) * side((b[2], b[3]), a) < 0.0
+    )

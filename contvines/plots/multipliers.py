@@ -1,74 +1,143 @@
 """Multipliers of a branch: against the parameter, and on the complex plane with the unit circle."""
 
-from typing import TYPE_CHECKING
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .style import axis_label, new_figure, styled
+from .figures import new_figure, styled
+from .style import axis_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..branch import Branch
 
+COLORS = ("#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#a6611a", "#017a79")
+DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)))
+MOST = 12  # curves drawn: the largest ones
+NARROW = 5.5  # inches: in a narrower figure the two panels stand under one another
 
-def plot_multipliers(branch: "Branch") -> "Figure":
+
+def plot_multipliers(
+    branch: Branch,
+    *,
+    axes: Sequence[Axes] | None = None,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
     """Draw the moduli of a branch's multipliers against the parameter, and the multipliers themselves.
 
-    For flows (spectrum "flow") the real parts and the imaginary axis take the place of moduli and circle.
+    For flows (spectrum "flow") the real parts and the imaginary axis take the place of moduli and circle. Colours of
+    curves are the ranks by size (keyed on the left), colours of dots the parameter (keyed beside the plane).
+
+    Parameters
+    ----------
+    branch : Branch
+    axes : two Axes, optional
+        Drawn on; without, a new figure of `figsize` inches.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
 
     Raises
     ------
     ValueError
-        If the branch has no multipliers.
+        If the branch has no multipliers, or `axes` are not two.
     """
     spectrum = np.asarray(branch.multipliers)
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
+    if axes is not None and len(np.atleast_1d(np.asarray(axes, dtype=object))) != 2:
+        raise ValueError("axes: the multipliers need two axes, for example plt.subplots(1, 2)[1]")
     flow = getattr(branch.problem, "spectrum", "map") == "flow"
-    size = np.real(spectrum) if flow else np.abs(spectrum)
-    with styled():
-        figure = new_figure(figsize=(8.6, 4.0))
-        left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
-        order = np.argsort(-size, axis=1)
-        ranked = np.take_along_axis(size, order, axis=1)
-        colors = ["#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#a6611a", "#017a79"]
-        for j in range(min(spectrum.shape[1], 12)):
-            shade = colors[j % len(colors)]
-            left.plot(
-                branch.values, ranked[:, j], color=shade, linestyle=["-", (0, (5, 2)), (0, (1, 1.5))][j % 3]
-            )
-        limit = 0.0 if flow else 1.0
-        left.axhline(limit, color="black", linewidth=0.9)
-        if not flow and np.nanmax(ranked) > 20:
-            left.set_yscale("log")
-            low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
-            left.set_ylim(
-                max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5
-            )  # a graze sends a multiplier to infinity
-        left.set_xlabel(axis_label(branch.parameter))
-        left.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
-        left.set_title(f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size")
-        if flow:
-            right.axvline(0, color="black", linewidth=0.9)
+    with styled(style):
+        if axes is None:
+            size = figsize or (8.6, 4.0)
+            figure = new_figure(figsize=size)
+            narrow = size[0] < NARROW
+            if narrow:
+                left, right = figure.subplots(2, 1, height_ratios=(1, 1.25))
+            else:
+                left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
         else:
-            angle = np.linspace(0, 2 * np.pi, 361)
-            right.plot(np.cos(angle), np.sin(angle), color="black", linewidth=0.9)
-        flat = spectrum.ravel()
-        where = np.repeat(branch.values, spectrum.shape[1])
-        reach = 1.15 if flow else min(max(1.6, np.nanpercentile(np.abs(flat), 75) * 1.2), 4.0)
-        shown = np.isfinite(flat) if flow else np.abs(flat) <= reach * 1.05
-        dots = right.scatter(
-            np.real(flat)[shown], np.imag(flat)[shown], c=where[shown], s=9, cmap="viridis_r", zorder=3
-        )
-        if not flow:
-            right.set_xlim(-reach, reach)
-            right.set_ylim(-reach, reach)
-            right.set_aspect("equal")
-        bar = figure.colorbar(dots, ax=right, shrink=0.85)
-        bar.set_label(axis_label(branch.parameter))
-        right.set_xlabel(r"Re $\lambda$")
-        right.set_ylabel(r"Im $\lambda$")
-        hidden = int((~shown).sum())
-        right.set_title(f"the complex plane ({hidden} outside)" if hidden else "the complex plane")
+            left, right = axes
+            figure: Any = left.get_figure(root=True)
+        _sizes(left, branch, spectrum, flow)
+        _plane(right, branch, spectrum, flow)
     return figure
+
+
+def unit_of(branch: Branch) -> str | None:
+    """The unit of the parameter, where it has one."""
+    return (branch.description.get("units") or {}).get(branch.parameter)
+
+
+def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
+    size = np.real(spectrum) if flow else np.abs(spectrum)
+    ranked = np.take_along_axis(size, np.argsort(-size, axis=1), axis=1)
+    drawn = min(spectrum.shape[1], MOST)
+    for j in range(drawn):
+        label = (
+            ("largest" if j == 0 else "smallest" if j == spectrum.shape[1] - 1 else f"{j + 1}.")
+            if drawn > 1
+            else None
+        )
+        axes.plot(
+            branch.values,
+            ranked[:, j],
+            color=COLORS[j % len(COLORS)],
+            linestyle=DASHES[j % len(DASHES)],
+            label=label,
+        )
+    axes.axhline(0.0 if flow else 1.0, color="black", linewidth=0.9)
+    if not flow and np.nanmax(ranked) > 20:
+        axes.set_yscale("log")
+        low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
+        axes.set_ylim(max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5)  # a graze sends a multiplier to infinity
+    axes.set_xlabel(axis_label(branch.parameter, unit=unit_of(branch)))
+    axes.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
+    what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
+    figure = axes.get_figure(root=True)
+    if figure is not None and figure.get_size_inches()[0] < NARROW and drawn > 1:
+        look = {
+            "loc": "lower left",
+            "bbox_to_anchor": (0.0, 1.0),
+            "ncols": 4,
+            "frameon": False,
+            "borderpad": 0.0,
+        }
+        axes.legend(**look, handlelength=1.4, columnspacing=0.9, title=what, alignment="left")
+        return
+    axes.set_title(what)
+    if drawn > 1:
+        axes.legend(loc="best", handlelength=2.2)
+
+
+def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
+    if flow:
+        axes.axvline(0, color="black", linewidth=0.9)
+    else:
+        angle = np.linspace(0, 2 * np.pi, 361)
+        axes.plot(np.cos(angle), np.sin(angle), color="black", linewidth=0.9)
+    flat = spectrum.ravel()
+    where = np.repeat(branch.values, spectrum.shape[1])
+    reach = 1.15 if flow else min(max(1.6, np.nanpercentile(np.abs(flat), 75) * 1.2), 4.0)
+    shown = np.isfinite(flat) if flow else np.abs(flat) <= reach * 1.05
+    dots = axes.scatter(
+        np.real(flat)[shown], np.imag(flat)[shown], c=where[shown], s=9, cmap="viridis_r", zorder=3
+    )
+    if not flow:
+        axes.set_xlim(-reach, reach)
+        axes.set_ylim(-reach, reach)
+        axes.set_aspect("equal")
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    bar = figure.colorbar(dots, ax=axes, shrink=0.85)
+    bar.set_label(axis_label(branch.parameter, unit=unit_of(branch)))
+    axes.set_xlabel(r"Re $\lambda$")
+    axes.set_ylabel(r"Im $\lambda$")
+    hidden = int((~shown).sum())
+    axes.set_title(f"the complex plane ({hidden} outside)" if hidden else "the complex plane")

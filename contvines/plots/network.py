@@ -1,9 +1,10 @@
 """The graph itself: branches as boxes, switches as arrows."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..graph.shortening import short_word
-from .style import freeze, new_axes, settle, styled
+from .figures import freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,11 +15,25 @@ if TYPE_CHECKING:
 COLUMNS = 6  # at most, side by side
 
 
-def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
+def plot_network(
+    graph: "Graph",
+    *,
+    axes: "Axes | None" = None,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> "Figure":
     """Draw branches (boxes: label, word, range) from left to right by the number of switches that lead to them.
 
     A solid box is a real branch, a dotted one a virtual branch; a grey filling says that some of it is stable. After
     `COLUMNS` columns the picture goes on below, from right to left and so on, as one ploughs a field.
+
+    Parameters
+    ----------
+    graph : Graph
+    axes : Axes, optional
+        Drawn on; without, a new figure that is as large as the graph needs, or `figsize` (inches).
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
     """
     from matplotlib.patches import FancyArrowPatch
 
@@ -26,8 +41,12 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
     wide = round(max((px for px, _ in place.values()), default=0.0)) + 1
     low, top = (edge((py for _, py in place.values()), default=0.0) for edge in (min, max))
     high = top - low + 1
-    with styled():
-        figure, axes = new_axes(axes, figsize=(max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6)))
+    needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6))
+    with styled(style):
+        figure, axes = new_axes(axes, figsize=figsize or needed)
+        room = axes.get_window_extent().width / figure.dpi / needed[0]
+        compact = room < 0.8 and (figsize is not None or figure.axes != [axes])  # boxes with labels alone
+        size = 8.0 if not compact else 6.0
         axes.set_axis_off()
         boxes: dict[str, Any] = {}
         for label, (px, py) in place.items():
@@ -42,20 +61,20 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
             boxes[label] = axes.text(
                 px,
                 py,
-                _caption(branch),
+                branch.label if compact else _caption(branch),
                 ha="center",
                 va="center",
-                fontsize=8,
+                fontsize=size,
                 bbox={"boxstyle": "round,pad=0.45", **style},
             )
         if graph.branches:
-            axes.set_title(
-                "grey: partly stable; dotted: virtual; arrows: switches at special points", fontsize=8.5
-            )
-        axes.set_xlim(-0.5, wide - 0.5)
+            told = "grey: partly stable; dotted: virtual"
+            axes.set_title(told if compact else f"{told}; arrows: switches at special points", fontsize=size)
+        axes.set_xlim(-0.5, wide - 0.5 + (0.25 if compact else 0.0))
         axes.set_ylim(low - 0.6, top + 0.6)
         settle(figure)
-        freeze(figure)
+        if figure.axes == [axes]:
+            freeze(figure)
         for pair, switches in _pairs(graph).items():
             source, target = pair
             both = len({(s.source, s.target) for s in switches}) > 1
@@ -82,7 +101,7 @@ def plot_network(graph: "Graph", *, axes: "Axes | None" = None) -> "Figure":
                 ", ".join(dict.fromkeys(s.point for s in switches)),
                 ha="center",
                 va="center",
-                fontsize=8,
+                fontsize=size,
                 bbox={"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"},
                 zorder=4,
             )

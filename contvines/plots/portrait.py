@@ -1,29 +1,37 @@
 """One solution: the picture that its problem knows how to draw, else its numbers."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .style import new_axes, styled
+from .figures import new_axes, styled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
-def plot_portrait(orbit: Any) -> "Figure":
+def plot_portrait(
+    orbit: Any, *, axes: "Axes | None" = None, style: "str | Mapping[str, Any] | None" = None
+) -> "Figure":
     """Draw an orbit: its own `plot()` where it has one, else the points of a cycle or the entries of a vector.
 
     Parameters
     ----------
     orbit : what `SpecialPoint.orbit` or `Branch.orbit(i)` returned.
+    axes : Axes, optional
+        Drawn on (an orbit draws its phase portrait alone there); without, a new figure.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
     """
     draw = getattr(orbit, "plot", None)
     if callable(draw):
-        drawn: Any = draw()
+        drawn: Any = draw(axes=axes, style=style) if axes is not None or style is not None else draw()
         return drawn if hasattr(drawn, "savefig") else drawn.get_figure()
     points = np.atleast_2d(np.asarray(getattr(orbit, "points", getattr(orbit, "u", orbit)), float))
-    with styled():
-        figure, axes = new_axes(None, figsize=(4.6, 4.0))
+    with styled(style):
+        figure, axes = new_axes(axes, figsize=(4.6, 4.0))
         if points.shape[0] > 1 and points.shape[1] == 2:
             axes.plot(*points.T, "o", color="#0b3c6f")
             axes.set_xlabel("$x_1$")

@@ -1,20 +1,13 @@
-"""The one style of all pictures, the marks of special points, and how a figure is made and saved."""
+"""What things look like in every picture: line styles, marks of special points, names of axes."""
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+import re
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-STYLE = Path(__file__).with_name("contvines.mplstyle")
+from typing import Any
 
 # line styles of the three states of an orbit
 LINES: dict[str, Any] = {"stable": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
+WIDTHS = {"stable": 1.25, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
+STATE_COLORS = {"stable": "#0b3c6f", "unstable": "#d9484b", "virtual": "#8a8a8a"}
 STATES = {"stable": "stable", "unstable": "unstable", "virtual": "virtual (beyond a border)"}
 
 
@@ -38,6 +31,8 @@ MARKS = {
     "wall-graze": Mark("wall graze", ">", True),
     "stick": Mark("turn to stick", "<", True),
     "chatter": Mark("vanishing event", "X", True),
+    "switch-graze": Mark("switch graze", "d", True),
+    "corner": Mark("two events at once", "P", True),
     "user": Mark("user function", "*", True),
     "end": Mark("end of the interval", "|"),
 }
@@ -73,85 +68,26 @@ SYMBOLS = {
 }
 
 
-def axis_label(name: str) -> str:
-    """The label of an axis that shows `name`."""
-    return SYMBOLS.get(name, name.replace("_", " "))
+# the same in words, for axes that have a unit
+WORDS = {
+    "max_abs_q1": "largest displacement of the oscillator",
+    "max_abs_w": "largest relative displacement",
+    "amplitude": "amplitude",
+    "impact_speed": "fastest impact",
+    "half_width": "half-width of the cavity (clearance to either side)",
+    "frequency": "excitation frequency",
+    "base_amplitude": "amplitude of the base",
+    "force_amplitude": "amplitude of the force",
+}
 
 
-@contextmanager
-def styled() -> Iterator[None]:
-    """Draw in the package's style, leaving the user's settings as they were."""
-    import matplotlib.style
-
-    with matplotlib.style.context(["default", STYLE]):
-        yield
-
-
-def new_axes(axes: "Axes | None", **figure: Any) -> "tuple[Figure, Axes]":
-    """The figure and axes to draw on: the given ones, or new ones that no window manager holds."""
-    if axes is not None:
-        return axes.get_figure(root=True), axes  # type: ignore[return-value]
-    made = new_figure(**figure)
-    return made, made.add_subplot()
-
-
-def new_figure(**options: Any) -> "Figure":
-    """A figure that needs no window and no closing; one of pyplot's where pyplot shows windows."""
-    if _windows():
-        return sys.modules["matplotlib.pyplot"].figure(**options)
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    made = Figure(**options)
-    FigureCanvasAgg(made)
-    return made
-
-
-def settle(figure: "Figure") -> None:
-    """Give everything its place."""
-    figure.draw_without_rendering()
-
-
-def freeze(figure: "Figure") -> None:
-    """Leave everything where it is: a figure without a window is not laid out again."""
-    if not _windows():
-        figure.set_layout_engine("none")
-
-
-def _windows() -> bool:
-    """Whether the user's session shows pyplot's figures in windows (notebooks show what is returned)."""
-    if "matplotlib.pyplot" not in sys.modules:
-        return False
-    backend = sys.modules["matplotlib.pyplot"].get_backend().lower()
-    return backend not in ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template") and "inline" not in backend
-
-
-def save_figure(figure: "Figure", path: str | Path) -> None:
-    """Save a figure; the name's ending chooses the format.
-
-    Raises
-    ------
-    ValueError
-        If the ending is not one that can be written, or the place cannot be.
-    """
-    path = Path(path)
-    check_picture(path)
-    with styled():
-        try:
-            figure.savefig(path)
-        except OSError as error:
-            raise ValueError(f"{path}: the picture cannot be written ({error.strerror}).") from None
-
-
-def check_picture(path: str | Path) -> None:
-    """Refuse, before any work, a picture that could not be written at the end."""
-    path = Path(path)
-    kinds = ("png", "pdf", "svg", "jpg", "eps")
-    if path.suffix.lower().lstrip(".") not in kinds:
-        raise ValueError(
-            f"{path}: a picture's name must end in .{', .'.join(kinds)}; {path.stem}.png would do."
-        )
-    if not path.parent.is_dir():
-        raise ValueError(
-            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
-        )
+def axis_label(name: str, short: bool = False, unit: str | None = None) -> str:
+    """The label of an axis that shows `name`; the symbol alone, where it has one and room is short. With a unit: words."""
+    if unit:
+        words = WORDS.get(name) or SYMBOLS.get(name, name.replace("_", " "))
+        raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
+        return f"{name.replace('_', ' ') if short else words} [{raised}]"
+    label = SYMBOLS.get(name, name.replace("_", " "))
+    if short and "$" in label:
+        return label[label.index("$") : label.rindex("$") + 1]
+    return label

@@ -1,12 +1,14 @@
 """A brute-force sweep as dots, over the continued branches if there are any."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .diagram import plot_diagram
-from .style import axis_label, new_axes, styled
+from .figures import new_axes, styled
+from .legends import Key, draw_legend
+from .style import axis_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +27,11 @@ def plot_sweep(
     *,
     others: Dots = (),
     wandering: Dots = (),
+    axes: "Axes | None" = None,
+    legend: bool | str = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> "Figure":
     """Draw the attractors of a sweep.
 
@@ -37,11 +44,17 @@ def plot_sweep(
     measure : name of the measure.
     others : the same at other impacts, drawn lighter.
     wandering : the same of motions that do not recur (modulated, chaotic).
+    axes : drawn on; without, a new figure of `figsize` inches.
+    legend : whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
+    style : a style or rcParams of matplotlib's that come before the house's.
+    units : of the parameter and the measure by name, where they have some.
     """
+    said = dict(units or {})
     at = ("B at every impact" if graph is None else "B at the first impact") if measure == "B" else ""
     size = 2.4 if measure == "B" else 3.0
-    with styled():
-        figure, axes = new_axes(None)
+    own = axes is None
+    with styled(style):
+        figure, axes = new_axes(axes, figsize=figsize)
         above = 3.5 if measure != "B" or graph is not None else 2.0
         dark = "0.45" if measure == "B" and graph is None else "black"
         told = f"simulated: {at or 'periodic'}"
@@ -53,11 +66,14 @@ def plot_sweep(
             what = "no impacts" if measure == "B" else "nothing"
             axes.plot([], [], linestyle="none", label=f"simulated: {what}")
         if graph is not None:
-            plot_diagram(graph, x=parameter, y=measure, axes=axes)
-        else:
-            axes.legend(loc="best", handlelength=2.6)
-        axes.set_xlabel(axis_label(parameter))
-        axes.set_ylabel("$B$ at the impacts" if measure == "B" else axis_label(measure))
+            plot_diagram(graph, x=parameter, y=measure, axes=axes, legend=legend, style=style)
+        elif legend is not False:
+            draw_legend(axes, Key(), legend, own, np.empty((0, 2)))
+        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter)))
+        unit = f" [{said['B']}]" if "B" in said else ""
+        axes.set_ylabel(
+            f"$B$ at the impacts{unit}" if measure == "B" else axis_label(measure, unit=said.get(measure))
+        )
     return figure
 
 

@@ -117,4 +117,35 @@ def inspect(data: Any, u: np.ndarray, p: float, work: DenseWork, row: np.ndarray
         row[m:] = data.margins(u, p)
 
 
-KERNELS = Kernels(linearise, bordered, inspect, compiled=False)
+def matrix(data: Any, work: DenseWork) -> np.ndarray:
+    """F_u as it stands in a workspace."""
+    return work.jacobian.copy()
+
+
+def assign(data: Any, other: Any, value: float) -> None:
+    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+    data.values.assign(other.parameter, value)
+
+
+def flip(data: Any, work: DenseWork, sign: float) -> None:
+    """Turn the closure of a cycle round (sign = -1), and back (sign = 1); see the protocol."""
+    data.turn_closure(work.jacobian, sign)
+
+
+def transpose(data: Any, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
+    """The transposed Jacobian, with another last column, into another workspace."""
+    other.jacobian[:] = work.jacobian.T
+    other.derivative[:] = column
+
+
+KERNELS = Kernels(
+    linearise,
+    bordered,
+    inspect,
+    compiled=False,
+    assign=assign,
+    flip=flip,
+    transpose=transpose,
+    column=2,
+    matrix=matrix,
+)

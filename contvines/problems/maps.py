@@ -20,6 +20,8 @@ from .registry import addresses, find_callables
 from .scales import given_scale
 from .spectra import without_roundoff
 
+SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
+
 
 class MapProblem(CallableProblem):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
@@ -185,6 +187,11 @@ class MapProblem(CallableProblem):
             jacobian[i, :, (i + 1) % n, :] -= np.eye(d)
         return residual.reshape(-1), jacobian.reshape(n * d, n * d), derivative.reshape(-1)
 
+    def turn_closure(self, jacobian: np.ndarray, sign: float) -> None:
+        """x_n = x_0 in the Jacobian becomes x_n = -x_0 (sign = -1) or x_n = x_0 again (sign = 1)."""
+        n, d = self.cycle, self.node
+        jacobian.reshape(n, d, n, d)[n - 1, :, 0, :] -= 2.0 * sign * np.eye(d)
+
     def raw_spectrum(self, work: Any) -> np.ndarray:
         """Multipliers: eigenvalues of the product of the Jacobians along the cycle."""
         n, d = self.cycle, self.node
@@ -228,6 +235,26 @@ class MapProblem(CallableProblem):
         half = 0.5 * (u[: self.dimension // 2] + u[self.dimension // 2 :])
         return self._with_cycle(half, self.p0, self.pieces.repeated(1, self.cycle // 2)), half
 
+    def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The points of the shortest cycle of which u is a repetition, and the differences at which points are one."""
+        nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
+        own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
+        scale = SAME * (own + np.abs(nodes).max(axis=0))
+        root = next(
+            r
+            for r in range(1, n + 1)
+            if n % r == 0 and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
+        )
+        return nodes[:root], scale
+
+    def root(self, u: np.ndarray, p: float) -> tuple[MapProblem, np.ndarray] | None:
+        """The problem of the shortest cycle of which u is a repetition, and its points; None if u is no repetition."""
+        nodes, _ = self._shortest(u)
+        if len(nodes) == self.cycle:
+            return None
+        flat = nodes.reshape(-1)
+        return self._with_cycle(flat, p, self.pieces.repeated(1, len(nodes))), flat
+
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
@@ -240,15 +267,9 @@ class MapProblem(CallableProblem):
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
         """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
-        nodes = np.asarray(u, dtype=float).reshape(self.cycle, self.node)
-        n = self.cycle
-        own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
-        scale = 1e-7 * (own + np.abs(nodes).max(axis=0))
+        nodes, scale = self._shortest(u)
+        root, n = len(nodes), self.cycle
         signs = self.pieces.signs.reshape(n, -1)
-        for root in range(1, n + 1):
-            if n % root == 0 and (np.abs(nodes - np.roll(nodes, root, axis=0)) <= scale).all():
-                break
-        nodes = nodes[:root]
         forms = [nodes]
         if self.mirror is not None:
             forms.append(self._mirrored(nodes.reshape(-1)).reshape(root, self.node))
@@ -281,6 +302,12 @@ class MapProblem(CallableProblem):
             else:
                 result[name] = getattr(nodes[:, :, j], what)(axis=1)
         return result
+
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
+        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
+        if name not in {f"x{j}" for j in range(self.node)}:
+            return None
+        return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""

@@ -78,6 +78,10 @@ class ParameterSet:
         """Value of the parameter that varies, where the problem starts."""
         return self.values[self.varying]
 
+    def assign(self, name: str, value: float) -> None:
+        """Give a parameter another value, in place."""
+        self.values[name] = float(value)
+
     def at(self, p: Any) -> Any:
         """What the user's functions get as their second argument when the varying parameter is `p`."""
         return Parameters({**self.values, self.varying: p}) if self.named else p

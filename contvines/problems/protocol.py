@@ -15,12 +15,27 @@ The contract, in words:
    ``inspect(data, u, p, work, row) -> None``
        from the linearisation in ``work``: ``row[:2 m]`` are the m multipliers (or eigenvalues) as re, im pairs,
        ``row[2 m:]`` are the margins. A margin is positive on a real solution, +inf where it does not apply.
+   Loci against a second parameter need five more, optional, entries:
+
+   ``assign(data, other, value) -> None``
+       gives the parameter that varies in the problem of ``other`` (from ``against``) a value in ``data``, in place.
+   ``column``
+       place of F_p in ``work`` (as work[0] that of F; any C-contiguous shape with N entries); it may be overwritten
+       between the calls, and ``bordered`` then takes that column.
+   ``flip(data, work, sign) -> None``
+       maps only: turns F_u in ``work`` into what acts on perturbations that change sign over the period (sign = -1), and
+       back (sign = 1).
+   ``transpose(data, work, column, other) -> None``
+       writes the transposed F_u, with ``column`` in the place of F_p, into another workspace.
+   ``matrix(data, work) -> ndarray``
+       F_u as it stands in ``work``, shape (N, N); always plain Python, for normal forms at single points.
 3. ``data`` and ``workspace()`` are the opaque first and last arguments of the kernels.
 4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none". A problem without one
    may still have real eigenvalues watched for branch points: ``detection`` is then "real".
    ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
 5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
-   vector which are the same for solutions that are one and the same thing.
+   vector which are the same for solutions that are one and the same thing. ``root(u, p)`` returns the smaller problem
+   and its unknowns for a solution that only repeats a shorter one (a cycle run through twice), else None.
 6. ``offspring`` hands out the larger problem in which a special point is a branch point, ``beyond`` the solutions
    on the other side of a border.
 
@@ -39,7 +54,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Kernels:
-    """The three functions of a problem (see the contract above).
+    """The functions of a problem (see the contract above).
 
     Parameters
     ----------
@@ -50,6 +65,9 @@ class Kernels:
     digest : str
         Identifies their sources, the files they call included; part of the name under which the compiled
         continuation loop is cached on disk. Empty: taken from the files that define the three functions.
+    assign, flip, transpose, matrix : callable, optional
+    column : int
+        For loci against a second parameter; see the contract.
     """
 
     linearise: Callable[..., float]
@@ -57,6 +75,11 @@ class Kernels:
     inspect: Callable[..., None]
     compiled: bool = False
     digest: str = ""
+    assign: Callable[..., None] | None = None
+    flip: Callable[..., None] | None = None
+    transpose: Callable[..., None] | None = None
+    column: int = -1
+    matrix: Callable[..., np.ndarray] | None = None
 
 
 def kernels_digest(kernels: Any) -> str:
@@ -169,6 +192,8 @@ class Problem(Protocol):
 
     def replay(self, u: np.ndarray, p: float) -> float | None: ...
 
+    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None: ...
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -232,4 +257,7 @@ class ProblemDefaults:
         return Solution(self.parameter, float(p), np.array(u))
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
+        return None
+
+    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None:
         return None

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .header import APPLICATION_ID, VERSION, StoreError, check_header, pending
+from ..interrupts import HELD
+from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, damaged, pending
 from .packing import digest_of, packed, split, unpacked
 
 _SCHEMA = """
@@ -123,9 +124,7 @@ class Store:
         with self._guard():
             row = self._db.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
         if row is None:
-            raise StoreError(
-                f"{self.path}: this file is damaged: its {key} is missing; move it away and run again."
-            )
+            raise damaged(self.path, f"its {key} is missing")
         return row[0]
 
     @property
@@ -205,7 +204,7 @@ class Store:
         """
         from contvines.graph.persistence import graph_from_entries
 
-        kinds = ("graph", "branch", "special", "switch")
+        kinds = ("graph", "branch", "special", "switch", "proof")
         entries = {kind: dict(self.entries(kind)) for kind in kinds}
         try:
             return graph_from_entries(entries, problems=problems, trust=trust)
@@ -220,14 +219,18 @@ class Store:
     @contextmanager
     def transaction(self) -> Iterator[None]:
         """All or nothing, whatever ends the process."""
-        with self._guard():
-            self._db.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-            except BaseException:
+        with HELD, self._guard():
+            if self._db.in_transaction:  # an interrupt has cut one short
                 self._db.execute("ROLLBACK")
+            try:
+                self._db.execute("BEGIN IMMEDIATE")
+                yield
+                self._db.execute("COMMIT")
+            except BaseException:
+                self._kept.clear()  # what was written last is not sure any more
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
                 raise
-            self._db.execute("COMMIT")
 
     def put(self, kind: str, key: str, content: Mapping[str, Any]) -> None:
         """Write one entry, replacing one of the same kind and key; call inside `transaction`."""
@@ -255,10 +258,7 @@ class Store:
                     "SELECT name, dtype, shape, data FROM array WHERE entry = ? ORDER BY name", (identity,)
                 ).fetchall()
                 if digest != digest_of(kind_, key_, scalars, rows):
-                    raise StoreError(
-                        f"{self.path}: this file is damaged: the entry {kind_} {key_!r} has changed since it was "
-                        "written; move the file away and run again."
-                    )
+                    raise damaged(self.path, f"the entry {kind_} {key_!r} has changed since it was written")
                 content = json.loads(scalars)
                 content.update((name, unpacked(*row)) for name, *row in rows)
                 yield key_, content
@@ -276,7 +276,7 @@ class Store:
                 if verdict != "ok"
                 else f"it lacks the table {sorted(missing)[0]!r}"
             )
-            raise StoreError(f"{self.path}: this file is damaged ({why}); move it away and run again.")
+            raise damaged(self.path, why)
         _ = self.fingerprint, self.study, self.finished
         for _ in self.entries():
             pass
@@ -288,9 +288,7 @@ class Store:
         except sqlite3.OperationalError as error:
             raise StoreError(f"{self.path}: cannot be used now ({error}).") from None
         except (sqlite3.DatabaseError, UnicodeDecodeError, json.JSONDecodeError, RecursionError):
-            raise StoreError(
-                f"{self.path}: this file is damaged (its content is broken); move it away and run again."
-            ) from None
+            raise damaged(self.path, "its content is broken") from None
 
     def settle(self) -> None:
         """Fold the log into the file, so that it stands alone, and give free pages back."""
@@ -317,15 +315,38 @@ class Store:
 
 
 def _publish(draft: Path, path: Path) -> None:
-    """Give a whole file its name; fails, rather than clobbers, if someone else was first."""
+    """Give a whole file its name; fails, rather than clobbers, if someone else was first.
+
+    The log that a killed run has left, of a file that is gone, must not be taken for that of the new one.
+    """
+    if path.exists():
+        raise FileExistsError
+    orphans = [(path.with_name(path.name + tail), draft.with_name(draft.name + tail)) for tail in TAILS]
+    orphans = [(log, aside) for log, aside in orphans if _renamed(log, aside)]
     try:
-        os.link(draft, path)
-    except FileExistsError:
+        try:
+            os.link(draft, path)
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links
+            if path.exists():
+                raise FileExistsError from None
+            os.rename(draft, path)
+    except BaseException:
+        for log, aside in orphans:  # they belong to the file of who was first
+            _renamed(aside, log)
         raise
-    except OSError:  # a file system without links
-        if path.exists():
-            raise FileExistsError from None
-        os.rename(draft, path)
+    for _, aside in orphans:
+        with suppress(OSError):
+            aside.unlink()
+
+
+def _renamed(old: Path, new: Path) -> bool:
+    try:
+        os.rename(old, new)
+    except OSError:
+        return False
+    return True
 
 
 def _same_arrays(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from .database import Store
-from .header import check_header
+from .header import TAILS, check_header
 
 
 def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
@@ -25,7 +25,7 @@ def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
         with Store.create(draft, fingerprint or "saved from Python", getattr(graph, "model", None)) as store:
             store.checkpoint(graph)
             store.settle()
-        for tail in ("-wal", "-shm"):
+        for tail in TAILS:
             with suppress(OSError):
                 path.with_name(path.name + tail).unlink()
         os.replace(draft, path)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 APPLICATION_ID = 0x56494E45  # "VINE"
 VERSION = 1
+TAILS = ("-wal", "-shm")  # of the files that SQLite keeps beside one in use
 MAGIC = b"SQLite format 3\x00"
 
 
@@ -45,7 +46,14 @@ def check_header(path: Path, *, reading: bool = False) -> None:
     page = struct.unpack(">H", head[16:18])[0] or 512
     page = 65536 if page == 1 else page
     if not pending(path) and (size % page or size < page * struct.unpack(">I", head[28:32])[0]):
-        raise StoreError(f"{path}: this file is damaged (it is cut short); move it away and run again.")
+        raise damaged(path, "it is cut short")
+
+
+def damaged(path: Path, why: str) -> StoreError:
+    """The error of a file that is damaged; what lies beside it, and would be taken for its log, is named, too."""
+    logs = [path.name + tail for tail in TAILS if path.with_name(path.name + tail).exists()]
+    beside = f" and with it {' and '.join(logs)}" if logs else ""
+    return StoreError(f"{path}: this file is damaged ({why}); move it away{beside}, and run again.")
 
 
 def pending(path: Path) -> bool:

@@ -91,7 +91,7 @@ class Attractor:
 
         if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
             return None
-        frictionless = self.model.friction_acceleration(self.params) == 0.0
+        frictionless = self.model.frictionless(self.params)
         return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), frictionless)
 
     @property

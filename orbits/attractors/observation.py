@@ -10,6 +10,7 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS, V
 from orbits.simulation.driver import collect
+from orbits.simulation.return_map import state_of
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 FIRST = 4096
@@ -20,6 +21,7 @@ SETTLED = 0.01
 """Largest relative change over the last doubling."""
 OFTEN = 32
 """A motion that does not recur is `chatter` if it rests on a wall at least once in so many periods, on average."""
+SOLVED = 1e-9  # largest residual of an orbit
 PIECE = 256  # periods simulated at a time: bounds the memory
 PER_OSCILLATION = 12  # instants between which an extremum of q1 is looked for; events come on top
 MOST_EVENTS = 400  # per period
@@ -105,12 +107,15 @@ class _Tally:
         self.per_period = int(np.ceil(min(200.0, PER_OSCILLATION * max(1.0, 1.0 / frequency))))
 
     def cycle(self) -> Observation:
-        """One cycle; its impacts are the attractor's own."""
+        """One cycle, of the solved orbit where there is one: the motion itself may still be on its way to it."""
         found = self.found
-        self._add(found.periods or 1, per_period=200)
-        return Observation(
-            self._lasted(), self.q1, self.w, found.impact_speed, found.impacts_per_period, self.contacts
-        )
+        if len(found.codes) and found.residual < SOLVED:
+            code, mode = int(found.codes[0]), int(found.modes[0])
+            self.state = state_of(found.machine, found.params, code, mode, found.nodes[0])
+            self.begin = self._time()
+        self._add((found.periods or 1) + 1e-9, per_period=200)  # the event it starts with comes again
+        speed = self.speed if found.impacts else 0.0
+        return Observation(self._lasted(), self.q1, self.w, speed, found.impacts_per_period, self.contacts)
 
     def go_on(self, length: float) -> Observation:
         """Simulate until `length` periods have been seen in all."""
@@ -136,7 +141,7 @@ class _Tally:
         self.contacts += int(np.count_nonzero(run.codes == HOLD))
         self.speed = max(self.speed, float(hits.max(initial=0.0)))
         reach = np.append(run.states[:, 1], run.end[1])
-        if found.model.friction_acceleration(found.params) == 0.0:  # turns are no events there
+        if found.model.frictionless(found.params):  # turns are no events there
             reach = np.append(reach, run.sample().w)
         self.w = min(1.0, max(self.w, float(np.abs(reach).max())))
         if found.machine.state > V:

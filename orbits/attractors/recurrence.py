@@ -10,13 +10,16 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import lasting
 from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate
-from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine
+from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
 from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
 from orbits.simulation.return_map import cyclic_distance, nodes_of
 from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
 UNSTABLE = 1e-5
+NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
+LONGEST = 200_000  # forcing periods for which a slow or undamped transient is waited for
+AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
 
 
 def find_attractor(
@@ -81,7 +84,9 @@ def settle(
     state[TURNS] = 0.0
     length = float(transient)
     window = _Window(engine, params)
-    for attempt in range(patience + 1):
+    attempt, recurring = 0, None
+    while True:
+        last = attempt >= patience
         status = skip(engine, state, params, state[TURNS] + length, int(EVENTS_PER_PERIOD * (length + 1)))
         if status == FAILED:
             raise SimulationError(
@@ -89,22 +94,47 @@ def settle(
             )
         if status != REST:
             window.record(state, max_period)
-        if window.at_rest and attempt < patience and _will_slip(model, params):
-            length *= 4.0
+        if window.at_rest and not last and _will_slip(model, params):
+            length, attempt = 4.0 * length, attempt + 1
             continue  # the oscillator is still growing, or between two beats
         if status == REST or window.at_rest:
+            if not _comes_to_rest(engine, params, state) and not last:
+                length, attempt = 4.0 * length, attempt + 1
+                continue  # it slips after all
             return _attractor(model, engine, params, "stuck", 0, window, state)
         if not len(window.codes):  # without friction a free motion between the walls has no events
             return _attractor(model, engine, params, "sliding", 1, window, state)
-        found = _recognise(engine, params, window, max_period, tolerance, last=attempt == patience)
+        found = _recognise(engine, params, window, max_period, tolerance, last)
+        before, recurring = recurring, next(iter(_returns(window, max_period, NEARLY)), None)
+        # next to a bifurcation a motion may recur but for a slow drift: it is given time as long as it does
+        slow = patience > 0 and recurring is not None and recurring == before and state[TURNS] < LONGEST
         if found is not None:
             cycle = _cycle(model, engine, params, state, window, *found)
-            if attempt == patience or not np.any(np.abs(cycle.multipliers) > 1.0 + UNSTABLE):
+            if not np.any(np.abs(cycle.multipliers) > 1.0 + UNSTABLE) or (last and not slow):
                 return cycle
             state[RATE] *= 1.0 + 1e-6  # a motion that only rounding keeps where it is: help it to leave
-        length *= 4.0
+        if last and not slow:
+            break
+        length, attempt = 4.0 * length, attempt + 1
     kind = "chatter" if np.any(window.codes == HOLD) else "chaotic"
     return _attractor(model, engine, params, kind, 0, window, state)
+
+
+def _comes_to_rest(engine: Machine, params: np.ndarray, state: np.ndarray) -> bool:
+    """Wait, with the absorber stuck, until its oscillator has settled; False if it slips meanwhile."""
+    if engine.state <= V:
+        return True  # its cavity moves as prescribed
+    length = 64.0
+    while state[TURNS] < LONGEST:
+        before = state.copy()
+        skip(engine, state, params, before[TURNS] + before[PSI] / TWO_PI + length, 1)
+        if state[MODE] != 0.0:
+            return False
+        change = np.abs(state[V:] - before[V:]).max()
+        if change <= AT_REST * np.abs(state[V:]).max():
+            break
+        length *= 2.0
+    return True
 
 
 def _will_slip(model: Any, params: np.ndarray) -> bool:
@@ -145,7 +175,7 @@ def _recognise(
     At the last attempt a slowly converging motion may still be recognised: looser, but then the orbit must
     exist and be stable.
     """
-    for slack in (tolerance, 1e-3) if last else (tolerance,):
+    for slack in (tolerance, NEARLY) if last else (tolerance,):
         for length, periods in _returns(window, max_period, slack):
             if slack <= tolerance:
                 return length, periods

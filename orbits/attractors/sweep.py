@@ -12,6 +12,7 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle
+from orbits.cycles.measures import gauged
 from orbits.machines.stepping import MODE, RATE
 from orbits.simulation.driver import SimulationError, collect, first_state, machine
 from orbits.simulation.trajectory import Trajectory
@@ -107,14 +108,14 @@ def sweep(
         If the parameter or the values cannot be.
     """
     numbers = [float(value) for value in values]
-    if over not in model.parameter_names:
+    if over not in model.amount_names:
         raise SimulationError(
-            f"{over!r} is no parameter of {model.name!r}; it has " + ", ".join(model.parameter_names)
+            f"{over!r} is no parameter of {model.name!r}; it has " + ", ".join(model.amount_names)
         )
     if not numbers:
         raise SimulationError(f"no values of {over} to sweep over: give at least one")
     vectors = [
-        model.vector({**parameters, over: value}) for value in numbers
+        model.vector_at(over, value, parameters) for value in numbers
     ]  # all refused before work starts
     engine = machine(model.name)
     state = first_state(model, engine, vectors[0], start)
@@ -162,7 +163,7 @@ def _named(found: Attractor, seen: Observation) -> dict[str, float]:
     }
     if "C2" in measure_names(model):
         known["C2"] = float(params[model.parameter_names.index("amplitude")]) ** 2
-    return {name: known[name] for name in measure_names(model)}
+    return gauged(model, params, {name: known[name] for name in measure_names(model)})
 
 
 def follow(found: Attractor, periods: float | None = None) -> Trajectory:

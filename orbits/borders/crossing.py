@@ -12,16 +12,23 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.alignment import read_alike
-from orbits.borders.distance import distance
-from orbits.borders.neighbours import REAL, grown, margins_of, proposals, turned
+from orbits.borders.distance import CLOSE, distance, tends_to
+from orbits.borders.neighbours import REAL, SIZES, Grown, grown, margins_of, proposals, turned
 from orbits.borders.rewriting import edits_at
 from orbits.borders.sticking import FOLLOWED, to_rest
 from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import PER_NODE
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
 from orbits.protocol import Seed
 
-CLOSE = 0.05  # largest difference in w, at equal phases, between a border orbit and one that goes on from it
+ROUNDS = 8  # up to so many rounds of a cycle are joined to one at a border
+NEARER = (
+    0.3,
+    0.1,
+    0.03,
+    0.01,
+)  # parts of the way from the border at which a simulated orbit is solved for again
 
 
 def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
@@ -103,35 +110,61 @@ def _solved_at(problem: OrbitProblem, guess: np.ndarray, p: float) -> tuple[np.n
 
 
 def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
-    """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
+    """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
+
+    A round is a whole cycle, or half a symmetric one. A change in every other round breaks the symmetry or doubles the
+    period, and is followed whether it is stable or not; of those that change in one of several rounds, or in all but one
+    (period adding), there may be many at once: the stable ones are followed.
+    """
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
-    if problem.symmetric:
-        wider = problem.sibling(problem.word, problem.periods, False)
-        what = "the symmetry breaks at the border"
-    else:
-        nodes = orbit.nodes.copy()
-        nodes[:, 0] += 2.0 * np.pi * orbit.periods
-        orbit = Orbit(
-            orbit.model,
-            orbit.word.double(),
-            2 * orbit.periods,
-            np.concatenate([orbit.nodes, nodes]),
-            orbit.params,
-        )
-        wider = problem.sibling(orbit.word, orbit.periods, False)
-        what = "the period doubles at the border"
-    for change in edits_at(orbit, index, problem.length):
-        found = grown(wider, orbit, p, [change])
-        if found is None:
-            continue
-        other, v, q, tangent = found
-        orbit_there = other.orbit(v, q)
-        if orbit_there.symmetric or orbit_there.root().periods != other.periods or not _followed(orbit_there):
-            continue
-        note = f"{change.note}: {what}, the word becomes {other.word.text}"
-        yield Seed(other, v, q, tangent, "border", note, False)
-        return
+    for rounds in range(2, ROUNDS + 1):
+        wider, whole = _repeated(problem, orbit, rounds)
+        for changed in (1, rounds - 1) if rounds > 2 else (1,):
+            found = _grown_in(wider, whole, p, index, problem.length, rounds, changed)
+            if found is None:
+                continue
+            (other, v, q, tangent), note = found
+            there = other.orbit(v, q)
+            if rounds > 2 and not there.stable:
+                continue
+            if there.root().periods != other.periods or (there.symmetric and not other.symmetric):
+                continue
+            if not _followed(there):
+                continue
+            what = _escape(problem, rounds)
+            yield Seed(
+                other, v, q, tangent, "border", f"{note}: {what}, the word becomes {there.word.text}", False
+            )
+
+
+def _repeated(problem: OrbitProblem, orbit: Orbit, rounds: int) -> tuple[OrbitProblem, Orbit]:
+    """The border orbit over some rounds, and the problem of the orbits with that many."""
+    if problem.symmetric and rounds % 2:
+        whole = orbit.repeat(rounds)  # an odd number of halves, and their mirror image
+        return problem.sibling(whole.word, whole.periods, True), whole
+    whole = orbit.repeat(rounds // 2 if problem.symmetric else rounds)
+    return problem.sibling(whole.word, whole.periods, False), whole
+
+
+def _grown_in(
+    wider: OrbitProblem, whole: Orbit, p: float, index: int, unit: int, rounds: int, changed: int
+) -> tuple[Grown, str] | None:
+    """The orbit in which the first rounds, as many as `changed`, go through the change."""
+    choices = [edits_at(whole, index + PER_NODE * unit * number, unit) for number in range(changed)]
+    for edits in zip(*choices):
+        found = grown(wider, whole, p, list(edits), SIZES if rounds == 2 else SIZES[:2])
+        if found is not None:
+            return found, edits[0].note
+    return None
+
+
+def _escape(problem: OrbitProblem, rounds: int) -> str:
+    if rounds == 2:
+        return f"the {'symmetry breaks' if problem.symmetric else 'period doubles'} at the border"
+    if problem.symmetric and rounds % 2 == 0:
+        return f"at the border the symmetry breaks and the period becomes {rounds // 2} times as long"
+    return f"at the border the period becomes {rounds} times as long"
 
 
 def _real_side(problem: OrbitProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
@@ -184,16 +217,27 @@ def _simulated(
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
             continue
-        if (
-            abs(
-                found.measure("friction_loss") / found.periods
-                - orbit.measure("friction_loss") / orbit.periods
-            )
-            > 0.05
-        ):
+        if abs(
+            found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods
+        ) > 0.05 * problem.model.gauge("energy", params):
             continue
         if distance(orbit, found) > CLOSE:
-            continue  # an attractor somewhere else: nothing joins it to the border
+            continue
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
         other = problem.sibling(found.word, found.periods, symmetric, found.params)
-        yield other, other.reduce(found.nodes), q, None, "the simulator goes on"
+        v = other.reduce(found.nodes)
+        if not tends_to(orbit, _nearer(other, v, q, p), found):
+            continue  # an attractor somewhere else: nothing joins it to the border
+        yield other, v, q, None, "the simulator goes on"
+
+
+def _nearer(problem: OrbitProblem, u: np.ndarray, q: float, p: float) -> Orbit:
+    """The orbit at q, followed towards the border at p as far as it can be solved for."""
+    found = problem.orbit(u, q)
+    for part in NEARER:
+        there = p + part * (q - p)
+        u, residual = _solved_at(problem, u, there)
+        if not residual < 1e-10:
+            break
+        found = problem.orbit(u, there)
+    return found

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
+from orbits.borders.distance import tends_to
 from orbits.borders.rewriting import Edit, applied, edits_at
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
@@ -21,6 +23,9 @@ SIZES = (
     (2e-6, 2e-7),
     (2e-8,),
 )  # of what grows beyond the border: ways to try
+LARGEST = 2e-3  # what grows is followed up to here where smaller sizes leave open what is real
+SHOWN = 1e-8  # margins smaller than this may be zeros: their signs are asked for further from the border
+ROUNDING = 1e-13  # of a margin
 STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is close
 GROWING = 1e-4  # least growth of a margin with the distance from the border
 
@@ -46,6 +51,24 @@ def turned(
     return other, other.reduce(orbit.nodes), PER_NODE * (place - first) + column
 
 
+class Grown(NamedTuple):
+    """An orbit next to the border, of a branch that begins at it; `tangent` leads away."""
+
+    problem: OrbitProblem
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray
+
+
+class _Held(NamedTuple):
+    """A solution in which what grows beyond the border has a given size."""
+
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray
+    size: float
+
+
 def proposals(
     problem: OrbitProblem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[OrbitProblem, np.ndarray, float, np.ndarray, str]]:
@@ -64,7 +87,7 @@ def proposals(
         for edits in [chosen, [first]] if len(chosen) > 1 else [chosen]:
             found = grown(problem, orbit, p, edits)
             if found is not None:
-                yield (*found, first.note)
+                yield found.problem, found.u, found.p, found.tangent, first.note
 
 
 def _overlap(a: Edit, b: Edit) -> bool:
@@ -72,9 +95,16 @@ def _overlap(a: Edit, b: Edit) -> bool:
 
 
 def grown(
-    problem: OrbitProblem, orbit: Orbit, p: float, edits: list[Edit]
-) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
-    """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
+    problem: OrbitProblem,
+    orbit: Orbit,
+    p: float,
+    edits: list[Edit],
+    ways: tuple[tuple[float, ...], ...] = SIZES,
+) -> Grown | None:
+    """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
+
+    None if there is none that is real and tends to the border orbit.
+    """
     if problem.symmetric:  # edit the half, and mirror it
         half = problem.length
         if any(change.stop > half and change.start != half for change in edits):
@@ -92,56 +122,102 @@ def grown(
         return None
     guess = np.ascontiguousarray(nodes, dtype=float).ravel()
     if edits[0].grows == "margin":
-        return _beside(other, guess, p)
-    for sizes in SIZES:
+        return _beside(other, guess, p, orbit)
+    for sizes in ways:
         found = _climb(other, guess, first, edits[0], p, sizes)
-        if found is not None and found[0].orbit(found[1], found[2]).margin >= REAL:
-            return found
+        if found and _begins_at(orbit, other, first, edits[0], p, found):
+            return Grown(other, *found[-1][:3])
     return None
 
 
 def _climb(
     other: OrbitProblem, guess: np.ndarray, first: int, change: Edit, p: float, sizes: tuple[float, ...]
-) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
-    """Solve with what grows beyond the border held at each of the sizes in turn; the last that converges."""
+) -> list[_Held]:
+    """Solve with what grows beyond the border held at each of the sizes in turn, as long as that converges."""
+    found: list[_Held] = []
+    u, q = guess, p
+    for wanted in sizes:
+        held = _hold(other, u, q, first, change, p, wanted)
+        if held is None:
+            break
+        found.append(held)
+        u, q = held.u, held.p
+    return found
+
+
+def _hold(
+    other: OrbitProblem, guess: np.ndarray, q: float, first: int, change: Edit, p: float, wanted: float
+) -> _Held | None:
+    """Solve with what grows beyond the border at p held at a size."""
     n, size = other.model.node, other.dimension
     kernels, work = assemble(other.model), other.workspace()
-    step, tangent = np.empty(size + 1), np.empty(size + 1)
-    best = None
-    u, q = guess.copy(), p
-    for wanted in sizes:
-        border = np.zeros(size + 1)
-        if change.grows == "gap":
-            border[first * n], border[(first + 1) * n] = -1.0, 1.0
-            if change.start == change.stop:  # the later event stays: friction gives way there
-                u[first * n] = u[(first + 1) * n] - wanted
-            else:
-                u[(first + 1) * n] = u[first * n] + wanted
+    step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
+    u = guess.copy()
+    if change.grows == "gap":
+        border[first * n], border[(first + 1) * n] = -1.0, 1.0
+        if change.start == change.stop:  # the later event stays: friction gives way there
+            u[first * n] = u[(first + 1) * n] - wanted
         else:
-            sign = 1.0 if change.events[0] == "L" else -1.0
-            cavity = float(other.orbit(u, q).events.v_rate[first])
-            border[first * n + 1] = sign
-            if n == 4:
-                border[first * n + 3] = -sign
-            else:
-                values = other.values(q)
-                border[first * n] = sign * values[0] * values[5] * np.sin(u[first * n])
-                change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
-                border[size] = -sign * change_with / NEAR
-            speed = sign * (u[first * n + 1] - cavity)
-            u[first * n + 1] += sign * (wanted - speed)
-        trial = u.copy()
-        residual, _, q_new = kernels.newton(other.data, trial, q, work, border, step, tangent, 1e-12, 40)
-        if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
+            u[(first + 1) * n] = u[first * n] + wanted
+    else:
+        sign = 1.0 if change.events[0] == "L" else -1.0
+        cavity = float(other.orbit(u, q).events.v_rate[first])
+        border[first * n + 1] = sign
+        if n == 4:
+            border[first * n + 3] = -sign
+        else:
+            values = other.values(q)
+            border[first * n] = sign * values[0] * values[5] * np.sin(u[first * n])
+            change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
+            border[size] = -sign * change_with / NEAR
+        speed = sign * (u[first * n + 1] - cavity)
+        u[first * n + 1] += sign * (wanted - speed)
+        if change.events[1:] == ("s",):  # it comes to rest the sooner the slower it is
+            u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
+    residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
+    if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
+        return None
+    return _Held(u, float(q_new), tangent, wanted)
+
+
+def _begins_at(
+    border: Orbit, other: OrbitProblem, first: int, change: Edit, p: float, found: list[_Held]
+) -> bool:
+    """Whether the solutions, from large to small, are real ones that tend to the border orbit.
+
+    Next to the border the margins that vanish there are too small to have a sign: those of the same motion further away
+    tell.
+    """
+    near, second, size = found[-1], None, found[-1].size
+    values = margins_of(other, near.u, near.p)
+    if values.min() < REAL:
+        return False
+    undecided = np.abs(values) < SHOWN
+    for held in _outwards(other, first, change, p, found):
+        second, size = second or held, held.size
+        if not undecided.any():
             break
-        u, q = trial, float(q_new)
-        best = (other, u.copy(), q, tangent.copy())
-    return best
+        values = margins_of(other, held.u, held.p)
+        if np.any(undecided & (values < -SHOWN)):
+            return False
+        undecided &= values < SHOWN
+    if size < LARGEST and np.any(undecided & (values < -ROUNDING)):
+        return False  # no solution where they would have a sign
+    second = second or near
+    return tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p))
 
 
-def _beside(
-    other: OrbitProblem, guess: np.ndarray, p: float
-) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+def _outwards(other: OrbitProblem, first: int, change: Edit, p: float, found: list[_Held]) -> Iterator[_Held]:
+    """The solutions from small to large, and on to larger sizes."""
+    yield from found[-2::-1]
+    held: _Held | None = found[0]
+    while held is not None and held.size < LARGEST:
+        held = _hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, LARGEST))
+        if held is not None:
+            yield held
+
+
+def _beside(other: OrbitProblem, guess: np.ndarray, p: float, orbit: Orbit) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
     kernels, work = assemble(other.model), other.workspace()
@@ -151,6 +227,7 @@ def _beside(
     residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10:
         return None
+    found = None
     for distance in (1e-8, 1e-7, 1e-6):
         sides = []
         for side in (1.0, -1.0):
@@ -165,15 +242,16 @@ def _beside(
             if (
                 margin > GROWING * distance
             ):  # not one that vanishes all along, as at a wall touched without speed
-                return other, u, q, along
-    if np.abs(tangent).max() > STEEP:
-        return _along(other, at_border, p, tangent)
-    return None
+                found = Grown(other, u, q, along)
+                break
+    if found is None and np.abs(tangent).max() > STEEP:
+        found = _along(other, at_border, p, tangent)
+    if found is None or not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):
+        return None
+    return found
 
 
-def _along(
-    other: OrbitProblem, at_border: np.ndarray, p: float, tangent: np.ndarray
-) -> tuple[OrbitProblem, np.ndarray, float, np.ndarray] | None:
+def _along(other: OrbitProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
     kernels, work = assemble(other.model), other.workspace()
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
@@ -184,5 +262,5 @@ def _along(
             guess = p + distance * direction[-1]
             residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)
             if residual < 1e-10 and margins_of(other, u, float(q)).min() > GROWING * distance:
-                return other, u, float(q), direction
+                return Grown(other, u, float(q), direction)
     return None

@@ -130,13 +130,14 @@ def _stick(orbit: Orbit, place: int) -> list[Edit]:
             Edit(place - 1, place + 1, ("s",), (0,), node[None], "margin", "a turn before a stick disappears")
         ]
     if out == before:
-        return [
-            Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight"),
-            turned,
-        ]
-    middle = node.copy()
-    middle[0] = 0.5 * (node[0] + orbit.nodes[place + 1, 0])
-    return [Edit(place, place + 2, ("t",), (out,), middle[None], "margin", "a stick becomes a turn"), turned]
+        gone = Edit(place, place + 2, (), (), orbit.nodes[:0], "margin", "a stick disappears inside a flight")
+    else:
+        middle = node.copy()
+        middle[0] = 0.5 * (node[0] + orbit.nodes[place + 1, 0])
+        gone = Edit(place, place + 2, ("t",), (out,), middle[None], "margin", "a stick becomes a turn")
+    if orbit.nodes[place + 1, 0] - node[0] < SHORT:
+        return [gone, turned]
+    return [turned]  # the stick still lasts: what vanishes is the reserve of friction where it begins
 
 
 def _wall(orbit: Orbit, place: int) -> list[Edit]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.borders.distance import CLOSE
 from orbits.problem import OrbitProblem
 from orbits.protocol import Seed
 
@@ -31,7 +32,7 @@ def from_rest(problem: Any, point: Any) -> list[Seed]:
                 continue
             other = orbit.problem(problem.parameter)
             u, q = orbit.seed(other)
-            if orbit.real and orbit.replay() < FOLLOWED:
+            if orbit.real and np.ptp(orbit.sample()["w"]) < CLOSE and orbit.replay() < FOLLOWED:
                 sign = np.zeros(other.dimension + 1)
                 sign[-1] = side
                 note = "the stuck absorber begins to slip: persistence, the word becomes ss"
@@ -41,16 +42,14 @@ def from_rest(problem: Any, point: Any) -> list[Seed]:
 
 def problem_response(problem: Any, p: float) -> np.ndarray:
     """Unknowns of the stuck motion at parameter value `p`."""
-    from orbits.cycles.stuck import linear_response
-
-    return np.linalg.solve(*linear_response(problem.model, problem.values(p)))
+    return np.linalg.solve(*problem.model.rest.equations(problem.values(p)))
 
 
 def to_rest(problem: OrbitProblem, point: Any) -> list[Seed]:
     """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
     from orbits.cycles.stuck import StuckOrbit
 
-    if problem.word.text not in ("ss", "s-s+"):
+    if sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []
     p = float(point.value)
     for side in (-1.0, 1.0):

@@ -36,14 +36,16 @@ def is_symmetric(word: Word, periods: int, nodes: np.ndarray, tolerance: float =
     return bool(np.max(np.abs(image - nodes[half:])) < tolerance)
 
 
-def canonical(word: Word, periods: int, nodes: np.ndarray) -> tuple[Hashable, np.ndarray]:
+def canonical(
+    word: Word, periods: int, nodes: np.ndarray, mirror: bool = True
+) -> tuple[Hashable, np.ndarray]:
     """Key (word and periods) and vector of the orbit's canonical form.
 
-    The vector lists cos Psi, sin Psi and the other unknowns of each node, in that one of the rotations and mirror
-    images with the canonical word whose projection on a fixed direction is largest.
+    The vector lists cos Psi, sin Psi and the other unknowns of each node, in that one of the rotations (and mirror
+    images, where the machine has them) with the canonical word whose projection on a fixed direction is largest.
     """
     word, periods, nodes = root_orbit(word, periods, nodes)
-    target, readings = _readings(word)
+    target, readings = _readings(word, mirror)
     flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
     direction = np.sin(np.arange(1, flat.size + 1) * np.sqrt(2.0)) + 0.1
     best, best_score = flat.ravel(), -np.inf
@@ -56,12 +58,13 @@ def canonical(word: Word, periods: int, nodes: np.ndarray) -> tuple[Hashable, np
 
 
 @lru_cache(maxsize=256)
-def _readings(word: Word) -> tuple[Word, list[tuple[float, int]]]:
+def _readings(word: Word, mirror: bool) -> tuple[Word, list[tuple[float, int]]]:
     """The canonical word, and by which signs (-1: mirror image) and rotations this word becomes it."""
-    target = word.canonical()
+    target = word.canonical(mirror)
+    images = [(word, 1.0), (word.mirror(), -1.0)] if mirror else [(word, 1.0)]
     return target, [
         (sign, place)
-        for reading, sign in ((word, 1.0), (word.mirror(), -1.0))
+        for reading, sign in images
         for place in range(len(word))
         if reading.rotate(place) == target
     ]

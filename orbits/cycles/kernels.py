@@ -20,7 +20,7 @@ import numpy as np
 from orbits.compiling import decorators as compiling
 from orbits.compiling import trigonometry
 from orbits.compiling.decorators import inlined_kernel, stored_kernel
-from orbits.elimination import block_cyclic, by_address, two_unknowns, vectorised
+from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
 from orbits.machines import path
 from orbits.machines.base import Model
 from orbits.multipliers import (
@@ -31,6 +31,9 @@ from orbits.multipliers import (
     product_of_two,
     small_eigenvalues,
 )
+from orbits.words.alphabet import CODES
+
+STICK = CODES["s"]
 
 # filled in per model by `specialise`
 linearise: Any = None
@@ -45,6 +48,14 @@ def _inspect(data, u, p, work, row):
     """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
     unpin(data, work)
     A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
+    events, length = data[0], A.shape[0]
+    for i in range(length):
+        # Nothing later depends on when a stick began: w' = 0 there and v'' is the same before and after. That phase moves
+        # with 1/w'', which grows without bound where the stick vanishes, so it is held instead.
+        if events[(i + 1) % length] == STICK:
+            A[i, 0, :] = 0.0
+            D[i, 0, :] = 0.0
+            D[i, 0, 0] = 1.0
     multipliers(A, D, data[4], re, im, scratch)
     n = re.size
     count = n
@@ -138,6 +149,13 @@ class Kernels:
         tangent)`, `inspect(data, u, p, work, row)`.
     newton, examine : compiled functions
         `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, `examine(data, u, p, work, row)`.
+    assign, flip, transpose : compiled functions
+        What loci against a second parameter need: `assign(data, other, value)` of `orbits.machines.path`, `flip(data, work,
+        sign)` and `transpose(data, work, column, other)` of `orbits.elimination.rearranged`.
+    column : int
+        Place of F_p in a workspace.
+    matrix : callable
+        `matrix(data, work)`, the whole Jacobian.
     compiled : bool
         True.
     digest : str
@@ -145,10 +163,15 @@ class Kernels:
     """
 
     compiled = True
+    column = 3
+    matrix = staticmethod(rearranged.matrix)
 
-    def __init__(self, name: str, digest: str, linearise: Any, bordered: Any, inspect: Any) -> None:
+    def __init__(
+        self, name: str, digest: str, linearise: Any, bordered: Any, inspect: Any, flip: Any, transpose: Any
+    ) -> None:
         self.name, self.digest = name, digest
         self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
+        self.assign, self.flip, self.transpose = path.assign, flip, transpose
         self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
         self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
 
@@ -192,6 +215,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         product_of_two.__file__,
         periodic_qr.__file__,
         small_eigenvalues.__file__,
+        rearranged.__file__,
         __file__,
     ]
     digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
@@ -205,7 +229,8 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         multipliers=periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers,
         margins=kernels.margins,
     )
-    return Kernels(name, stamp, kernels.linearise, eliminate, inspect)
+    flip = specialise(rearranged.flip, stamp, inline=True, unpin=kernels.unpin)
+    return Kernels(name, stamp, kernels.linearise, eliminate, inspect, flip, rearranged.transpose)
 
 
 def assemble(model: Model) -> Kernels:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -61,6 +62,24 @@ class EventTable:
     v_rate: np.ndarray
 
 
+KINDS = {
+    "B": "velocity",
+    "B_post": "velocity",
+    "B_pre": "velocity",
+    "B_mean": "velocity",
+    "C2": "area",
+    "phase": "angle",
+    "impact_speed": "velocity",
+    "impact_speed_min": "velocity",
+    "max_abs_w": "length",
+    "max_abs_q1": "length",
+    "amplitude": "length",
+    "v_phase": "angle",
+    **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
+}
+"""What kind of quantity each measure is, where it is more than a number."""
+
+
 def parameter(model: Model, params: np.ndarray, name: str) -> np.ndarray:
     """Column `name` of the parameter vectors, shape (m, 1)."""
     return params[:, model.parameter_names.index(name)][:, None]
@@ -69,30 +88,45 @@ def parameter(model: Model, params: np.ndarray, name: str) -> np.ndarray:
 def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray) -> EventTable:
     """Positions and velocities at all events, from nodes (m, L, n) and parameter vectors (m, P)."""
     phase = nodes[:, :, 0]
-    if model.node == 2:
-        amplitude, omega = parameter(model, params, "amplitude"), parameter(model, params, "frequency")
-        v, v_rate = amplitude * np.sin(phase), amplitude * omega * np.cos(phase)
-    else:
-        v, v_rate = nodes[:, :, 2], nodes[:, :, 3]
-    walls = np.array([{"L": 1.0, "R": -1.0}.get(letter, 0.0) for letter in word.events])
-    hits = walls != 0.0
-    r = parameter(model, params, "restitution")
+    v, v_rate = model.cavity_motion(nodes, params)
+    hits, walls, r = contacts(model, word, params)
     w = np.where(hits, walls, nodes[:, :, 1])
     rate_post = np.where(hits, v_rate - nodes[:, :, 1], 0.0)
     rate_pre = np.where(hits, -rate_post / r, 0.0)
     return EventTable(phase, w, rate_post, rate_pre, v_rate - rate_post, v_rate - rate_pre, v, v_rate)
 
 
+def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Which events are impacts, shape (L,), and their walls' places and coefficients of restitution, shape (m, L)."""
+    left = np.array([letter == "L" for letter in word.events], dtype=bool)
+    hits = left | np.array([letter == "R" for letter in word.events], dtype=bool)
+    (at_left, at_right), (by_left, by_right) = model.walls(params), model.restitutions(params)
+    walls = np.where(left, at_left[:, None], at_right[:, None])
+    return hits, walls, np.where(left, by_left[:, None], by_right[:, None])
+
+
 def names(model: Model) -> tuple[str, ...]:
     """Measures that orbits of this machine have."""
-    known = COMMON + tuple(getattr(model, "own_measures", ()))
+    known = COMMON + model.own_measures
     return known + tuple(mean for mean, name in MEANS.items() if name in known)
 
 
 def measure(
     model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
-    """The measures `wanted` of many orbits with one word.
+    """`dimensionless`, in the units of a machine that has some."""
+    return gauged(model, params, dimensionless(model, word, periods, nodes, params, wanted))
+
+
+def gauged(model: Model, params: np.ndarray, found: dict[str, Any]) -> dict[str, Any]:
+    """Dimensionless measures by name, in the machine's units; params (..., P), measures (...)."""
+    return {name: value * model.gauge(KINDS.get(name, ""), params) for name, value in found.items()}
+
+
+def dimensionless(
+    model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
+) -> dict[str, np.ndarray]:
+    """The measures `wanted` of many orbits with one word, in the machine's own numbers.
 
     ``B_post`` and ``B_pre`` are the absorber's absolute velocities after and before the first impact, each counted positive
     in its own usual direction (away from the wall, towards it), ``B`` is their mean (Youssef, Karoui, Leine: B = (B+ +
@@ -119,21 +153,15 @@ def measure(
     result: dict[str, np.ndarray] = {}
     means = [name for name in wanted if name in MEANS]
     if means:
-        whole = measure(model, word, periods, nodes, params, [MEANS[name] for name in means])
+        whole = dimensionless(model, word, periods, nodes, params, [MEANS[name] for name in means])
         result |= {name: whole[MEANS[name]] / periods for name in means}
-    own = [
-        name
-        for name in wanted
-        if name not in MEANS and (name not in COMMON or (name == "C2" and model.node != 2))
-    ]
+    own = [name for name in wanted if name not in MEANS and (name not in COMMON or name == "C2")]
     if own:
-        result |= model.measure_own(own, word, periods, nodes, params)  # type: ignore[attr-defined]
+        result |= model.measure_own(own, word, periods, nodes, params)
     for name in wanted:
         if name in result:
             continue
-        if name == "C2":
-            result[name] = parameter(model, params, "amplitude")[:, 0] ** 2
-        elif name == "phase":
+        if name == "phase":
             result[name] = np.mod(table.phase[:, 0], 2.0 * np.pi)
         elif name == "max_abs_w":
             result[name] = np.abs(table.w).max(axis=1)
@@ -143,7 +171,7 @@ def measure(
                 :, 0
             ] * path
         elif name == "impact_loss":
-            r = parameter(model, params, "restitution")
+            r = contacts(model, word, params)[2]
             loss = np.where(hits, (1.0 - r**2) * table.rate_pre**2 / (2.0 * (1.0 + eps)), 0.0)
             result[name] = loss.sum(axis=1)
         elif not hits.any():

@@ -18,40 +18,9 @@ from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.cycles.stuck_problem import StuckProblem
+    from orbits.proofs import Proof
 
 EMPTY = Word((), ())
-
-
-def linear_response(model: Model, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Matrix K and right-hand side f of the stuck motion's linear equations K u = f.
-
-    Reduced machine: u is the absorber's position, kept in the middle. Coupled machine: u = (X, Y) of
-    q1 = X sin Psi + Y cos Psi with mass 1 + eps, damping eps lambda and base excitation eps G (sin, and cos by the damper).
-    """
-    if model.node == 2:
-        return np.eye(1), np.zeros(1)
-    forcing, omega, damping, eps = (float(value) for value in params[:4])
-    exact = float(params[7])
-    stiffness, drag = 1.0 - (1.0 + eps) * omega**2, eps * damping * omega
-    return np.array([[stiffness, -drag], [drag, stiffness]]), eps * forcing * np.array([1.0, exact * drag])
-
-
-def reserve(model: Model, params: np.ndarray, u: np.ndarray) -> float:
-    """Friction acceleration left before the absorber slips: a - C Omega^2, or mu g - max |q1''|."""
-    names = model.parameter_names
-    if model.node == 2:
-        return model.friction_acceleration(params) - float(params[0]) * float(params[5]) ** 2
-    pull = float(params[names.index("friction")]) * float(params[names.index("gravity")])
-    return pull - float(params[1]) ** 2 * float(np.hypot(u[0], u[1]))
-
-
-def multipliers(model: Model, params: np.ndarray) -> np.ndarray:
-    """Multipliers of the oscillator over one forcing period with the absorber stuck; none for the reduced machine."""
-    if model.node == 2:
-        return np.zeros(0, complex)
-    omega, damping, eps = (float(value) for value in params[1:4])
-    roots = np.roots([1.0 + eps, eps * damping, 1.0]).astype(complex)
-    return np.exp(roots * 2.0 * np.pi / omega)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +44,7 @@ class StuckOrbit:
     @classmethod
     def of(cls, model: Model, params: np.ndarray) -> StuckOrbit:
         """The stuck motion at these parameters; `real` tells whether friction holds."""
-        K, f = linear_response(model, params)
+        K, f = model.rest.equations(params)
         return cls(model, params, np.linalg.solve(K, f))
 
     @property
@@ -91,7 +60,7 @@ class StuckOrbit:
     @property
     def multipliers(self) -> np.ndarray:
         """Multipliers of the oscillator over one forcing period."""
-        return multipliers(self.model, self.params)
+        return self.model.rest.multipliers(self.params)
 
     @property
     def stable(self) -> bool:
@@ -101,7 +70,7 @@ class StuckOrbit:
     @property
     def margin(self) -> float:
         """Reserve of friction."""
-        return reserve(self.model, self.params, self.u)
+        return self.model.rest.reserve(self.params, self.u)
 
     @property
     def margins(self) -> list[Margin]:
@@ -116,7 +85,7 @@ class StuckOrbit:
     @property
     def residual(self) -> float:
         """Largest residual of the linear equations."""
-        K, f = linear_response(self.model, self.params)
+        K, f = self.model.rest.equations(self.params)
         return float(np.abs(K @ self.u - f).max())
 
     def root(self) -> StuckOrbit:
@@ -142,12 +111,7 @@ class StuckOrbit:
         """Positions and velocities over one forcing period; keys as in `orbits.cycles.sampling.sample`."""
         phase = np.linspace(0.0, 2.0 * np.pi, points)
         eps, omega = self.parameters["mass_ratio"], self.parameters["frequency"]
-        if self.model.node == 2:
-            v, v_rate = self.params[0] * np.sin(phase), self.params[0] * omega * np.cos(phase)
-        else:
-            X, Y = (1.0 + eps) * self.u
-            v = X * np.sin(phase) + Y * np.cos(phase)
-            v_rate = omega * (X * np.cos(phase) - Y * np.sin(phase))
+        v, v_rate = self.model.rest.cavity_motion(self.params, self.u, phase)
         nothing = np.zeros_like(phase)
         place = v / (1.0 + eps)
         return {
@@ -161,15 +125,15 @@ class StuckOrbit:
 
         motion = self.sample(5)
         start = {"phase": 0.0, "w": 0.0, "w_rate": 0.0}
-        if self.model.node == 4:
-            start |= {"v": float(motion["v"][0]), "v_rate": float(motion["v_rate"][0])}
-        own = self.model.settings()
-        given = {name: value for name, value in self.parameters.items() if name not in own}
-        changed = {
-            name: value for name, value in self.parameters.items() if name in own and name != "excitation"
-        }
-        run = simulate(self.model.changed(**changed), start, periods=2.0, **given)  # type: ignore[arg-type]
+        start |= {name: float(motion[name][0]) for name in self.model.node_names[2:]}
+        run = simulate(self.model, start, periods=2.0, **self.parameters)  # type: ignore[arg-type]
         return float(np.abs(run.sample().w).max())
+
+    def prove(self, bits: int | None = None, **parameters: Any) -> Proof:
+        """Prove that friction holds, or not; see `orbits.proofs.subjects.of_orbit`."""
+        from orbits.proofs.subjects import of_orbit
+
+        return of_orbit(self, bits, **parameters)
 
     @property
     def events(self) -> measuring.EventTable:
@@ -189,7 +153,7 @@ class StuckOrbit:
             "periods": 1,
             "impacts": 0,
             "symmetric": True,
-            "parameters": self.parameters,
+            **self.model.described(self.params),
             "nodes": [],
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from orbits.cycles import measures as measuring
-from orbits.cycles.stuck import EMPTY, StuckOrbit, linear_response, multipliers, reserve
+from orbits.cycles.stuck import EMPTY, StuckOrbit
 from orbits.machines.base import Model
 from orbits.machines.path import along
 
@@ -27,8 +27,8 @@ class StuckProblem:
     def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
         self.model, self.parameter, self.params = model, parameter, np.array(params, dtype=float)
         self.path = model.path(parameter, self.params)
-        self.dimension = 1 if model.node == 2 else 2
-        self.n_multipliers = 0 if model.node == 2 else 2
+        self.dimension = model.rest.unknowns
+        self.n_multipliers = model.rest.multipliers(self.params).size
         self.data = self
 
     @property
@@ -43,7 +43,7 @@ class StuckProblem:
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
-    def values(self, p: float) -> np.ndarray:
+    def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
         return along(self.path, self.params, p)
 
@@ -98,34 +98,32 @@ class StuckProblem:
             result[name] = np.array(
                 [self._measure(name, row, self.values(value)) for row, value in zip(u, p)]
             )
-        return result
+        return measuring.gauged(self.model, self.values(p), result)
 
     def _measure(self, name: str, u: np.ndarray, params: np.ndarray) -> float:
         name = measuring.MEANS.get(name, name)  # its period is the forcing's
         if name in ("impact_loss", "friction_loss", "impact_speed", "impact_speed_min", "max_abs_w"):
             return 0.0
-        if self.model.node == 2:
-            return float(params[0]) ** 2 if name == "C2" else np.nan
-        eps, size = float(params[3]), float(np.hypot(u[0], u[1]))
-        dissipated = (
-            float(params[2]) * np.pi * float(params[1]) * size**2
-        )  # lambda times the integral of q1'^2
-        return {
-            "max_abs_q1": size,
-            "amplitude": (1.0 + eps) * size,
-            "C2": ((1.0 + eps) * size) ** 2,
-            "v_phase": float(np.arctan2(u[1], u[0])),
-            "input_work": dissipated,
-            "damping_loss": dissipated,
-        }.get(name, np.nan)
+        return self.model.rest.measure(name, params, u)
 
     def orbit(self, u: np.ndarray, p: float) -> StuckOrbit:
         """The solution as an orbit without events."""
         return StuckOrbit(self.model, self.values(p), np.array(u, dtype=float))
 
+    def root(self, u: np.ndarray, p: float) -> None:
+        """No motion without events repeats a shorter one."""
+
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest relative displacement in a simulation of one period from the stuck state."""
         return self.orbit(u, p).replay()
+
+    def prove(
+        self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
+    ) -> Any:
+        """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
+        from orbits.proofs.subjects import of_point
+
+        return of_point(self, kind, u, p, margin, bits)
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
@@ -138,6 +136,7 @@ class StuckProblem:
             "impacts": 0,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
+            **({"units": self.model.units} if self.model.units else {}),
             "symmetric": True,
         }
 
@@ -153,12 +152,12 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> StuckProblem
 
 def _linearise(data: StuckProblem, u: np.ndarray, p: float, work: tuple[np.ndarray, ...]) -> float:
     F, J, Q = work
-    K, f = linear_response(data.model, data.values(p))
+    K, f = data.model.rest.equations(data.values(p))
     J[:] = K
     F[:] = K @ u - f
     h = 1e-6 * (abs(p) or 1.0)  # whatever the unit of p
-    ahead, f_ahead = linear_response(data.model, data.values(p + h))
-    behind, f_behind = linear_response(data.model, data.values(p - h))
+    ahead, f_ahead = data.model.rest.equations(data.values(p + h))
+    behind, f_behind = data.model.rest.equations(data.values(p - h))
     Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)
     return float(np.abs(F).max())
 
@@ -177,7 +176,7 @@ def _bordered(
 
 def _inspect(data: StuckProblem, u: np.ndarray, p: float, work: tuple, row: np.ndarray) -> None:
     params = data.values(p)
-    spectrum = multipliers(data.model, params)
+    spectrum = data.model.rest.multipliers(params)
     row[: 2 * spectrum.size : 2] = np.real(spectrum)
     row[1 : 2 * spectrum.size : 2] = np.imag(spectrum)
-    row[-1] = reserve(data.model, params, u)
+    row[-1] = data.model.rest.reserve(params, u)

@@ -13,8 +13,8 @@ import math
 from dataclasses import dataclass
 from typing import Self
 
-from orbits.machines.base import ParameterError
 from orbits.machines.coupled.machine import Coupled
+from orbits.machines.parameters import ParameterError
 
 STANDARD_GRAVITY = 9.81
 AGREEMENT = 1e-3  # two ways to give one number may differ by so much (printed data are rounded)

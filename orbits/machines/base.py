@@ -2,46 +2,80 @@
 
 The contract, in words
 ----------------------
-1. A model is a frozen dataclass. Its fields are the machine's parameters; `parameter_names` lists all numbers that its
-   maps depend on, in the order of the compiled kernels' parameter vector. A name that is no field (`amplitude` of the
-   reduced absorber) has to be given with each orbit.
-2. `limits` gives for each parameter the closed or open interval of values that make sense, as text and as a test.
-3. `node` is the number of unknowns per event; `node_names` names them after an impact and elsewhere.
-4. `kernels` is the module with `linearise`, `margins` and `unpin` (signatures: `orbits.machines.absorber.maps`).
-5. `scale` says which measures an orbit of the machine has; `measures` computes them for arrays of solutions.
+1. A machine is a frozen dataclass with a folder of its own. `table` lists all numbers that its maps depend on, in the order of the
+   compiled kernels' parameter vector: name, meaning, unit, symbol and limits (`orbits.machines.parameters`). Its fields are those
+   of them that belong to the machine; a name that is no field (`amplitude` of the reduced absorber) is given with each orbit.
+   Studies, refusals and tables are made from the table.
+2. `node_names` names the unknowns of an event; the first is the phase, the second the absorber's velocity B+ after an impact and
+   its position w at the other events.
+3. `kernels` is the module of compiled maps with `linearise`, `margins` and `unpin` (signatures: `orbits.machines.absorber.maps`).
+4. `stepper` is the module of the compiled event-driven simulation (contract: `orbits.machines.stepping`).
+5. `has_mirror` says whether the mirror image of a motion (L and R change places, all unknowns but the phase change sign, half a
+   forcing period later) is a motion of the same machine. Nothing is solved on half a word, and no image is identified with a
+   motion, unless it says so.
+6. `cavity_motion`, `walls` and `restitutions` give what measures and event tables need; `own_measures` names further measures
+   and `measure_own` computes them.
+7. `rest` is the motion without events: its linear equations, the reserve of friction, its multipliers (`orbits.machines.rest`).
+8. `start_nodes` yields closed forms to start from, `random_nodes` guesses, `random_start` states for the simulator.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import MISSING, fields
 from types import ModuleType
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.path import single
+from orbits.machines.rest import Rest
 
-# what may be said of a value, and the test for it
-POSITIVE = ("above 0", lambda value: value > 0.0)
-NOT_NEGATIVE = ("0 or above", lambda value: value >= 0.0)
-RESTITUTION = ("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
-
-
-class ParameterError(ValueError):
-    """A parameter without a sensible value; the sentence names it, its value and what would do."""
+if TYPE_CHECKING:
+    from orbits.orbit import Orbit
+    from orbits.words import Word
 
 
 class Model:
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
     name: ClassVar[str]
-    node: ClassVar[int]
-    parameter_names: ClassVar[tuple[str, ...]]
-    limits: ClassVar[Mapping[str, tuple[str, Any]]]
+    table: ClassVar[tuple[Parameter, ...]]
+    node_names: ClassVar[tuple[str, ...]]
     default_parameter: ClassVar[str]
     default_measure: ClassVar[str] = "B"
+    own_measures: ClassVar[tuple[str, ...]] = ()
+    swept_measure: ClassVar[str] = "B"
+    """What the picture of a sweep shows: ``B`` at every impact, or a measure of the whole motion."""
+    driven_by: ClassVar[str]
+    """The parameter that drives the machine: an orbit must have it, a machine need not."""
+    patience: ClassVar[int] = 0
+    """How often a start that is looked for by simulation may be simulated four times longer."""
+    rest: ClassVar[Rest]
+
+    # derived from the table
+    node: ClassVar[int]
+    parameter_names: ClassVar[tuple[str, ...]]
+    limits: ClassVar[Mapping[str, Limits]]
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if "table" in vars(cls):
+            cls.parameter_names = tuple(entry.name for entry in cls.table)
+            cls.limits = {entry.name: entry.limits for entry in cls.table}
+        if "node_names" in vars(cls):
+            cls.node = len(cls.node_names)
+
+    def __post_init__(self) -> None:
+        for entry in self.table:
+            value = getattr(self, entry.name, None)
+            if value is not None:
+                object.__setattr__(self, entry.name, entry.named(value))
+        self._check_together()
+
+    def _check_together(self) -> None:
+        """Refuse values that make no sense together."""
 
     @property
     def kernels(self) -> ModuleType:
@@ -49,31 +83,40 @@ class Model:
         raise TypeError(f"{type(self).__name__} has no kernels")
 
     @classmethod
-    def check(cls, name: str, value: float) -> float:
-        """Return `value` as a float if parameter `name` may have it.
+    def stepper(cls) -> ModuleType:
+        """The module of the compiled event-driven simulation."""
+        raise TypeError(f"{cls.__name__} has no stepper")
+
+    @classmethod
+    def parameter(cls, name: str) -> Parameter:
+        """The entry of the table with this name.
 
         Raises
         ------
         ParameterError
-            If it is not a finite number within the parameter's limits.
+            If there is none.
         """
-        says, test = cls.limits[name]
-        try:
-            number = float(value)
-        except (TypeError, ValueError):
-            raise ParameterError(f"{name} = {value!r} is not a number; give a number {says}") from None
-        if not math.isfinite(number):
-            raise ParameterError(f"{name} = {number} is not finite; give a number {says}")
-        if not test(number):
-            raise ParameterError(f"{name} = {number:g} is out of range; give a number {says}")
-        return number
+        for entry in cls.table:
+            if entry.name == name:
+                return entry
+        raise ParameterError(
+            f"{name} is no parameter of the model {cls.name!r}; it has " + ", ".join(cls.parameter_names)
+        )
 
-    def _check_fields(self) -> None:
-        for field in fields(self):  # type: ignore[arg-type]
-            if field.name in self.limits:
-                object.__setattr__(self, field.name, self.check(field.name, getattr(self, field.name)))
+    @classmethod
+    def field_names(cls) -> tuple[str, ...]:
+        """Parameters that belong to the machine itself; the others are given with each orbit."""
+        return tuple(entry.name for entry in fields(cls))  # type: ignore[arg-type]
 
-    def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
+    @classmethod
+    def defaults(cls) -> dict[str, Any]:
+        """Default of each field: ``...`` where it must be given, None where it may be left to each orbit."""
+        return {
+            entry.name: ... if entry.default is MISSING else entry.default
+            for entry in fields(cls)  # type: ignore[arg-type]
+        }
+
+    def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
         """The parameter vector, shape (P,), with `values` in place of or beside the machine's own.
 
         Raises
@@ -82,23 +125,89 @@ class Model:
             If a name is unknown, a value out of range or a needed value missing.
         """
         given = dict(values or {})
-        unknown = [name for name in given if name not in self.parameter_names]
-        if unknown:
-            raise ParameterError(
-                f"{unknown[0]} is no parameter of the model {self.name!r}; it has "
-                + ", ".join(self.parameter_names)
-            )
+        for name in given:
+            self.parameter(name)
         result = []
-        for name in self.parameter_names:
-            value = given.get(name, getattr(self, name, None))
+        for entry in self.table:
+            value = given.get(entry.name, getattr(self, entry.name, None))
             if value is None:
-                raise ParameterError(f"{name} is missing: give a number {self.limits[name][0]}")
-            result.append(self.coded(name, value))
+                raise ParameterError(f"{entry.name} is missing: give a number {entry.limits.text}")
+            result.append(entry.number(value))
         return np.array(result)
 
-    def coded(self, name: str, value: Any) -> float:
-        """The number that stands for a parameter's value in the parameter vector."""
-        return self.check(name, value)
+    @classmethod
+    def column(cls, params: np.ndarray, name: str) -> Any:
+        """Entry `name` of a parameter vector, or that column of many of them."""
+        return params[..., cls.parameter_names.index(name)]
+
+    # ------------------------------------------------------------------ mechanics
+    def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
+        """Whether mirror images are motions of this machine, at these parameters and however `varying` varies."""
+        return True
+
+    @classmethod
+    def friction_acceleration(cls, params: np.ndarray) -> float:
+        """a = (1 + eps) mu g, the friction's relative acceleration (dimensionless)."""
+        eps, mu, g = (float(cls.column(params, name)) for name in ("mass_ratio", "friction", "gravity"))
+        return (1.0 + eps) * mu * g
+
+    def frictionless(self, params: np.ndarray) -> bool:
+        """Whether turns are no events."""
+        return self.friction_acceleration(params) == 0.0
+
+    @classmethod
+    def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """v and v' at nodes (m, L, n) with parameter vectors (m, P), each of shape (m, L)."""
+        raise TypeError(f"{cls.__name__} has no cavity")
+
+    @classmethod
+    def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """w at the left and at the right wall; shapes follow `params` (..., P)."""
+        one = np.ones(params.shape[:-1])
+        return one, -one
+
+    @classmethod
+    def restitutions(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's coefficients of the left and of the right wall."""
+        r = cls.column(params, "restitution")
+        return r, r
+
+    # ------------------------------------------------------------------ starts and measures
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        """Nodes to start from in closed form, where there are any."""
+        return iter(())
+
+    def random_nodes(
+        self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
+    ) -> np.ndarray | None:
+        """Nodes at random from which Newton's method may find an orbit; None if that is hopeless."""
+        return None
+
+    def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
+        """A state at random, as `orbits.simulation.simulate` takes it."""
+        return {
+            "phase": generator.uniform(0.0, 2.0 * np.pi),
+            "w": generator.uniform(-0.95, 0.95),
+            "w_rate": generator.uniform(-2.0, 2.0),
+        }
+
+    def measure_own(
+        self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
+    ) -> dict[str, np.ndarray]:
+        """The machine's own measures of many orbits with one word."""
+        raise KeyError(f"the model {self.name!r} has no measures of its own")
+
+    def orbit(
+        self,
+        word: str,
+        periods: int = 1,
+        guess: Sequence[Sequence[float]] | np.ndarray | None = None,
+        **parameters: Any,
+    ) -> Orbit:
+        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
+        from orbits.starts.find import find
+
+        return find(self, word, periods, guess, parameters)
 
     # ------------------------------------------------------------------ the parameter that varies
     @property
@@ -123,6 +232,29 @@ class Model:
         """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
         return np.zeros((0, len(self.parameter_names)))
 
+    def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        """`vector` with the parameter that may vary called `name` at `value`.
+
+        Raises
+        ------
+        ParameterError
+            As `vector` does.
+        """
+        return self.vector({**(values or {}), name: value})
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters and measures by name; none here, where all are numbers."""
+        return {}
+
+    def described(self, params: np.ndarray) -> dict[str, Any]:
+        """A parameter vector by name, ready for JSON."""
+        return {"parameters": dict(zip(self.parameter_names, (float(v) for v in params), strict=True))}
+
+    def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
+        """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
+        return 1.0
+
     def place_of(self, name: str) -> int:
         """Place of a parameter among `amount_names`.
 
@@ -137,12 +269,6 @@ class Model:
                 + ", ".join(self.amount_names)
             )
         return self.amount_names.index(name)
-
-    def friction_acceleration(self, params: np.ndarray) -> float:
-        """a = (1 + eps) mu g, the friction's relative acceleration (dimensionless)."""
-        names = self.parameter_names
-        eps, mu, g = (float(params[names.index(name)]) for name in ("mass_ratio", "friction", "gravity"))
-        return (1.0 + eps) * mu * g
 
     def settings(self) -> dict[str, Any]:
         """The machine's own fields by name, ready for JSON."""

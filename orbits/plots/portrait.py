@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from orbits.plots.figures import new_figure, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,29 +31,77 @@ SYMBOLS = {
 }
 
 
-def portrait(orbit: Orbit, points: int = 1200) -> Figure:
-    """Draw the orbit: w' against w on the left, motions over forcing periods on the right.
+PANELS = ("both", "phase", "history")
+NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
+
+
+def portrait(
+    orbit: Orbit,
+    points: int = 1200,
+    *,
+    axes: Axes | Sequence[Axes] | None = None,
+    show: str | None = None,
+    heading: bool = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
+    """Draw the orbit: w' against w, left wall on the left, and motions over forcing periods.
 
     Parameters
     ----------
     orbit : Orbit
     points : int
         Samples over the period.
+    axes : Axes or two of them, optional
+        Drawn on: one has the phase portrait (or the history, if `show` says so), two have both. Without, a new figure.
+    show : {"both", "phase", "history"}, optional
+        By default both, or the phase portrait alone where a figure is small.
+    heading : bool
+        Write what the orbit is above a new figure.
+    figsize : (float, float), optional
+        Inches, of a new figure.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
 
     Returns
     -------
     matplotlib.figure.Figure
-    """
-    import matplotlib.pyplot as plt
 
-    with plt.style.context(str(files("orbits.plots") / "house.mplstyle")):
-        figure, (left, right) = plt.subplots(
-            1, 2, figsize=(9.6, 4.0), width_ratios=(1.0, 1.5), layout="constrained"
-        )
-        motion = orbit.sample(points)
-        _phase(left, orbit, motion)
-        _history(right, orbit, motion)
-        figure.suptitle(title(orbit), fontsize="medium")
+    Raises
+    ------
+    ValueError
+        If `show` is none of its values, or does not fit the axes given.
+    """
+    if show is not None and show not in PANELS:
+        raise ValueError(f"show = {show!r} is unknown; choose one of {', '.join(PANELS)}")
+    motion = orbit.sample(points)
+    with styled(style):
+        if axes is None:
+            size = figsize or ((9.6, 4.0) if show in (None, "both") else (4.8, 4.0))
+            small = size[0] < NARROW and size[1] < LOW
+            panels = show or ("phase" if small else "both")
+            figure = new_figure(size)
+            if panels != "both":
+                drawn = [figure.add_subplot()]
+            elif size[0] < NARROW:
+                drawn = list(figure.subplots(2, 1))
+            else:
+                drawn = list(figure.subplots(1, 2, width_ratios=(1.0, 1.5)))
+            if heading:
+                text = title(orbit)
+                figure.suptitle(text.split("\n")[0] if small else text, fontsize="medium", wrap=True)
+        else:
+            drawn = list(axes) if isinstance(axes, Sequence | np.ndarray) else [axes]
+            panels = show or ("both" if len(drawn) == 2 else "phase")
+            if (panels == "both") != (len(drawn) == 2):
+                raise ValueError(
+                    f"show = {panels!r} needs {2 if panels == 'both' else 1} axes, not {len(drawn)}"
+                )
+            figure: Any = drawn[0].get_figure(root=True)
+        if panels != "history":
+            _phase(drawn[0], orbit, motion)
+        if panels != "phase":
+            _history(drawn[-1], orbit, motion)
     return figure
 
 
@@ -100,9 +150,9 @@ def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
             )
     _events(axes, orbit, table.w, table.rate_post)
     axes.set(
-        xlim=(-1.16 * bound, 1.16 * bound),
+        xlim=(1.16 * bound, -1.16 * bound),  # w = +1 is the left wall, and stands on the left
         ylim=(-reach, reach),
-        xlabel=r"relative position $w = q_1 - q_2$ (left wall at $+1$)",
+        xlabel=r"$w = q_1 - q_2$, left wall at $+1$",
         ylabel=r"relative velocity $w'$",
     )
 

@@ -59,9 +59,6 @@ def position_error(orbit: Orbit, points: int = 400) -> float:
 def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
     """The same from one event over the next ones, as a function of place and number of events."""
     model = orbit.model
-    own = {name for name in orbit.parameters if hasattr(model, name) and name != "excitation"}
-    given: dict[str, float] = {k: v for k, v in orbit.parameters.items() if not hasattr(model, k)}
-    model = model.changed(**{name: orbit.parameters[name] for name in own})
     engine, durations = machine(model.name), lengths(orbit)
     codes, modes = orbit.word.codes, orbit.word.modes
 
@@ -76,7 +73,7 @@ def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
             positions.append(flight(orbit, int(segment), within)[:, 0])
             passed += float(durations[segment])
         ahead, claimed = np.concatenate(phases), np.concatenate(positions)
-        run = simulate(model, start, periods=float(ahead[-1]) / (2.0 * np.pi) + 1e-6, **given)  # type: ignore[arg-type]
+        run = simulate(model, start, periods=float(ahead[-1]) / (2.0 * np.pi) + 1e-6, **orbit.parameters)  # type: ignore[arg-type]
         seen = run.sample(run.start[0] + 2.0 * np.pi * run.start[4] + ahead)
         return float(np.abs(seen.w - claimed).max())
 

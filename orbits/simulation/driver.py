@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Mapping
 from functools import cache
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.machines.catalogue import model_class
 from orbits.machines.stepping import EVENTS_FULL, FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
 
@@ -27,7 +27,7 @@ class SimulationError(ValueError):
 @cache
 def machine(name: str) -> Machine:
     """The compiled stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
-    kernels = importlib.import_module(f"orbits.machines.{name}.stepper")
+    kernels = model_class(name).stepper()
     return Machine(
         name,
         kernels.STATE,

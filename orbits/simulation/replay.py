@@ -131,14 +131,8 @@ def replay_nodes(
 
 def _stuck(model: Any, params: np.ndarray) -> Replay:
     """The empty word: the absorber must not slip."""
-    if model.name != "absorber":
-        return Replay(
-            np.inf,
-            "a motion without events has no node to start from: simulate it from its state",
-            np.empty(0),
-        )
-    held = params[0] * params[5] ** 2 <= model.friction_acceleration(params)
-    sentence = "" if held else "friction does not hold the absorber: C Omega^2 exceeds (1 + eps) mu g"
+    held = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params))) >= 0.0
+    sentence = "" if held else "friction does not hold the absorber"
     return Replay(0.0 if held else np.inf, sentence, np.empty(0, complex))
 
 

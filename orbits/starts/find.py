@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from orbits.cycles.kernels import assemble
 from orbits.cycles.stuck import StuckOrbit
-from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
-from orbits.machines.base import Model, ParameterError
+from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.problem import OrbitProblem
+from orbits.starts.reading import DirectionError, directed, readings
 from orbits.words import Word
 
+NEARBY = 0.1  # residual of a guess that may be read from another event than its word
+BETTER = 0.1  # part of the residual with which another reading is believed
 TOLERANCE = 1e-12
 LONG = 12  # words with more events are not looked for from random nodes
 
@@ -31,10 +33,9 @@ class StartError(ValueError):
 
 def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     """Newton's method from the orbit's nodes at fixed parameters; None if it does not converge to an orbit with this word."""
-    symmetric = orbit.symmetric
-    problem = OrbitProblem(
-        orbit.model, orbit.word, orbit.periods, orbit.model.default_parameter, orbit.params, symmetric
-    )
+    parameter = orbit.model.default_parameter
+    symmetric = orbit.symmetric and orbit.model.has_mirror(orbit.params, parameter)
+    problem = OrbitProblem(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, symmetric)
     u = problem.reduce(orbit.nodes)
     border = np.zeros(problem.dimension + 1)
     border[-1] = 1.0
@@ -50,7 +51,7 @@ def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     return Orbit(orbit.model, orbit.word, orbit.periods, nodes, orbit.params)
 
 
-def check_guess(word: Word, node: int, guess: Any) -> np.ndarray:
+def check_guess(word: Word, names: Sequence[str], guess: Any) -> np.ndarray:
     """The guess as an array (L, n).
 
     Raises
@@ -62,8 +63,8 @@ def check_guess(word: Word, node: int, guess: Any) -> np.ndarray:
         nodes = np.array(guess, dtype=float)
     except (TypeError, ValueError):
         raise StartError(f"guess = {guess!r} is no table of numbers: give one list per event") from None
-    if nodes.shape != (len(word), node):
-        what = "[phase, B_post or w]" if node == 2 else "[phase, B_post or w, v, v_rate]"
+    if nodes.shape != (len(word), len(names)):
+        what = f"[{', '.join(names)}]"
         raise StartError(
             f"guess has the shape {nodes.shape}, but the word {word.text!r} has {len(word)} events "
             f"({' '.join(word.events)}): give one {what} for each, slips included"
@@ -105,7 +106,7 @@ def find(
         For bad parameters and words.
     """
     params = model.vector(parameters)
-    reading = Word.parse(word, frictionless=model.friction_acceleration(params) == 0.0)
+    reading = Word.parse(word, frictionless=model.frictionless(params))
     if isinstance(periods, bool) or int(periods) != periods or periods < 1:
         raise StartError(
             f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more"
@@ -115,13 +116,19 @@ def find(
         return _stuck(model, params)
     tried = []
     if guess is not None:
-        nodes = check_guess(reading, model.node, guess)
-        orbit = polish(Orbit(model, reading, periods, nodes, params), limit=100)
-        if orbit is not None and _proper(orbit):
+        nodes = check_guess(reading, model.node_names, guess)
+        if reading.impact_free:
+            nodes[:, 1] -= 0.5 * (nodes[:, 1].max() + nodes[:, 1].min())
+        try:
+            reading = directed(word, reading, nodes)
+        except DirectionError as error:
+            raise StartError(str(error)) from None
+        orbit = _from_guess(model, reading, periods, nodes, params)
+        if orbit is not None:
             return orbit
         tried.append("Newton's method from the guess")
     else:
-        for nodes in _closed(model, reading, periods, params):
+        for nodes in model.start_nodes(reading, periods, params):
             orbit = polish(Orbit(model, reading, periods, nodes, params))
             if orbit is not None:
                 return orbit
@@ -150,6 +157,26 @@ def find(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
         f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."
     )
+
+
+def _from_guess(
+    model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
+) -> Orbit | None:
+    """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
+    first = Orbit(model, word, periods, nodes, params)
+    others = [
+        Orbit(model, reading, periods, nodes, params)
+        for reading in readings(word, model.has_mirror(params, model.default_parameter))
+    ]
+    better = [orbit for orbit in others if orbit.residual < min(NEARBY, BETTER * first.residual)]
+    virtual = None
+    for guess in (*sorted(better, key=lambda orbit: orbit.residual), first):
+        orbit = polish(guess, limit=100)
+        if orbit is not None and _proper(orbit):
+            if orbit.real:
+                return orbit
+            virtual = virtual or orbit
+    return virtual
 
 
 def _warn(guess: Any, word: Word, instead: str) -> None:
@@ -189,38 +216,20 @@ def _proper(orbit: Orbit) -> bool:
     return bool(np.all(np.diff(phases) > -1e-9))
 
 
-def _closed(model: Model, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-    if hasattr(model, "start_nodes"):
-        yield from model.start_nodes(word, periods, params)  # type: ignore[attr-defined]
-        return
-    if periods != 1 or model.node != 2:
-        return
-    events = "".join(word.events)
-    try:
-        if events in ("LR", "RL"):
-            for stable in (True, False):
-                nodes = symmetric_nodes(params, stable)
-                yield nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0]])
-        elif events == "tt":
-            yield sliding_nodes(params, word.modes[0])
-        elif events == "susu" and word.modes[1] == -word.modes[3]:
-            yield stick_slip_nodes(params, word.modes[1])
-    except ParameterError:
-        return
-
-
 def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     from orbits.attractors.recurrence import find_attractor
 
-    target = word.canonical()
+    mirrored = model.has_mirror(params)
+    target = word.canonical(mirrored)
     values = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
     nearest, distance = "", np.inf
-    patience = 2 if model.node == 4 else 0  # a light absorber's oscillator settles over thousands of periods
     generator = np.random.default_rng(20)
     for trial in range(24):
-        start = None if trial == 0 else _random_start(model, generator)
-        attractor = find_attractor(model, start, max_period=max(8, 2 * periods), patience=patience, **values)
+        start = None if trial == 0 else model.random_start(params, generator)
+        attractor = find_attractor(
+            model, start, max_period=max(8, 2 * periods), patience=model.patience, **values
+        )
         if attractor.kind not in ("periodic", "sliding") or not attractor.nodes.size:
             continue
         if attractor.word is None:
@@ -228,7 +237,7 @@ def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tu
         orbit = attractor.orbit
         if orbit.word.impact_free:  # its mean position is free: take the middle
             orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
-        if orbit.word.canonical() == target and orbit.periods == periods:
+        if orbit.word.canonical(mirrored) == target and orbit.periods == periods:
             polished = polish(_aligned(orbit, word))
             if polished is not None:
                 return polished, ""
@@ -242,20 +251,10 @@ def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tu
     return None, nearest
 
 
-def _random_start(model: Model, generator: np.random.Generator) -> dict[str, float]:
-    start = {
-        "phase": generator.uniform(0.0, 2.0 * np.pi),
-        "w": generator.uniform(-0.95, 0.95),
-        "w_rate": generator.uniform(-2.0, 2.0),
-    }
-    if model.node == 4:
-        start |= {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
-    return start
-
-
 def _aligned(orbit: Orbit, word: Word) -> Orbit:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
-    for candidate in (orbit, orbit.mirror()):
+    images = (orbit, orbit.mirror()) if orbit.model.has_mirror(orbit.params) else (orbit,)
+    for candidate in images:
         for place in range(len(word)):
             if candidate.word.rotate(place) == word:
                 return candidate.rotate(place)
@@ -263,20 +262,16 @@ def _aligned(orbit: Orbit, word: Word) -> Orbit:
 
 
 def _random(model: Model, word: Word, periods: int, params: np.ndarray) -> Orbit | None:
-    """Newton's method from random nodes (reduced machine): the first real orbit found, else the first proper one."""
-    if model.node != 2 or len(word) > LONG:
+    """Newton's method from random nodes, where the machine has any: the first real orbit found, else the first proper one."""
+    if len(word) > LONG:
         return None
     generator = np.random.default_rng(7)
-    amplitude, omega = float(params[0]), float(params[-1])
     fallback = None
     for _ in range(300):
-        phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
-        second = generator.uniform(-0.9, 0.9, len(word))
-        for i, letter in enumerate(word.events):
-            if letter in "LR":
-                sign = 1.0 if letter == "L" else -1.0
-                second[i] = sign * generator.uniform(0.0, 1.5) * (1.0 + amplitude) * omega
-        orbit = polish(Orbit(model, word, periods, np.column_stack([phases, second]), params), limit=25)
+        nodes = model.random_nodes(word, periods, params, generator)
+        if nodes is None:
+            return None
+        orbit = polish(Orbit(model, word, periods, nodes, params), limit=25)
         if orbit is None or not _proper(orbit) or orbit.root().periods != periods:
             continue
         if orbit.real:

@@ -9,6 +9,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from heapq import heappop, heappush
+from typing import Any
 
 import numpy as np
 
@@ -202,19 +204,48 @@ class Word:
         """The shortest word of which this one is a repetition."""
         return self.head(len(self.events) // self.repetitions)
 
-    def canonical(self) -> Word:
-        """The smallest of all rotations of the word and of its mirror image: one form for one cycle."""
+    def canonical(self, mirror: bool = True) -> Word:
+        """The smallest of all rotations of the word, and of its mirror image if that is a motion of the machine, too."""
         if not self.events:
             return self
-        rotations = [w.rotate(k) for w in (self, self.mirror()) for k in range(len(self.events))]
-        starts = [w for w in rotations if w.events[0] != "u"]
-        return min(starts, key=lambda w: (w.events, w.modes))
+        images = (self, self.mirror()) if mirror else (self,)
+        return min((w._smallest_rotation() for w in images), key=lambda w: (w.events, w.modes))
+
+    def _smallest_rotation(self) -> Word:
+        """The smallest rotation by its events, of those with equal events by its modes; no slip begins a word."""
+        place, root = least_rotation(self.events), len(self.events) // _power(self.events)
+        modes = self.modes[place:] + self.modes[:place]
+        blocks = [modes[i : i + root] for i in range(0, len(modes), root)]
+        return self.rotate(place + root * least_rotation(blocks))
 
     @property
     def mirror_symmetric_halves(self) -> bool:
         """Whether the second half is the mirror image of the first: the word a symmetric orbit can have."""
         n = len(self.events)
         return n > 0 and n % 2 == 0 and self.rotate(n // 2) == self.mirror()
+
+
+def least_rotation(items: Sequence[Any]) -> int:
+    """Where the smallest rotation of a cyclic sequence begins; the first such place. Two pointers, linear time."""
+    n, i, j, k = len(items), 0, 1, 0
+    while i < n and j < n and k < n:
+        a, b = items[(i + k) % n], items[(j + k) % n]
+        if a == b:
+            k += 1
+            continue
+        if a > b:
+            i += k + 1
+        else:
+            j += k + 1
+        j += i == j
+        k = 0
+    return min(i, j)
+
+
+def _power(items: Sequence[Any]) -> int:
+    """How often the shortest root is written in a sequence."""
+    n = len(items)
+    return next(n // r for r in range(1, n + 1) if n % r == 0 and items[r:] == items[: n - r])
 
 
 def _are_chained_maps(tokens: Sequence[str]) -> bool:
@@ -236,25 +267,17 @@ def _modes(
     for place, letter in enumerate(events):
         if letter == "u":
             after[place] = signs[place]
-    for _ in range(
-        2 * n
-    ):  # let the known modes spread forwards over turns and backwards over turns and slips
-        for place in range(n):
-            letter, before = events[place], (place - 1) % n
-            if letter == "t":
-                if after[place] is None and after[before] is not None:
-                    after[place] = -after[before]  # type: ignore[operator]
-                if after[before] is None and after[place] is not None:
-                    after[before] = -after[place]  # type: ignore[operator]
-            elif letter in IMPACTS and after[before] is None:
-                after[before] = 1 if letter == "L" else -1
-        if None not in after:
-            break
-        free = _first_free_slip(events, after)
-        if free is not None and not _spreads(events, after):
-            place, value = free
-            after[place] = value
-    if all(mode is None for mode in after):  # only turns: take the first flight to the right
+    for place in range(n):  # known modes go on over turns; before an impact the motion is towards its wall
+        letter, before = events[place], (place - 1) % n
+        if letter == "t":
+            if after[place] is None and after[before] is not None:
+                after[place] = -after[before]  # type: ignore[operator]
+            if after[before] is None and after[place] is not None:
+                after[before] = -after[place]  # type: ignore[operator]
+        elif letter in IMPACTS and after[before] is None:
+            after[before] = 1 if letter == "L" else -1
+    _settle(events, after)
+    if all(mode is None for mode in after):  # only turns: the first flight goes to the left
         after = [-1 if place % 2 else 1 for place in range(n)]
     modes = tuple(int(mode) for mode in after if mode is not None)
     if len(modes) != n:
@@ -263,26 +286,40 @@ def _modes(
     return modes
 
 
-def _spreads(events: Sequence[str], after: Sequence[int | None]) -> bool:
+def _settle(events: Sequence[str], after: list[int | None]) -> None:
+    """Let known modes go on over turns, and give slips that nothing fixes a direction, the first one first.
+
+    It is against the motion that the stick before it ended, where that is known. Each mode is set once: linear time.
+    """
     n = len(events)
+    ready: list[int] = []  # slips that nothing fixes yet, behind a stick that ended a known motion
+    known = [place for place in range(n) if after[place] is not None]
+
+    def spread() -> None:
+        while known:
+            place = known.pop()
+            mode, following, before = after[place], (place + 1) % n, (place - 1) % n
+            assert mode is not None
+            for neighbour, joined in ((following, events[following]), (before, events[place])):
+                if joined == "t" and after[neighbour] is None:
+                    after[neighbour] = -mode
+                    known.append(neighbour)
+            slip = (place + 2) % n
+            if mode and events[slip] == "u" and after[slip] is None:
+                heappush(ready, slip)
+
+    spread()
     for place in range(n):
-        before = (place - 1) % n
-        if events[place] == "t" and (after[place] is None) != (after[before] is None):
-            return True
-        if events[place] in IMPACTS and after[before] is None:
-            return True
-    return False
-
-
-def _first_free_slip(events: Sequence[str], after: Sequence[int | None]) -> tuple[int, int] | None:
-    """A slip nothing fixes yet, and the direction against the motion that the stick before it ended."""
-    n = len(events)
-    open_slips = [place for place in range(n) if events[place] == "u" and after[place] is None]
-    for place in open_slips:
-        arriving = after[(place - 2) % n]
-        if arriving:
-            return place, -arriving
-    return (open_slips[0], 1) if open_slips else None
+        while ready:
+            slip = heappop(ready)
+            if after[slip] is None:
+                after[slip] = -after[(slip - 2) % n]  # type: ignore[operator]
+                known.append(slip)
+                spread()
+        if events[place] == "u" and after[place] is None:
+            after[place] = 1
+            known.append(place)
+            spread()
 
 
 def _refuse_impossible(events: Sequence[str], modes: Sequence[int], shown: str) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 import contvines as cv
 from contvines.journal import MemoryJournal
+from orbits import Absorber
 
 
 def logistic(x, r):
@@ -215,3 +216,22 @@ def test_special_points_do_not_depend_on_tolerance_or_step(tolerance, angle):
     )
     found = [p.value for p in graph.of_kind("period-doubling")]
     assert found == pytest.approx([3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228], abs=1e-12)
+
+
+@pytest.mark.parametrize("word, periods, times", [("LRtt", 1, 2), ("LR", 1, 3), ("LRtt", 1, 4)])
+def test_a_repeated_start_gives_the_graph_of_its_root(word, periods, times):
+    """P_l^k written twice is P_l^k: the labels, the special points and the stable pieces are those of the word itself."""
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    root = machine.orbit(word, periods, amplitude=1.0)
+    options = {"over": "amplitude", "within": (0.9, 1.1), "depth": 1}
+    one, other = cv.diagram(root, **options), cv.diagram(root.repeat(times), **options)
+    assert [(b.description["word"], b.description["periods"]) for b in one.branches.values()] == [
+        (b.description["word"], b.description["periods"]) for b in other.branches.values()
+    ]
+    assert one["B1"].description["periods"] == periods
+    assert list(one.special) == list(other.special)
+    assert [p.value for p in one.special.values()] == pytest.approx(
+        [p.value for p in other.special.values()], abs=1e-11
+    )
+    for label, branch in one.branches.items():
+        assert np.allclose(branch.stable_intervals(), other[label].stable_intervals(), atol=1e-11)

@@ -1,9 +1,18 @@
 """Ctrl-C is not lost where Python can only ignore it: in a callback that compiled code calls."""
 
+import ctypes
 import signal
 import subprocess
 import sys
+import threading
 import time
+
+import pytest
+
+import contvines as cv
+from contvines.graph.persistence import same_graph
+from contvines.interrupts import HELD, OPEN, listening
+from orbits import Absorber
 
 PROGRAM = """
 import ctypes, signal, sys
@@ -41,3 +50,106 @@ def test_an_interrupt_inside_a_callback_is_given_again():
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "Traceback" not in said and said.startswith("contvines: stopped")
+
+
+# ------------------------------------------------------------------ in Python
+
+
+@ctypes.CFUNCTYPE(None)
+def ignoring():
+    signal.raise_signal(signal.SIGINT)
+
+
+def test_a_held_section_keeps_an_interrupt_back_until_its_end(capfd):
+    reached = []
+    with pytest.raises(KeyboardInterrupt), listening():
+        with HELD:
+            ignoring()  # raised in here it could only be ignored
+            reached.append("the end of the section")
+        reached.append("behind the section")
+    assert reached == ["the end of the section"]
+    assert capfd.readouterr().err == ""
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_an_interrupt_that_was_ignored_in_an_open_section_is_raised_at_its_end(monkeypatch):
+    ignored = []
+    monkeypatch.setattr(sys, "unraisablehook", ignored.append)
+    with pytest.raises(KeyboardInterrupt), listening():
+        with OPEN:
+            ignoring()
+        raise AssertionError("the section's result was used")
+    assert len(ignored) == 1
+
+
+def test_elsewhere_an_interrupt_is_raised_at_once_and_only_once():
+    with pytest.raises(KeyboardInterrupt), listening():
+        signal.raise_signal(signal.SIGINT)
+        raise AssertionError("not at once")
+    with listening(), HELD, OPEN:
+        pass  # nothing is left over
+
+
+def test_a_handler_of_the_users_own_is_left_alone():
+    seen = []
+    before = signal.signal(signal.SIGINT, lambda *_: seen.append("mine"))
+    try:
+        with listening(), HELD:
+            signal.raise_signal(signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen == ["mine"]
+
+
+@pytest.mark.parametrize("where", ["memory", "file"])
+def test_interrupted_at_many_moments_a_diagram_ends_as_the_undisturbed_one(tmp_path, where):
+    """Every interrupt ends the run; what was recorded until then is right; the last run has the same graph, bit for bit."""
+    orbit = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
+        amplitude=0.6
+    )
+    options = {"over": "amplitude", "within": (0.17, 1.27), "depth": 2}
+    whole = cv.diagram(orbit, **options)
+    journal = cv.MemoryJournal() if where == "memory" else cv.resume(tmp_path / "x.vines")
+    rounds = 0
+    for delay in (0.01, 0.03, 0.05, 0.07, 0.09, 0.11, 0.13, 0.15):
+        timer = threading.Timer(delay, signal.raise_signal, [signal.SIGINT])
+        timer.start()
+        try:
+            cv.diagram(orbit, journal=journal, **options)
+            timer.join()
+            time.sleep(0.01)  # too late for this run: it comes here
+        except KeyboardInterrupt:
+            rounds += 1
+        else:
+            break
+    assert rounds >= 3
+    assert same_graph(cv.diagram(orbit, journal=journal, **options), whole)
+
+
+def test_an_interrupt_inside_a_write_leaves_no_transaction_open(tmp_path):
+    with cv.resume(tmp_path / "x.vines") as store:
+        with pytest.raises(KeyboardInterrupt), store.transaction():
+            store.put("journal", "lost", {"x": 1})
+            raise KeyboardInterrupt
+        store._db.execute("BEGIN")  # as left by an interrupt between two instructions
+        store.record("kept", {"x": 2})
+        assert store.recall("lost") is None and store.recall("kept") == {"x": 2}
+
+
+def test_what_was_not_written_is_written_again(tmp_path):
+    """A checkpoint that is rolled back has kept nothing: the next one writes everything."""
+    graph = cv.diagram(cv.AlgebraicProblem(lambda u, p: u - p, [0.0]), within=(-1.0, 1.0))
+    with cv.resume(tmp_path / "x.vines") as store:
+        put = store.put
+
+        def once(kind, key, content):
+            put(kind, key, content)
+            if kind == "special":
+                raise KeyboardInterrupt
+
+        store.put = once
+        with pytest.raises(KeyboardInterrupt):
+            store.checkpoint(graph)
+        store.put = put
+        store.checkpoint(graph)
+    assert same_graph(cv.load(tmp_path / "x.vines", problems=False), graph)

@@ -123,14 +123,24 @@ def test_doubled_cycle_that_falls_back_is_recognised():
     assert len(graph.switches) == 1
 
 
-@pytest.mark.parametrize("repeat", [2, 8, 32])
-def test_repeated_fixed_point_keeps_its_doubling(repeat):
-    """x* = 1 - 1/r written many times: the multiplier passes +1 there, a branch point of the repeated problem."""
+@pytest.mark.parametrize("repeat", [2, 3, 8, 32])
+def test_a_repeated_start_is_followed_as_its_root(repeat):
+    """x* = 1 - 1/r written many times is the fixed point, whose multiplier 2 - r passes -1 at r = 3."""
     problem = cv.MapProblem(logistic, [0.6] * repeat, 2.5, cycle=repeat, parameter="r")
     graph = cv.diagram(problem, within=(2.2, 3.2), depth=0)
-    found = [p for p in graph.special.values() if p.kind in ("period-doubling", "branch-point")]
-    assert [p.value for p in found] == pytest.approx([3.0], abs=1e-12)
-    assert found[0].kind == ("period-doubling" if repeat == 2 else "branch-point")
+    assert graph["B1"].description["cycle"] == 1 and graph["B1"].points.shape[1] == 1
+    (doubling,) = graph.of_kind("period-doubling")
+    assert doubling.value == pytest.approx(3.0, abs=1e-12) and not graph.of_kind("branch-point")
+
+
+def test_a_two_cycle_run_through_three_times_is_followed_as_a_two_cycle():
+    """Of the logistic map: its multiplier 4 + 2 r - r^2 passes -1 at r = 1 + sqrt(6)."""
+    r = 3.3
+    cycle = (r + 1 + np.array([1.0, -1.0]) * np.sqrt((r + 1) * (r - 3))) / (2 * r)
+    problem = cv.MapProblem(logistic, np.tile(cycle, 3), r, cycle=6, parameter="r")
+    graph = cv.diagram(problem, within=(3.1, 3.5), depth=0)
+    assert graph["B1"].description["cycle"] == 2
+    assert [p.value for p in graph.of_kind("period-doubling")] == pytest.approx([1 + np.sqrt(6)], abs=1e-12)
 
 
 def test_canonical_form():

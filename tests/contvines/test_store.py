@@ -2,6 +2,8 @@
 
 import sqlite3
 import struct
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -227,3 +229,64 @@ def test_a_file_that_names_a_foreign_function_does_not_call_it(tmp_path):
     graph.branches["B1"].description = {"factory": "os:mkdir", "name": "x"}
     save(graph, tmp_path / "a.vines")
     assert load(tmp_path / "a.vines").branches["B1"].problem is None
+
+
+KILLED = """
+import os, signal, sys
+from contvines.store import Store
+store = Store.create(sys.argv[1], "old")
+for i in range(20):
+    store.record(str(i), {"x": i})
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def killed_and_removed(path):
+    """What is left when a run was killed and its file, but not the log beside it, was removed."""
+    subprocess.run([sys.executable, "-c", KILLED, str(path)], check=False)
+    log = path.with_name(path.name + "-wal")
+    assert log.stat().st_size > 0
+    path.unlink()
+    return log
+
+
+def test_the_log_of_a_file_that_is_gone_is_not_taken_for_that_of_a_new_one(tmp_path):
+    path = tmp_path / "x.vines"
+    killed_and_removed(path)
+    with Store.attach(path, "new") as store:
+        store.record("mine", {"x": 7})
+    with Store.open(path) as store:
+        assert store.fingerprint == "new" and [key for key, _ in store.entries("journal")] == ["mine"]
+    path.unlink()
+    killed_and_removed(path)
+    save(fakes.pitchfork_graph(), path)
+    assert same_graph(load(path, problems=False), fakes.pitchfork_graph())
+
+
+def test_the_log_of_who_was_first_is_put_back(tmp_path, monkeypatch):
+    path = tmp_path / "x.vines"
+    log = killed_and_removed(path)
+    kept = log.read_bytes()
+
+    def taken(*_):
+        raise FileExistsError
+
+    monkeypatch.setattr("os.link", taken)
+    with pytest.raises(StoreError, match="exists already"):
+        Store.create(path, "new")
+    assert log.read_bytes() == kept and not path.exists()
+
+
+def test_a_file_that_does_not_fit_the_log_beside_it_says_so(tmp_path):
+    """A finished file that is copied to where a killed run has left its log."""
+    path, copied = tmp_path / "x.vines", tmp_path / "whole.vines"
+    save(fakes.pitchfork_graph(), copied)
+    killed_and_removed(path)
+    path.write_bytes(copied.read_bytes())
+    try:
+        load(path)
+    except StoreError as error:
+        assert "x.vines-wal" in str(error)
+        for name in ("x.vines-wal", "x.vines-shm"):
+            (tmp_path / name).unlink(missing_ok=True)
+    assert same_graph(load(path, problems=False), fakes.pitchfork_graph())

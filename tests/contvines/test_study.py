@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from contvines.command.cli import sentence
 from contvines.command.study import StudyError, check_study, read_study
+from orbits.words import Word
 from tests.contvines.studies import PAPER_MACHINE
 
 GOOD = (
@@ -90,9 +92,11 @@ def test_coupled_studies_have_their_own_parameters():
 @pytest.mark.parametrize(
     ("changes", "parts"),
     [
-        ({"model__restitution": 0.0}, ["[model] restitution = 0.0", "(0, 1]", "0.76"]),
-        ({"model__restitution": 1.2}, ["[model] restitution = 1.2", "(0, 1]"]),
-        ({"model__restitution": -0.5}, ["[model] restitution = -0.5", "(0, 1]"]),
+        ({"model__restitution": 0.0}, ["[model] restitution = 0.0", "from 1e-6 to 1", "0.76"]),
+        ({"model__restitution": 1e-300}, ["[model] restitution = 1e-300", "from 1e-6 to 1"]),
+        ({"start__word": "LR" * 50_000}, ["[start] word has 100000 letters", "a word of events such as"]),
+        ({"model__restitution": 1.2}, ["[model] restitution = 1.2", "from 1e-6 to 1"]),
+        ({"model__restitution": -0.5}, ["[model] restitution = -0.5", "from 1e-6 to 1"]),
         ({"model__restitution": "high"}, ["[model] restitution = 'high'", "not a number"]),
         ({"model__restitution": True}, ["[model] restitution = True", "not a number"]),
         ({"model__restitution": None}, ["[model] restitution is missing", "0.76"]),
@@ -142,7 +146,7 @@ def test_coupled_studies_have_their_own_parameters():
         ({"continue__within": [-0.2, 1.3]}, ["[continue] within = [-0.2, 1.3]", "amplitude", "-0.2"]),
         (
             {"continue__parameter": "restitution", "continue__within": [0.5, 1.2]},
-            ["leaves the range of restitution at 1.2", "(0, 1]"],
+            ["leaves the range of restitution at 1.2", "from 1e-6 to 1"],
         ),
         ({"continue__depth": -1}, ["[continue] depth = -1", ">= 0"]),
         ({"continue__depth": 2.0}, ["[continue] depth = 2.0", "not a whole number"]),
@@ -198,3 +202,43 @@ def test_fingerprint_depends_on_what_decides_the_result_and_on_nothing_else(tmp_
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.name)
 def test_examples_are_good_studies(path):
     assert read_study(path).parameters
+
+
+MANGLED = {
+    "friction = 0,5": "friction = 0,5 (line 2): decimals are written with a point; 0.5 would do",
+    "friction = -1,5e3": "-1.5e3 would do",
+    "virtual = no": "virtual = no (line 2): false would do",
+    "virtual = True": "virtual = True (line 2): true would do",
+    "word = LR  # the first orbit": 'word = LR (line 2): text stands in quotes; "LR" would do',
+    "friction =": "friction =  (line 2): the value is missing",
+    "friction = = 3": "not valid TOML",
+    "x = " + "[" * 100_000: "nested too deeply",
+    ".".join(["a"] * 5_000) + " = 1": "nested too deeply",
+    "[" + ".".join(["a"] * 5_000) + "]": "nested too deeply",
+    "x = " + "{a = " * 5_000 + "1" + "}" * 5_000: "nested too deeply",
+    "\n".join(f"[[a{'.b' * (i % 50)}]]" for i in range(200)): "",
+    "x" * 3_000_000 + " = 1": "too long for a study",
+    "y = '" + "x" * 900_000 + "'": "y = ",
+    "z" * 900_000 + " = 1": "zzz...",
+    "\n".join(f"k{i} = {i}" for i in range(20_000)): "and 19",
+}
+
+
+@pytest.mark.parametrize("lines", MANGLED, ids=[str(i) for i in range(len(MANGLED))])
+def test_text_that_is_no_study_gets_a_short_sentence(tmp_path, lines):
+    path = tmp_path / "x.toml"
+    path.write_text("[continue]\n" + lines)
+    with pytest.raises(StudyError) as caught:
+        read_study(path)
+    assert MANGLED[lines] in str(caught.value) and len(str(caught.value)) < 6_000
+
+
+def test_words_of_many_thousand_events_are_read_in_linear_time():
+    """65536 letters: a quadratic step anywhere would take minutes and gigabytes."""
+    for text in ("LR", "t", "s", "LRs", "stt"):
+        word = Word.parse(text * (65_536 // len(text)))
+        assert word.canonical() == word.rotate(len(text)).canonical() and word.impacts < 65_537
+
+
+def test_a_sentence_is_cut_where_a_word_in_it_is_huge():
+    assert len(sentence(ValueError("no orbit " + "LR" * 20_000 + " here"))) < 300

@@ -6,6 +6,7 @@ import pytest
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractor
+from orbits.simulation.replay import replay
 from orbits.starts.find import polish
 
 PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
@@ -190,3 +191,97 @@ def test_unrelated_attractor_is_no_switch():
             pair.append(branch.orbit(int(np.argmin(np.abs(branch.values - value)))))
         assert abs(pair[0].measure("B_post") - pair[1].measure("B_post")) < 0.1, switch
     assert not [s for s in graph.switches if abs(graph.special[s.point].value - 1.0) < 1e-9]
+
+
+STIFF = Absorber(restitution=0.41, friction=0.68, gravity=0.44, mass_ratio=0.006)
+
+
+@pytest.fixture(scope="module")
+def stiff():
+    """A machine whose asymmetric orbits stick for half a radian when the next turn appears."""
+    return cv.diagram(STIFF.orbit("LR", amplitude=0.75), over="amplitude", within=(0.1, 1.8), depth=2)
+
+
+def test_a_stick_that_still_lasts_does_not_disappear(stiff):
+    """Between the two borders the simulator has `LtsR` and nothing else; the diagram goes through it from both sides."""
+    for amplitude in (1.2, 1.35, 1.5):
+        seen = find_attractor(STIFF, {"w_rate": 1.0}, amplitude=amplitude, transient=1000)
+        assert seen.word.canonical().text == "LRts"
+        branch = next(
+            b for b in stiff if b.problem is not None and b.stable.any() and _passes(b, seen, amplitude)
+        )
+        assert branch.range == pytest.approx((1.17727, 1.52545), abs=1e-4)
+    assert not [s for s in stiff.switches if "stick disappears" in s.note]
+
+
+def _passes(branch, seen, amplitude):
+    low, high = branch.range
+    if not low < amplitude < high or branch.problem.word.canonical() != seen.word.canonical():
+        return False
+    nearest = branch.orbit(int(np.argmin(np.abs(branch.values - amplitude))))
+    return abs(nearest.parameters["amplitude"] - amplitude) < 0.05
+
+
+def test_motions_on_both_sides_of_a_border_are_one(stiff):
+    """The distance, in w at equal phases, of the orbits that meet at a border tends to zero with their distance from it."""
+    checked = 0
+    for switch in stiff.switches:
+        point, target = stiff[switch.point], stiff[switch.target]
+        if point.kind not in ("velocity-graze", "stick") or not len(target.problem.word):
+            continue
+        end = (
+            0
+            if abs(target.values[0] - point.value) < abs(target.values[-1] - point.value)
+            else len(target) - 1
+        )
+        inner = target.orbit(1 if end == 0 else len(target) - 2)
+        for orbit, allowed in ((target.orbit(end), 1e-8), (inner, 0.2)):
+            grid = np.linspace(0.0, 2.0 * np.pi, 500)
+            paths = [
+                np.interp(
+                    (grid - path["phase"][0]) % (2 * np.pi), path["phase"] - path["phase"][0], path["w"]
+                )
+                for path in (o.sample(20000) for o in (point.orbit, orbit, orbit.mirror()))
+            ]
+            assert min(np.abs(paths[0] - other).max() for other in paths[1:]) < allowed + 1e-6, switch
+        checked += 1
+    assert checked >= 5
+
+
+@pytest.mark.parametrize("label", ["VG1", "VG2"])
+def test_multipliers_where_a_stick_begins_are_one_sided_limits(stiff, label):
+    """A stick of no duration: the return map of the simulation next to the border, by differences, has the same."""
+    point = stiff[label]
+    for switch in switches(stiff, point):
+        target = stiff[switch.target]
+        end = 0 if abs(target.values[0] - point.value) < 1e-9 else len(target) - 1
+        side = np.sign(target.values[len(target) // 2] - point.value)
+        lasts, seen = [], []
+        for ahead in (5e-5, 1.25e-5):
+            near = polish(
+                target.problem.orbit(target.points[3 if end == 0 else end - 3], point.value + side * ahead)
+            )
+            place = near.word.events.index("s")
+            lasts.append(near.nodes[place + 1, 0] - near.nodes[place, 0])
+            seen.append(np.abs(replay(near, thorough=True).multipliers).max())
+        line = np.polynomial.Polynomial.fit(lasts, seen, 1)
+        assert np.abs(target.multipliers[end]).max() == pytest.approx(line(0.0), abs=0.01)
+
+
+def test_no_doubled_orbit_where_the_other_round_cannot_be():
+    """`RLRsL` solves the maps at the border, but its first round would reverse: it is nowhere real."""
+    machine = Absorber(
+        restitution=0.7681303100552106,
+        friction=0.8449920033953432,
+        gravity=0.3468595434873274,
+        mass_ratio=0.006,
+        frequency=0.9686114331813895,
+    )
+    graph = cv.diagram(
+        machine.orbit("RL", amplitude=0.8232), over="amplitude", within=(0.576242, 1.15248), depth=2
+    )
+    assert all(np.ptp(branch.values) > 1e-3 for branch in graph)
+    graze = at(graph, 1.0055957, "velocity-graze")
+    assert len(switches(graph, graze)) == 1
+    for amplitude in (graze.value - 1e-4, graze.value + 1e-4):
+        assert find_attractor(machine, {"w_rate": 1.0}, amplitude=amplitude, transient=2000).periods == 1

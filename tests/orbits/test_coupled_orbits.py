@@ -7,8 +7,8 @@ from scipy.integrate import quad
 from orbits import Coupled
 from orbits.attractors import find_attractor
 from orbits.machines.absorber.closed_forms import symmetric_square
-from orbits.machines.base import ParameterError
 from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response, symmetric_nodes
+from orbits.machines.parameters import ParameterError
 from orbits.multiple_scales import SlowFlow, equilibria
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)

@@ -205,3 +205,45 @@ def test_bad_input_has_sentences():
         PAPER.orbit("LR", amplitude=0.5, guess=[[1.0, 2.0]])
     with pytest.raises(StartError, match="simulator finds"):
         PAPER.orbit("LRLtLt", amplitude=0.3)
+
+
+SLIDING = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
+    """`tt` leaves open whether it slides to the left first; the turning points are at +-sqrt(C^2 - h^2)."""
+    amplitude = np.sqrt(0.3)
+    turning = np.sqrt(0.3 - (0.5 * np.pi * 1.006 * 0.5 * 0.211) ** 2)
+    phase = 4.403 if way > 0.0 else 4.403 + np.pi
+    guess = [[phase, -0.5 * way], [phase + np.pi, 0.5 * way]]
+    orbit = SLIDING.orbit("tt", amplitude=amplitude, guess=guess)
+    assert orbit.real
+    assert orbit.nodes[:, 1] == pytest.approx([-way * turning, way * turning], abs=1e-12)
+
+
+def test_a_guess_against_stated_directions_is_refused():
+    orbit = SLIDING.orbit("s+s-", amplitude=0.115)
+    with pytest.raises(StartError, match="the other way"):
+        SLIDING.orbit("s-s+", amplitude=0.115, guess=orbit.nodes)
+
+
+def test_a_stick_slip_motion_is_pinned_in_the_middle_from_whichever_event_it_is_read():
+    orbit = SLIDING.orbit("ss", amplitude=0.115)
+    for place in range(4):
+        turned = orbit.rotate(place)
+        moved = turned.nodes + [0.0, 0.05]
+        found = SLIDING.orbit("ss", amplitude=0.115, guess=moved)
+        assert found.word == turned.word
+        assert found.nodes[:, 1] == pytest.approx(turned.nodes[:, 1], abs=1e-12)
+        assert sum(found.nodes[:, 1]) == pytest.approx(0.0, abs=1e-13)
+
+
+@pytest.mark.parametrize("written", ["LRLt", "LtLR", "RLtL", "tLRL", "LRtR", "RtRL"])
+def test_any_spelling_goes_with_any_reading_of_the_guess(written):
+    orbit = SLIDING.orbit("LRLt", amplitude=1.2)
+    for place in range(4):
+        for guess in (orbit.rotate(place), orbit.rotate(place).mirror()):
+            found = SLIDING.orbit(written, amplitude=1.2, guess=guess.nodes + 1e-3)
+            assert found.word == guess.word
+            assert found.events.w == pytest.approx(guess.events.w, abs=1e-10)

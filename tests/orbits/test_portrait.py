@@ -45,4 +45,4 @@ def test_the_stuck_motion_has_a_picture():
     figure = drawn(Absorber(**MACHINE).orbit("", 1, amplitude=0.05))
     assert figure.get_suptitle().startswith("stuck, the absorber rides with the cavity, stable\n")
     low, high = figure.axes[0].get_xlim()
-    assert low < -1 < 1 < high
+    assert low > 1 > -1 > high  # the left wall, w = +1, stands on the left

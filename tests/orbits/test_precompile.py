@@ -7,11 +7,11 @@ import pytest
 
 from orbits import precompile
 from orbits.cycles import kernels as kernel_module
-from orbits.machines.catalogue import build
+from orbits.machines.catalogue import usual
 
 
 def kernels():
-    return kernel_module.assemble(build({"name": "absorber"} | precompile.SMALL["absorber"]))
+    return kernel_module.assemble(usual("absorber")[0])
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from orbits import Absorber, Coupled
-from orbits.machines.base import ParameterError
+from orbits.machines.parameters import ParameterError
 from orbits.models.scales import Scales
 
 RIG = {

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from orbits.machines.base import ParameterError
+from orbits.machines.parameters import ParameterError
 
 
 def restitution_ratio(restitution: ArrayLike) -> np.ndarray:
@@ -87,7 +87,7 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     ParameterError
         If the amplitude is below the fold.
     """
-    C, r, mu, g, eps, omega = (float(value) for value in params)
+    C, r, mu, g, eps, omega = (float(value) for value in params[:6])
     R = float(restitution_ratio(r))
     H = float(friction_number(mu, g, eps, omega))
     curvature = 0.25 * np.pi**2 + R**2
@@ -121,7 +121,7 @@ def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     ParameterError
         If the shaking is too weak to slide.
     """
-    C, _, mu, g, eps, omega = (float(value) for value in params)
+    C, _, mu, g, eps, omega = (float(value) for value in params[:6])
     H = float(friction_number(mu, g, eps, omega))
     if C <= H:
         raise ParameterError(f"amplitude = {C:g} is too small for pure sliding: it needs more than {H:.10g}")
@@ -146,7 +146,7 @@ def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     ParameterError
         If the absorber never slips, or slides without sticking.
     """
-    C, _, mu, g, eps, omega = (float(value) for value in params)
+    C, _, mu, g, eps, omega = (float(value) for value in params[:6])
     a = (1.0 + eps) * mu * g
     if C * omega**2 <= a:
         raise ParameterError(

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from orbits.machines.base import NOT_NEGATIVE, POSITIVE, RESTITUTION, Model
+from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
+from orbits.machines.absorber.rest import ShakenRest
+from orbits.machines.base import Model
+from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, Parameter, ParameterError
+from orbits.machines.rest import Rest
 
 if TYPE_CHECKING:
     from orbits.orbit import Orbit
+    from orbits.words import Word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,33 +52,71 @@ class Absorber(Model):
     frequency: float = 1.0
 
     name: ClassVar[str] = "absorber"
-    node: ClassVar[int] = 2
+    node_names: ClassVar[tuple[str, ...]] = ("phase", "B or w")
     default_parameter: ClassVar[str] = "amplitude"
-    parameter_names: ClassVar[tuple[str, ...]] = (
-        "amplitude",
-        "restitution",
-        "friction",
-        "gravity",
-        "mass_ratio",
-        "frequency",
+    driven_by: ClassVar[str] = "amplitude"
+    rest: ClassVar[Rest] = ShakenRest()
+    table: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),
+        Parameter("restitution", "Newton's coefficient of the walls", RESTITUTION, "r", "", 0.76),
+        Parameter("friction", "Coulomb coefficient", NOT_NEGATIVE, r"\mu", "", 0.5),
+        Parameter("gravity", "g / (b omega_0^2)", NOT_NEGATIVE, r"\tilde g", "b omega_0^2", 0.211),
+        Parameter(
+            "mass_ratio", "absorber's mass over the oscillator's", NOT_NEGATIVE, r"\varepsilon", "", 0.006
+        ),
+        Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0),
     )
-    limits: ClassVar[Mapping] = {
-        "amplitude": NOT_NEGATIVE,
-        "restitution": RESTITUTION,
-        "friction": NOT_NEGATIVE,
-        "gravity": NOT_NEGATIVE,
-        "mass_ratio": NOT_NEGATIVE,
-        "frequency": POSITIVE,
-    }
-
-    def __post_init__(self) -> None:
-        self._check_fields()
 
     @property
     def kernels(self) -> ModuleType:
         from orbits.machines.absorber import maps
 
         return maps
+
+    @classmethod
+    def stepper(cls) -> ModuleType:
+        from orbits.machines.absorber import stepper
+
+        return stepper
+
+    @classmethod
+    def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        amplitude, omega = cls.column(params, "amplitude")[:, None], cls.column(params, "frequency")[:, None]
+        phase = nodes[:, :, 0]
+        return amplitude * np.sin(phase), amplitude * omega * np.cos(phase)
+
+    def measure_own(
+        self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
+    ) -> dict[str, np.ndarray]:
+        return {name: self.column(params, "amplitude") ** 2 for name in wanted}
+
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        if periods != 1:
+            return
+        events = "".join(word.events)
+        try:
+            if events in ("LR", "RL"):
+                for stable in (True, False):
+                    nodes = symmetric_nodes(params, stable)
+                    yield nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0]])
+            elif events == "tt":
+                yield sliding_nodes(params, word.modes[0])
+            elif events == "susu" and word.modes[1] == -word.modes[3]:
+                yield stick_slip_nodes(params, word.modes[1])
+        except ParameterError:
+            return
+
+    def random_nodes(
+        self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
+    ) -> np.ndarray | None:
+        amplitude, omega = float(self.column(params, "amplitude")), float(self.column(params, "frequency"))
+        phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
+        second = generator.uniform(-0.9, 0.9, len(word))
+        for i, letter in enumerate(word.events):
+            if letter in "LR":
+                sign = 1.0 if letter == "L" else -1.0
+                second[i] = sign * generator.uniform(0.0, 1.5) * (1.0 + amplitude) * omega
+        return np.column_stack([phases, second])
 
     def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Orbit:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
@@ -90,24 +133,9 @@ class Absorber(Model):
         ParameterError
             If there is no symmetric orbit at this amplitude.
         """
-        from orbits.machines.absorber.closed_forms import symmetric_nodes
         from orbits.orbit import Orbit
         from orbits.words import Word
 
         params = self.vector({"amplitude": amplitude})
         nodes = symmetric_nodes(params, stable)
-        return Orbit(
-            self, Word.parse("LR", frictionless=self.friction_acceleration(params) == 0.0), 1, nodes, params
-        )
-
-    def orbit(
-        self,
-        word: str,
-        periods: int = 1,
-        guess: Sequence[Sequence[float]] | np.ndarray | None = None,
-        **parameters: float,
-    ) -> Orbit:
-        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
-        from orbits.starts.find import find
-
-        return find(self, word, periods, guess, parameters)
+        return Orbit(self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params)

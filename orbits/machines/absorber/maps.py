@@ -1,198 +1,34 @@
-"""Elementary maps of the reduced absorber between consecutive events, with exact derivatives (compiled).
+"""Elementary maps of the reduced absorber: those of a level cavity with equal walls (compiled).
 
-A node is (Psi, B+) at an impact and (Psi, w) at a turn, stick or slip. In mode s = -1 or +1, with d = (Psi - Psi_0)/Omega
-and beta = v' - w' at the start (B+ after an impact, C Omega cos Psi_0 from rest),
-
-    w' = C Omega cos Psi - beta - s a d,
-    w  = w_0 + C (sin Psi - sin Psi_0) - beta d - s a d^2 / 2,      a = (1 + eps) mu g,
-
-which are the paper's G+_LR and G+_RL for alternating impacts, and all other pairs of events beside them.
-Parameters in order: amplitude C, restitution r, friction mu, gravity g, mass_ratio eps, frequency Omega.
+See `orbits.machines.cavity.equations`; here a = (1 + eps) mu g. Parameters in order: amplitude C, restitution r, friction mu,
+gravity g, mass_ratio eps, frequency Omega.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from orbits.compiling.decorators import kernel
-from orbits.compiling.trigonometry import sines_cosines
-from orbits.machines.absorber import margins as _margins
-from orbits.machines.absorber.margins import margins as margins
+from orbits.machines import pinning as _pinning
+from orbits.machines.absorber import law as _law
+from orbits.machines.absorber.law import law, rate
+from orbits.machines.cavity import equations as _equations
+from orbits.machines.cavity import margins as _margins
+from orbits.machines.cavity.equations import cycle
+from orbits.machines.cavity.equations import unpin as unpin
+from orbits.machines.cavity.margins import watch
 from orbits.machines.path import place
 
-SOURCES = (_margins.__file__,)
+SOURCES = (_law.__file__, _equations.__file__, _pinning.__file__, _margins.__file__)
 
 
 @kernel
 def linearise(data, u, p, work):
-    """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
-
-    Parameters
-    ----------
-    data : tuple
-        ``(events, modes, params, path, twist, shift, pinned, ...)``.
-    u : float array (2 L,)
-        Nodes, node-major.
-    p : float
-        Value of the parameter that varies; what it moves: `orbits.machines.path`.
-    work : tuple
-        From `orbits.elimination.block_cyclic.workspace`; F, A, D, Q are filled.
-
-    Returns
-    -------
-    float
-        Largest residual, infinity where the maps cannot be evaluated.
-    """
-    events, modes, twist, shift, pinned = data[0], data[1], data[4], data[5], data[6]
-    F, A, D, Q, par = work[0], work[1], work[2], work[3], work[4]
-    sines, cosines = work[22], work[23]
-    length = F.shape[0]
+    """Residuals and derivatives at the cycle `u`; see `orbits.machines.cavity.equations.cycle`."""
+    par = work[4]
     place(data[2], data[3], p, par)
-    C, r, mu, g, eps, omega = par[0], par[1], par[2], par[3], par[4], par[5]
-    slope = par[data[2].shape[0] :]
-    d_C, d_r, d_Omega = slope[0], slope[1], slope[5]
-    a = (1.0 + eps) * mu * g
-    da = (1.0 + eps) * (mu * slope[3] + g * slope[2]) + mu * g * slope[4]
-    by_omega = 1.0 / omega
-    speed = C * omega
-    d_speed = d_C * omega + C * d_Omega
-    largest = 0.0
-    sines_cosines(u, 2, length, sines, cosines)
-    sines[length] = twist * sines[0]
-    cosines[length] = twist * cosines[0]
-    for i in range(length):
-        event = events[i]
-        if i + 1 < length:
-            arrival = events[i + 1]
-            psi1 = u[2 * i + 2]
-            y1 = u[2 * i + 3]
-        else:
-            arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
-            psi1 = u[0] + shift
-            y1 = twist * u[1]
-        psi0 = u[2 * i]
-        y0 = u[2 * i + 1]
-        s0, c0 = sines[i], cosines[i]
-        s1, c1 = sines[i + 1], cosines[i + 1]
-        mode = modes[i]
-        if mode == 0:  # stuck: the absorber waits for the slip
-            after = modes[i + 1] if i + 1 < length else twist * modes[0]
-            F[i, 0] = speed * omega * s1 + after * a
-            F[i, 1] = y0 - y1
-            A[i, 0, 0] = 0.0
-            A[i, 0, 1] = 0.0
-            A[i, 1, 0] = 0.0
-            A[i, 1, 1] = 1.0
-            D[i, 0, 0] = speed * omega * c1
-            D[i, 0, 1] = 0.0
-            D[i, 1, 0] = 0.0
-            D[i, 1, 1] = -1.0
-            Q[i, 0] = after * da + (d_speed * omega + speed * d_Omega) * s1
-            Q[i, 1] = 0.0
-        else:
-            sa = mode * a
-            d = (psi1 - psi0) * by_omega
-            if event < 2:
-                w0 = 1.0 - 2.0 * event
-                beta = y0
-                beta_psi = 0.0
-                beta_y = 1.0
-                w0_y = 0.0
-                beta_p = 0.0
-            else:
-                w0 = y0
-                beta = speed * c0
-                beta_psi = -speed * s0
-                beta_y = 0.0
-                w0_y = 1.0
-                beta_p = d_speed * c0
-            pull = beta + sa * d
-            V = speed * c1 - pull
-            W = w0 + C * (s1 - s0) - (beta + 0.5 * sa * d) * d
-            V_psi0 = sa * by_omega - beta_psi
-            V_y0 = -beta_y
-            V_psi1 = -speed * s1 - sa * by_omega
-            W_psi0 = pull * by_omega - C * c0 - beta_psi * d
-            W_y0 = w0_y - beta_y * d
-            W_psi1 = V * by_omega
-            d_p = -d * by_omega * d_Omega
-            V_p = d_speed * c1 - beta_p - mode * da * d - sa * d_p
-            W_p = d_C * (s1 - s0) - (beta_p + 0.5 * mode * da * d) * d - pull * d_p
-            if arrival < 2:
-                F[i, 0] = y1 - speed * c1 - r * V
-                F[i, 1] = W - (1.0 - 2.0 * arrival)
-                A[i, 0, 0] = -r * V_psi0
-                A[i, 0, 1] = -r * V_y0
-                A[i, 1, 0] = W_psi0
-                A[i, 1, 1] = W_y0
-                D[i, 0, 0] = speed * s1 - r * V_psi1
-                D[i, 0, 1] = 1.0
-                D[i, 1, 0] = W_psi1
-                D[i, 1, 1] = 0.0
-                Q[i, 0] = -r * V_p - d_speed * c1 - d_r * V
-                Q[i, 1] = W_p
-            else:
-                if event >= 2:
-                    # from rest to rest: V/d, whose solutions leave out the flight of no duration
-                    half = 0.5 * (psi1 - psi0)
-                    middle = 0.5 * (psi1 + psi0)
-                    sine, cosine = np.sin(middle), np.cos(middle)
-                    if abs(half) > 1e-3:
-                        ratio = np.sin(half) / half
-                        turn = (np.cos(half) - ratio) / half
-                    else:
-                        ratio = 1.0 - half * half / 6.0
-                        turn = half * (half * half / 30.0 - 1.0 / 3.0)
-                    peak = speed * omega
-                    V = -peak * sine * ratio - sa
-                    V_psi0 = -0.5 * peak * (cosine * ratio - sine * turn)
-                    V_psi1 = -0.5 * peak * (cosine * ratio + sine * turn)
-                    V_y0 = 0.0
-                    V_p = -(d_speed * omega + speed * d_Omega) * sine * ratio - mode * da
-                F[i, 0] = V
-                F[i, 1] = W - y1
-                A[i, 0, 0] = V_psi0
-                A[i, 0, 1] = V_y0
-                A[i, 1, 0] = W_psi0
-                A[i, 1, 1] = W_y0
-                D[i, 0, 0] = V_psi1
-                D[i, 0, 1] = 0.0
-                D[i, 1, 0] = W_psi1
-                D[i, 1, 1] = -1.0
-                Q[i, 0] = V_p
-                Q[i, 1] = W_p
-        size = max(abs(F[i, 0]), abs(F[i, 1]))
-        if not size <= largest:
-            largest = size
-    if pinned == 1:
-        _pin(F, A, D, Q, u, twist, work[10])
-    if not np.isfinite(largest):
-        return np.inf
-    return largest
+    return cycle(data, u, work, law(par), rate(par, par[data[2].shape[0] :]))
 
 
 @kernel
-def _pin(F, A, D, Q, u, twist, pin):
-    """Replace the last displacement equation by w_{L-1} + w_L = 0; what was there goes to `pin`."""
-    last = F.shape[0] - 1
-    for c in range(2):
-        pin[c] = A[last, 1, c]
-        pin[2 + c] = D[last, 1, c]
-    pin[4] = F[last, 1]
-    A[last, 1, 0] = 0.0
-    A[last, 1, 1] = 1.0
-    D[last, 1, 0] = 0.0
-    D[last, 1, 1] = 1.0
-    F[last, 1] = u[2 * last + 1] + twist * u[1]
-    Q[last, 1] = 0.0
-
-
-@kernel
-def unpin(data, work):
-    """Put the displacement equation back, for the multipliers."""
-    if data[6] == 1:
-        A, D, pin = work[1], work[2], work[10]
-        last = A.shape[0] - 1
-        for c in range(2):
-            A[last, 1, c] = pin[c]
-            D[last, 1, c] = pin[2 + c]
+def margins(data, u, p, work, out):
+    """Margins of admissibility; see `orbits.machines.cavity.margins.watch`."""
+    watch(data, u, work, law(work[4]), out)

@@ -1,332 +1,45 @@
-"""Event-driven stepper of the reduced absorber, w'' = -C Omega^2 sin Psi - s a (compiled).
+"""Event-driven stepper of the reduced absorber: `orbits.machines.cavity.simulation` with this machine's numbers (compiled).
 
-Everything is written in the phase x = Omega d that has passed since the start of a leg and in the direction of
-the motion s, with theta = Psi (s = -1) or Psi - pi (s = +1), p = s w'/Omega, A = a/Omega^2:
-
-    y''(x) = q(x) = C sin(theta_0 + x) - A,  y'(x) = p(x),  y(x) = s (w - w_0).
-
-q is positive for theta in (alpha, pi - alpha), alpha = arcsin(A/C), and negative on the rest of the circle, so a
-leg that ends at the next theta = alpha is one rising and one falling piece of p. On the rising piece y is
-convex and Newton's iteration for the hit y = D, started from its right end, comes down to the root without
-crossing it; on the falling piece y is concave and Newton's iteration from the left climbs to the root without
-crossing it, or runs past the point where p = 0: then there is no hit before the turn. No hit and no turn can be missed.
-
-Differences such as x - sin x are evaluated without cancellation, and positions are kept with the digits
-below their roundoff, so that flights, turns and impacts keep their relative accuracy however small they are.
 The signatures are those of :mod:`orbits.machines.stepping`.
 """
 
 from __future__ import annotations
 
-import math
-
 from numba import njit
 
-from orbits.compiling.digits import remainders, shift, wrap
-from orbits.machines.absorber.motion import energies, sample, works
-
-__all__ = ["ROW", "STATE", "advance", "energies", "launch", "sample", "works"]
+from orbits.machines.absorber.law import law
+from orbits.machines.cavity.motion import energies_with, sample_with, works_with
+from orbits.machines.cavity.simulation import advance_with, launch_with
 
 STATE = 6
 ROW = 5
 
-_L, _R, _T, _S, _U, _HOLD = 0, 1, 2, 3, 4, 5
-_EVENTS_FULL, _TIME_REACHED, _REST, _FAILED = 0, 1, 2, 3
-_TWO_PI = 2.0 * math.pi
-_TINY = 1e-30
-
-
-@njit(cache=True, error_model="numpy")
-def _fall(lo, hi, p0, q0, C, A, k0, m0):
-    """The zero of p on (lo, hi], where p falls from p(lo) >= 0 to p(hi) <= 0: Newton kept inside the bracket."""
-    x = hi
-    for _ in range(200):
-        sine, versine, third, _fourth = remainders(x)
-        p = p0 + q0 * x + C * (k0 * versine - m0 * third)
-        q = q0 + C * (k0 * sine - m0 * versine)
-        if p > 0.0:
-            lo = x
-        elif p < 0.0:
-            hi = x
-        else:
-            return x
-        new = x - p / q if q < 0.0 else hi
-        change = abs(new - x)
-        if q < 0.0 and (
-            change <= 2.3e-16 * x or (change <= 1e-8 * x and C * change * change <= -1e-16 * q * x)
-        ):
-            return min(max(new, lo), hi)  # what is left is of second order
-        if not (lo < new < hi):
-            new = 0.5 * (lo + hi)
-            if hi - lo <= 2.3e-16 * hi:
-                return new
-        x = new
-    return x
-
 
 @njit(cache=True, error_model="numpy")
 def launch(state, params):
-    """Reduce the phase and set the mode of a start (Psi, w, w', turns, low)."""
-    psi, turns = wrap(state[0])
-    state[0] = psi
-    state[4] += turns
-    omega = params[5]
-    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
-    push = -params[0] * math.sin(psi)
-    w = state[1]
-    if state[2] != 0.0:
-        state[3] = 1.0 if state[2] > 0.0 else -1.0
-    elif abs(push) <= A or (abs(w) == 1.0 and push * w > 0.0):
-        state[3] = 0.0
-    else:
-        state[3] = 1.0 if push > 0.0 else -1.0
+    """Set the mode of a start; contract, item 2."""
+    launch_with(law(params), state)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def advance(state, params, until, codes, modes, rows):
-    """Run from event to event; see :mod:`orbits.machines.stepping`, item 3."""
-    C = params[0]
-    r = params[1]
-    omega = params[5]
-    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
-    psi = state[0]
-    w = state[1]
-    p = abs(state[2]) / omega
-    s = state[3]
-    turns = state[4]
-    low = state[5]
-    if not (
-        math.isfinite(psi) and math.isfinite(w) and math.isfinite(p) and math.isfinite(C) and math.isfinite(A)
-    ):
-        return 0, _FAILED
-    room = codes.shape[0]
-    driven = C - A > 1e-12 * C
-    ratio = A / C if driven else 1.0
-    alpha = math.asin(ratio)
-    beta = math.sqrt((1.0 - ratio) * (1.0 + ratio))
-    at_root = False  # the leg starts exactly where q = 0, q rising
-    if driven and s != 0.0 and p == 0.0 and -s * math.cos(psi) > 0.0:
-        at_root = abs(-s * C * math.sin(psi) - A) < 1e-13 * C  # a slip
-    count = 0
-    status = _EVENTS_FULL
-    while True:
-        if count == room:
-            break
-        left = (until - turns) * _TWO_PI - psi
-        if not left > 0.0:
-            status = _TIME_REACHED
-            break
-        # ---- at rest on the floor, or against a wall -------------------------------------------------------
-        if s == 0.0:
-            wait = math.inf
-            if driven:
-                for way in (-1.0, 1.0):
-                    if way * w >= 1.0:
-                        continue
-                    theta = psi if way < 0.0 else (psi - math.pi if psi >= math.pi else psi + math.pi)
-                    if alpha <= theta < math.pi - alpha - 1e-12:
-                        delay = 0.0
-                    else:
-                        delay, _ = wrap(alpha - theta)
-                    if delay < wait:
-                        wait = delay
-                        s = way
-                        at_root = delay > 0.0
-            if wait >= left:
-                psi, more = wrap(psi + left)
-                turns += more
-                s = 0.0
-                at_root = False
-                status = _TIME_REACHED if driven else _REST
-                break
-            psi, more = wrap(psi + wait)
-            turns += more
-            p = 0.0
-            codes[count] = _U
-            modes[count] = int(s)
-            rows[count, 0] = psi
-            rows[count, 1] = turns
-            rows[count, 2] = w
-            rows[count, 3] = 0.0
-            rows[count, 4] = 0.0
-            count += 1
-            continue
-        # ---- one leg of sliding ----------------------------------------------------------------------------
-        if at_root:
-            m0, k0, theta, q0 = ratio, beta, alpha, 0.0
-            at_root = False
-        else:
-            m0 = -s * math.sin(psi)
-            k0 = -s * math.cos(psi)
-            theta = psi if s < 0.0 else (psi - math.pi if psi >= math.pi else psi + math.pi)
-            q0 = C * m0 - A
-        if p < 1e-6 * C and s * w == -1.0 and -m0 * C > A and not (alpha <= theta < math.pi - alpha):
-            # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
-            push = -m0 * C
-            factor = r * math.sqrt((push - A) / (push + A))
-            rest = p * (1.0 / (push + A) + 1.0 / math.sqrt((push - A) * (push + A)))
-            if factor < 1.0:
-                rest /= 1.0 - factor
-            if (rest * rest * C < 1e-16 * (push - A) and factor < 1.0) or p < 1e-13 * C:
-                if p < 1e-13 * C:
-                    rest = min(rest, 1e-13)
-                psi, more = wrap(psi + rest)
-                turns += more
-                codes[count] = _HOLD
-                modes[count] = 0
-                rows[count, 0] = psi
-                rows[count, 1] = turns
-                rows[count, 2] = w
-                rows[count, 3] = 0.0
-                rows[count, 4] = 0.0
-                count += 1
-                p = 0.0
-                s = 0.0
-                continue
-        target = (1.0 - s * w) - s * low
-        kind = 0  # 0 leg ends, 1 hit, 2 turn
-        if driven:
-            top = math.pi - alpha - theta if alpha <= theta < math.pi - alpha else 0.0
-            end = alpha - theta if theta < alpha else _TWO_PI + alpha - theta
-        else:
-            top = 0.0
-            end = (p + 2.0 * C) / A if A > 0.0 else math.inf
-            if A == 0.0 and C == 0.0:
-                if p == 0.0:
-                    psi, more = wrap(psi + left)
-                    turns += more
-                    status = _REST
-                    break
-                end = 2.0 * target / p + 1.0
-        whole = end
-        cut = end > left
-        if cut:
-            end = left
-        x = 0.0
-        y = 0.0
-        rate = p
-        if top > 0.0:
-            x = min(top, end)
-            _sine, versine, third, fourth = remainders(x)
-            rate = p + q0 * x + C * (k0 * versine - m0 * third)
-            y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
-            if target <= 0.0:
-                kind = 1
-                x = 0.0
-                rate = p
-            elif y >= target:
-                kind = 1
-                for _ in range(100):  # convex: from the right
-                    step = (y - target) / rate if rate > 0.0 else x
-                    if step >= x:
-                        step = 0.5 * x
-                    if not step > 2.3e-16 * x:
-                        break
-                    x -= step
-                    sine, versine, third, fourth = remainders(x)
-                    rate = p + q0 * x + C * (k0 * versine - m0 * third)
-                    y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
-                    step = (y - target) / rate
-                    pull = q0 + C * (k0 * sine - m0 * versine)
-                    if (
-                        step <= 1e-5 * x
-                        and abs(pull) * step <= 1e-5 * rate
-                        and C * step * step <= 1e-9 * rate
-                    ):
-                        step *= 1.0 + 0.5 * step * pull / rate  # the last step from values at hand
-                        x -= step
-                        rate -= step * (pull - 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
-                        break
-        if kind == 0 and x < end:
-            before = x
-            for _ in range(200):  # concave: from the left
-                if rate <= 0.0:
-                    kind = 2
-                    break
-                step = (target - y) / rate
-                if not step > 2.3e-16 * x:
-                    if target - y <= 0.0 or step > 0.0:
-                        kind = 1
-                    break
-                if x == end:
-                    break
-                before = x
-                x += step
-                if x > end:
-                    x = end
-                sine, versine, third, fourth = remainders(x)
-                rate = p + q0 * x + C * (k0 * versine - m0 * third)
-                y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
-                step = (target - y) / rate
-                pull = q0 + C * (k0 * sine - m0 * versine)
-                small = abs(pull) * step <= 1e-5 * rate and C * step * step <= 1e-9 * rate
-                if small and 0.0 < step <= 1e-5 * x and x + step < end:
-                    step *= 1.0 - 0.5 * step * pull / rate  # the last step from values at hand
-                    x += step
-                    rate += step * (pull + 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
-                    kind = 1
-                    break
-            else:
-                kind = 1
-            if kind == 2:
-                if before < x:
-                    x = _fall(before, x, p, q0, C, A, k0, m0)
-                    _sine, versine, third, fourth = remainders(x)
-                    y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
-                else:
-                    y = 0.0
-        # ---- what ended the leg ----------------------------------------------------------------------------
-        if kind == 0 and not cut:
-            at_root = driven  # theta = alpha: go on with fresh digits
-            if driven:
-                x = whole
-        psi, more = wrap(psi + x)
-        turns += more
-        if kind == 1:
-            if not rate > _TINY:
-                rate = _TINY
-            w = s
-            low = 0.0
-            p = r * rate
-            codes[count] = _L if s > 0.0 else _R
-            rows[count, 3] = s * omega * rate
-            s = -s
-            modes[count] = int(s)
-            rows[count, 4] = s * omega * p
-        else:
-            w, low = shift(w, low, s * y)
-            if abs(w) > 1.0 or (abs(w) == 1.0 and w * low > 0.0):
-                w = math.copysign(1.0, w)
-                low = 0.0
-            if kind == 0:
-                p = rate if rate > 0.0 else 0.0
-                if cut:
-                    status = _TIME_REACHED
-                    break
-                continue
-            p = 0.0
-            if A == 0.0:  # nothing happens where w' passes zero
-                s = -s
-                continue
-            if driven and C * (s * math.sin(psi)) > A:
-                codes[count] = _T
-                s = -s
-            else:
-                codes[count] = _S
-                s = 0.0
-            modes[count] = int(s)
-            rows[count, 3] = 0.0
-            rows[count, 4] = 0.0
-        rows[count, 0] = psi
-        rows[count, 1] = turns
-        rows[count, 2] = w
-        count += 1
-    if not (math.isfinite(psi) and math.isfinite(w) and math.isfinite(p)):
-        status = _FAILED
-    state[0] = psi
-    state[1] = w
-    state[2] = s * omega * p
-    state[3] = s
-    state[4] = turns
-    state[5] = low
-    return count, status
+    """Run from event to event; contract, item 3."""
+    return advance_with(law(params), state, until, codes, modes, rows)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def sample(states, params, ahead, out):
+    """w, w', v, v' at given phases after given states; contract, item 4."""
+    sample_with(law(params), states, ahead, out)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def works(states, params, ahead, out):
+    """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5."""
+    works_with(law(params), states, ahead, out)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energies(states, params, out):
+    """Energy that these works change; contract, item 5."""
+    energies_with(law(params), states, out)

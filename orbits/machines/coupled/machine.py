@@ -10,16 +10,24 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from orbits.machines.base import NOT_NEGATIVE, POSITIVE, RESTITUTION, Model, ParameterError
+from orbits.machines.base import Model
 from orbits.machines.coupled import closed_forms
+from orbits.machines.coupled.rest import DrivenRest
+from orbits.machines.parameters import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    RESTITUTION,
+    Limits,
+    Parameter,
+    ParameterError,
+)
+from orbits.machines.rest import Rest
 
 if TYPE_CHECKING:
     from orbits.machines.coupled.closed_forms import StuckResponse
     from orbits.orbit import Orbit
     from orbits.theory.multiple_scales import Equilibrium
     from orbits.words import Word
-
-EXCITATIONS: dict[str, float] = {"exact": 1.0, "truncated": 0.0}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,29 +80,29 @@ class Coupled(Model):
     excitation: str | float = "exact"
 
     name: ClassVar[str] = "coupled"
-    node: ClassVar[int] = 4
+    node_names: ClassVar[tuple[str, ...]] = ("phase", "B or w", "v", "v_rate")
     default_measure: ClassVar[str] = "max_abs_q1"
     default_parameter: ClassVar[str] = "frequency"
-    parameter_names: ClassVar[tuple[str, ...]] = (
-        "forcing",
-        "frequency",
-        "damping",
-        "mass_ratio",
-        "restitution",
-        "friction",
-        "gravity",
-        "excitation",
+    driven_by: ClassVar[str] = "forcing"
+    swept_measure: ClassVar[str] = "max_abs_q1"  # what a frequency response shows
+    patience: ClassVar[int] = 2  # a light absorber's oscillator settles over thousands of periods
+    rest: ClassVar[Rest] = DrivenRest()
+    table: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("forcing", "amplitude of the base over eps b", NOT_NEGATIVE, "G", "", 3.3),
+        Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0),
+        Parameter("damping", "c / (m omega_0)", NOT_NEGATIVE, r"\lambda", "", 0.9),
+        Parameter("mass_ratio", "absorber's mass over the oscillator's", POSITIVE, r"\varepsilon", "", 0.006),
+        Parameter("restitution", "Newton's coefficient of the walls", RESTITUTION, "r", "", 0.76),
+        Parameter("friction", "Coulomb coefficient", NOT_NEGATIVE, r"\mu", "", 0.5),
+        Parameter("gravity", "g / (b omega_0^2)", NOT_NEGATIVE, r"\tilde g", "b omega_0^2", 0.211),
+        Parameter(
+            "excitation",
+            "the damper's share of the base's motion",
+            Limits(0.0, 1.0),
+            r"\chi",
+            words={"exact": 1.0, "truncated": 0.0},
+        ),
     )
-    limits: ClassVar[Mapping] = {
-        "forcing": NOT_NEGATIVE,
-        "frequency": POSITIVE,
-        "damping": NOT_NEGATIVE,
-        "mass_ratio": POSITIVE,
-        "restitution": RESTITUTION,
-        "friction": NOT_NEGATIVE,
-        "gravity": NOT_NEGATIVE,
-        "excitation": ("from 0 (truncated) to 1 (exact)", lambda value: 0.0 <= value <= 1.0),
-    }
     own_measures: ClassVar[tuple[str, ...]] = (
         "max_abs_q1",
         "amplitude",
@@ -103,15 +111,7 @@ class Coupled(Model):
         "damping_loss",
     )
 
-    def __post_init__(self) -> None:
-        for name in self.parameter_names:
-            value = getattr(self, name)
-            if name == "excitation":
-                number = self.coded(name, value)
-                words = [word for word, code in EXCITATIONS.items() if code == number]
-                object.__setattr__(self, name, words[0] if words else number)
-            elif name != "forcing" or value is not None:
-                object.__setattr__(self, name, self.check(name, value))
+    def _check_together(self) -> None:
         _underdamped(self.damping, self.mass_ratio)
 
     @property
@@ -120,17 +120,21 @@ class Coupled(Model):
 
         return maps
 
-    def coded(self, name: str, value: Any) -> float:
-        """The number that stands for a parameter's value; the words of `excitation` have one too."""
-        if name == "excitation" and isinstance(value, str):
-            if value not in EXCITATIONS:
-                raise ParameterError(
-                    f'excitation = {value!r} is unknown; give "exact", "truncated" or a number from 0 to 1'
-                )
-            return EXCITATIONS[value]
-        return self.check(name, value)
+    @classmethod
+    def stepper(cls) -> ModuleType:
+        from orbits.machines.coupled import stepper
 
-    def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
+        return stepper
+
+    @classmethod
+    def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return nodes[:, :, 2], nodes[:, :, 3]
+
+    def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
+        start = super().random_start(params, generator)
+        return start | {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
+
+    def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
         """The parameter vector, shape (8,); see `Model.vector`.
 
         Raises
@@ -151,18 +155,6 @@ class Coupled(Model):
         return params
 
     # ------------------------------------------------------------------ orbits
-    def orbit(
-        self,
-        word: str,
-        periods: int = 1,
-        guess: Sequence[Sequence[float]] | np.ndarray | None = None,
-        **parameters: float,
-    ) -> Orbit:
-        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
-        from orbits.starts.find import find
-
-        return find(self, word, periods, guess, parameters)
-
     def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Orbit:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
@@ -225,7 +217,7 @@ class Coupled(Model):
         from orbits.orbit import Orbit
         from orbits.words import Word
 
-        reading = Word.parse(word, frictionless=self.friction_acceleration(params) == 0.0)
+        reading = Word.parse(word, frictionless=self.frictionless(params))
         if reading.modes[0] != (-1 if word == "LR" else 1):
             nodes = np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
         return Orbit(self, reading, 1, nodes, params)

@@ -18,7 +18,7 @@ restitution r, friction mu, gravity g, excitation (1 exact, 0 without the term e
 **The pin.** Without impacts the absorber may be shifted as a whole, q2 -> q2 - delta with q1 untouched. In node variables
 that is w -> w + delta and v -> v - eps delta at every node, the direction (0, 1, -eps, 0). A closed orbit of such a word is not
 isolated, and one equation is redundant (the absorber's total displacement). `linearise` therefore replaces row 1 of the
-last block, the closure of w, by w_{L-1} + w_L = 0, the mean position; `unpin` puts it back for the multipliers, one of
+block of the last flight by w_i + w_{i+1} = 0, the mean position; `unpin` puts it back for the multipliers, one of
 which is then exactly +1. A mirrored half word (twist = -1) needs no pin: its closure w_L = -w_0 already centres the
 motion, and its trivial multiplier is -1.
 """
@@ -30,13 +30,15 @@ import math
 import numpy as np
 
 from orbits.compiling.decorators import kernel
+from orbits.machines import pinning as _pinning
 from orbits.machines.coupled import flow as _flow
 from orbits.machines.coupled import margins as _margins
 from orbits.machines.coupled.flow import harmonic, rates, transition
 from orbits.machines.coupled.margins import margins as margins
 from orbits.machines.path import place
+from orbits.machines.pinning import last_flight
 
-SOURCES = (_flow.__file__, _margins.__file__)
+SOURCES = (_flow.__file__, _margins.__file__, _pinning.__file__)
 """Files whose compiled functions are part of these kernels: what is kept on disk depends on them too."""
 
 
@@ -306,16 +308,19 @@ def linearise(data, u, p, work):
         if not size <= largest:
             largest = size
     if pinned and twist > 0.0:
-        _pin(F, A, D, Q, u, work[10])
+        largest = max(largest, _pin(F, A, D, Q, u, data[1], work[10]))
     if not np.isfinite(largest):
         return np.inf
     return largest
 
 
 @kernel
-def _pin(F, A, D, Q, u, pin):
-    """Replace the last displacement equation by w_{L-1} + w_L = 0; what was there goes to `pin`."""
-    last = F.shape[0] - 1
+def _pin(F, A, D, Q, u, modes, pin):
+    """Replace the displacement equation of the last flight by w_i + w_{i+1} = 0; what was there goes to `pin`.
+
+    Returns what the mean position is off by.
+    """
+    last = last_flight(modes)
     for c in range(4):
         pin[c] = A[last, 1, c]
         pin[4 + c] = D[last, 1, c]
@@ -324,8 +329,9 @@ def _pin(F, A, D, Q, u, pin):
     pin[8] = F[last, 1]
     A[last, 1, 1] = 1.0
     D[last, 1, 1] = 1.0
-    F[last, 1] = u[4 * last + 1] + u[1]
+    F[last, 1] = u[4 * last + 1] + (u[4 * last + 5] if last + 1 < F.shape[0] else u[1])
     Q[last, 1] = 0.0
+    return abs(F[last, 1])
 
 
 @kernel
@@ -333,7 +339,7 @@ def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
     if data[6] and data[4] > 0.0:
         A, D, pin = work[1], work[2], work[10]
-        last = A.shape[0] - 1
+        last = last_flight(data[1])
         for c in range(4):
             A[last, 1, c] = pin[c]
             D[last, 1, c] = pin[4 + c]

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from orbits import Absorber, Coupled
 from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
-from orbits.machines.absorber.machine import Absorber
 from orbits.simulation import simulate
+from orbits.starts.find import polish
 
 EPS, MU, G, R = 0.006, 0.5, 0.211, 0.76
 A = (1 + EPS) * MU * G
@@ -123,3 +124,42 @@ def test_results_do_not_depend_on_the_number_of_workers():
     first = find_attractors(MACHINE, starts, amplitude=0.7)
     again = [find_attractor(MACHINE, start, amplitude=0.7) for start in starts]
     assert all(np.array_equal(a.nodes, b.nodes) for a, b in zip(first, again))
+
+
+def test_rows_of_a_stuck_absorber_wait_for_the_oscillator():
+    """Lightly damped, it rings for a thousand periods; its linear response is known."""
+    eps, forcing, damping = 0.006, 1.0, 0.9
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=eps, damping=damping, forcing=forcing
+    )
+    for row in sweep(machine, "frequency", [0.9, 0.93, 0.95], transient=50):
+        drag = eps * damping * row.value
+        response = eps * forcing * abs(1.0 + 1j * drag) / abs(1.0 - (1.0 + eps) * row.value**2 + 1j * drag)
+        assert row.attractor == "stuck"
+        assert row.measures["max_abs_q1"] == pytest.approx(response, rel=1e-9)
+
+
+def test_rows_of_a_periodic_motion_are_those_of_its_orbit():
+    """Measured on the solved orbit: largest |q1| and approach speed as Newton's method on the maps has them."""
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.9, forcing=3.3
+    )
+    rows = sweep(machine, "frequency", [0.977, 0.983], start={"v": 1.0, "w_rate": 0.5}, transient=100)
+    assert [row.attractor for row in rows] == ["periodic", "periodic"]
+    for row in rows:
+        orbit = polish(row.detail.orbit)
+        fine = orbit.sample(20000)
+        assert row.measures["max_abs_q1"] == pytest.approx(np.abs(fine["cavity"]).max(), rel=1e-8)
+        hits = [letter in "LR" for letter in orbit.word.events]
+        assert row.measures["impact_speed"] == pytest.approx(
+            np.abs(orbit.events.rate_pre[hits]).max(), rel=1e-9
+        )
+
+
+def test_a_slow_transient_beside_a_symmetry_breaking_is_no_chaos():
+    """C just above the symmetry breaking of `LR`, where its closed form has it; reached from below, on the symmetric orbit."""
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    breaking = np.sqrt(0.5282903)
+    rows = sweep(machine, "amplitude", [breaking - 1e-3, breaking + 6e-5])
+    assert [row.attractor for row in rows] == ["periodic", "periodic"]
+    assert [row.detail.symmetric for row in rows] == [True, False]

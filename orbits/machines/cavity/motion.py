@@ -1,6 +1,6 @@
-"""The reduced absorber between events: samples, works and energies in closed form (compiled).
+"""Motion in a shaken cavity between events: samples, works and energies in closed form (compiled).
 
-Notation and source of the formulas: :mod:`orbits.machines.absorber.stepper`; signatures:
+Notation and source of the formulas: :mod:`orbits.machines.cavity.simulation`; signatures:
 :mod:`orbits.machines.stepping`, items 4 and 5.
 """
 
@@ -13,12 +13,12 @@ from numba import njit
 from orbits.compiling.digits import remainders
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def sample(states, params, ahead, out):
+@njit(error_model="numpy", forceinline=True)
+def sample_with(law, states, ahead, out):
     """w, w', v, v' at given phases after given states; contract, item 4."""
-    C = params[0]
-    omega = params[5]
-    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
+    C = law.amplitude
+    omega = law.omega
+    square = omega * omega
     for i in range(states.shape[0]):
         psi = states[i, 0]
         x = ahead[i]
@@ -31,6 +31,7 @@ def sample(states, params, ahead, out):
             m0 = -s * math.sin(psi)
             k0 = -s * math.cos(psi)
             _sine, versine, third, fourth = remainders(x)
+            A = (law.pull_left if s > 0.0 else -law.pull_right) / square
             q0 = C * m0 - A
             out[i, 0] = states[i, 1] + s * (p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth))
             out[i, 1] = s * omega * (p + q0 * x + C * (k0 * versine - m0 * third))
@@ -38,15 +39,15 @@ def sample(states, params, ahead, out):
         out[i, 3] = C * omega * math.cos(psi + x)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def works(states, params, ahead, out):
+@njit(error_model="numpy", forceinline=True)
+def works_with(law, states, ahead, out):
     """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5.
 
-    In the frame of the cavity, per mass of the absorber: the integral of -v'' w', and a times the way slid.
+    In the frame of the cavity, per mass of the absorber: the integral of -v'' w', and the friction's acceleration times the way slid.
     """
-    C = params[0]
-    omega = params[5]
-    A = (1.0 + params[4]) * params[2] * params[3] / (omega * omega)
+    C = law.amplitude
+    omega = law.omega
+    square = omega * omega
     for i in range(states.shape[0]):
         out[i, 0] = 0.0
         out[i, 1] = 0.0
@@ -62,6 +63,7 @@ def works(states, params, ahead, out):
         m1 = -s * math.sin(psi + x)
         k1 = -s * math.cos(psi + x)
         _sine, _versine, third, fourth = remainders(x)
+        A = (law.pull_left if s > 0.0 else -law.pull_right) / square
         way = p * x + 0.5 * (C * m0 - A) * x * x + C * (k0 * third - m0 * fourth)
         out[i, 0] = (
             C
@@ -69,11 +71,12 @@ def works(states, params, ahead, out):
             * omega
             * ((p + C * k0) * (k0 - k1) - 0.5 * C * (m1 * m1 - m0 * m0) - A * (m1 - m0 - x * k1))
         )
-        out[i, 2] = A * omega * omega * abs(way)
+        friction = law.pull_left - law.slope if s > 0.0 else law.slope - law.pull_right
+        out[i, 2] = friction / square * omega * omega * abs(way)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def energies(states, params, out):
-    """Kinetic energy of the relative motion per mass of the absorber, w'^2/2; contract, item 5."""
+@njit(error_model="numpy", forceinline=True)
+def energies_with(law, states, out):
+    """Energy of the relative motion per mass of the absorber, w'^2/2 + b w; contract, item 5."""
     for i in range(states.shape[0]):
-        out[i] = 0.5 * states[i, 2] * states[i, 2]
+        out[i] = 0.5 * states[i, 2] * states[i, 2] + law.slope * states[i, 1]

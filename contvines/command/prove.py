@@ -1,0 +1,143 @@
+"""`contvines prove`: theorems about orbits, special points and branches, with certificates."""
+
+import json as json_
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from contvines.command.options import TrustOption
+
+
+def prove(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE.vines|STUDY.toml", help="A result, or a study to prove its first orbit."
+        ),
+    ],
+    labels: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[LABEL]...",
+            help="With FILE.vines: special points (PD1), orbits (B1:12), branches (B1); by default all special points.",
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object, balls as decimal middle and radius.")
+    ] = False,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Verify the certificates that are kept, by an independent checker."),
+    ] = False,
+    bits: Annotated[
+        int | None,
+        typer.Option("--bits", min=64, max=4096, help="Precision to begin with; raised where that helps."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE.json", help="Also write the certificates to a file."),
+    ] = None,
+    trust: TrustOption = False,
+) -> None:
+    """Prove that orbits exist, are real or virtual, stable or unstable.
+
+    Everything is computed in ball arithmetic, so each answer is a theorem
+    about the machine with exactly these decimals as parameters, or says which
+    step failed and what would help. Certificates are kept in FILE.vines;
+    --check verifies them (or those of a certificate file) with nothing but
+    the certificate and another arithmetic.
+    """
+    names = list(dict.fromkeys(labels or []))
+    if check:
+        _check(file, names, json)
+        return
+    proofs = _of_study(file, names, bits) if file.suffix == ".toml" else _of_file(file, names, bits, trust)
+    if json:
+        about = {label: {"label": label, **proof.to_dict()} for label, proof in proofs.items()}
+        alone = len(names) == 1 or file.suffix == ".toml"
+        typer.echo(json_.dumps(next(iter(about.values())) if alone else about, indent=1))
+    else:
+        for label, proof in proofs.items():
+            typer.echo(f"{label}: {proof}")
+    if output is not None:
+        made = {label: proof.certificate() for label, proof in proofs.items() if proof.existence}
+        output.write_text(json_.dumps(made, indent=1) + "\n", encoding="utf-8")
+
+
+def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]:
+    from contvines.command.compose import checked_study, first_orbit
+
+    if labels:
+        raise ValueError(
+            f"{labels[0]}: a study has no labels yet; leave the label out, or give a .vines file."
+        )
+    return {"start": first_orbit(checked_study(file)).prove(bits=bits)}
+
+
+def _of_file(file: Path, labels: list[str], bits: int | None, trust: bool) -> dict[str, Any]:
+    from contvines.graph.proving import prove as prove_labels
+    from contvines.store import Store, load
+
+    graph = load(file, trust=trust)
+    if not (labels or graph.special):
+        raise ValueError(f"{file} has no special points to prove; give branches or orbits, B1 or B1:12.")
+    proofs = prove_labels(graph, labels, bits=bits)
+    with Store.open(file, write=True) as store:
+        with store.transaction():
+            for label in proofs:
+                store.put("proof", label, graph.proofs[label])
+        store.tidy()
+    return proofs
+
+
+def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
+    """The certificates kept in a file, by label."""
+    from contvines.command.study import is_database
+
+    if is_database(file):
+        from contvines.store import load
+
+        kept = load(file, problems=False).proofs
+        found = {label: proof["certificate"] for label, proof in kept.items()}
+    else:
+        try:
+            found = json_.loads(file.read_text(encoding="utf-8"))
+        except (json_.JSONDecodeError, UnicodeDecodeError):
+            raise ValueError(f"{file}: this is neither a .vines file nor a file of certificates.") from None
+        if isinstance(found, dict) and "format" in found:
+            found = {"certificate": found}
+        if not isinstance(found, dict):
+            raise ValueError(f"{file}: this is no file of certificates.")
+    for label in labels:
+        if label not in found:
+            raise ValueError(
+                f"{label}: {file} holds no proof of it; contvines prove {file} {label} makes one."
+            )
+    found = {label: found[label] for label in labels or found}
+    if not found:
+        raise ValueError(f"{file} holds no certificates; contvines prove {file} makes them.")
+    return found
+
+
+def _check(file: Path, labels: list[str], json: bool) -> None:
+    from orbits.proofs.checker import Refused
+    from orbits.proofs.checker import check as verify
+
+    verdicts: dict[str, dict[str, Any]] = {}
+    for label, certificate in _certificates(file, labels).items():
+        if certificate is None:
+            verdicts[label] = {"verified": None, "why": "nothing was proved"}
+            continue
+        try:
+            verify(certificate)
+            verdicts[label] = {"verified": True, "claims": certificate["claims"]}
+        except Refused as refusal:
+            verdicts[label] = {"verified": False, "why": str(refusal)}
+    if json:
+        typer.echo(json_.dumps(verdicts, indent=1))
+    else:
+        for label, verdict in verdicts.items():
+            typer.echo(f"{label}: {'verified' if verdict['verified'] else 'NOT verified: ' + verdict['why']}")
+    if any(verdict["verified"] is False for verdict in verdicts.values()):
+        raise typer.Exit(1)

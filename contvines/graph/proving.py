@@ -1,0 +1,78 @@
+"""Proofs of what a graph holds, by its labels: the problems prove, the graph keeps claims and certificates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .graph import Graph
+
+
+def subject(graph: Graph, label: str) -> Any:
+    """What a label names: a special point, a branch, or with a colon one solution of a branch (``B1:12``).
+
+    Raises
+    ------
+    KeyError, ValueError
+        If there is none, or it cannot be proved.
+    """
+    name, _, place = label.partition(":")
+    thing = graph[name]
+    if not place:
+        return thing
+    last = len(thing) - 1 if name in graph.branches else -1
+    if not (place.isdigit() and int(place) <= last):
+        raise ValueError(
+            f"{label}: {name} is a single point; leave out :{place}"
+            if last < 0
+            else f"{label}: the points of {name} are numbered from 0 to {last}; {name}:{last // 2} would do"
+        )
+    return thing.orbit(int(place))
+
+
+def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str, Any]:
+    """Prove special points, solutions (``B1:12``) or whole branches; without labels every special point.
+
+    Returns
+    -------
+    dict
+        The proofs by label; claims and certificates are kept in ``graph.proofs`` as well.
+
+    Raises
+    ------
+    ValueError, KeyError
+        If a label is unknown, or its problem has no proofs.
+    """
+    wanted = list(labels) or list(graph.special)
+    subjects = {label: subject(graph, label) for label in wanted}
+    for label, thing in subjects.items():
+        if not hasattr(thing, "prove"):
+            raise ValueError(
+                f"{label}: its problem offers no proofs; machines of orbits with flights in closed form do"
+            )
+    found = {}
+    for label, thing in subjects.items():
+        found[label] = proof = thing.prove(**options)
+        graph.proofs[label] = kept(proof)
+    return found
+
+
+def kept(proof: Any) -> dict[str, Any]:
+    """What is kept of a proof: its claims, and the certificate where there is one."""
+    return {
+        "existence": bool(proof.existence),
+        "real": proof.real,
+        "stable": proof.stable,
+        "radius": proof.radius,
+        "obstacles": [str(obstacle) for obstacle in proof.obstacles],
+        "certificate": proof.certificate() if proof.existence else None,
+    }
+
+
+def mark(graph: Graph, label: str) -> str:
+    """How tables and pictures mark a label: "proved", "proved virtual" or nothing."""
+    proof = graph.proofs.get(label)
+    if not proof or not proof["existence"] or proof["real"] is None:
+        return ""
+    return "proved" if proof["real"] else "proved virtual"

@@ -1,0 +1,101 @@
+"""Ctrl-C while work goes on: it is not lost, falsifies nothing and cuts no write in two.
+
+Python raises KeyboardInterrupt wherever it happens to be. In a callback that compiled code calls it can only be ignored,
+and what the callback was to compute is then wrong; in a write it leaves a transaction open. So there are sections: from
+one that is held the interrupt is raised at the end (but at once while compiled code is being made, which takes seconds);
+from another one at once, and again at the end if it was ignored inside.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType, TracebackType
+
+PACKAGE = __name__.partition(".")[0] + "."
+
+
+class _State:
+    wanted = False  # an interrupt has come that nobody has taken
+    held = 0  # held sections that are open
+
+
+_state = _State()
+
+
+@contextmanager
+def listening() -> Iterator[None]:
+    """Raise interrupts in good order inside; a handler of the user's own is left alone."""
+    mine = (
+        threading.current_thread() is threading.main_thread()
+        and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    )
+    if not mine:
+        yield
+        return
+    signal.signal(signal.SIGINT, _interrupted)
+    try:
+        yield
+    except BaseException:
+        take()
+        raise
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        _state.held = 0
+    if _state.wanted:
+        take()
+        raise KeyboardInterrupt
+
+
+def take() -> None:
+    """The interrupt has been noticed: it is not raised once more."""
+    _state.wanted = False
+
+
+class Section:
+    """Work at whose end an interrupt is raised that was kept back, or ignored, inside; its result is then not used.
+
+    Parameters
+    ----------
+    held : bool
+        Keep interrupts back.
+    """
+
+    __slots__ = ("held",)
+
+    def __init__(self, held: bool) -> None:
+        self.held = held
+
+    def __enter__(self) -> None:
+        _state.held += self.held
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.held and _state.held:
+            _state.held -= 1
+        if _state.wanted and kind is None and not _state.held:
+            take()
+            raise KeyboardInterrupt
+
+
+HELD, OPEN = Section(True), Section(False)
+
+
+def _interrupted(number: int, frame: FrameType | None) -> None:
+    _state.wanted = True
+    if not _state.held or _being_compiled(frame):
+        raise KeyboardInterrupt
+
+
+def _being_compiled(frame: FrameType | None) -> bool:
+    """Whether what this package has called is the compiler (and not a callback of what it has compiled)."""
+    called = ""
+    while frame is not None:
+        name = str(frame.f_globals.get("__name__", ""))
+        if name.startswith(PACKAGE):
+            return called.startswith("numba.")
+        called, frame = name, frame.f_back
+    return False

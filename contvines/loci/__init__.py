@@ -1,0 +1,1 @@
+"""Loci: special points followed in a second parameter, points of codimension two, charts."""

@@ -1,0 +1,203 @@
+"""A problem's compiled kernels, called by address with the addresses of their data and workspace.
+
+A locus calls the kernels at many places. Each is one compiled function by itself, and what it works on stays where it is: the
+tuples of arrays are stored once. The code of a locus is then the same for all problems and compiled once.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import njit, typeof, types  # pyright: ignore[reportPrivateImportUsage]
+from numba.core import cgutils
+from numba.core.registry import cpu_target
+from numba.extending import intrinsic
+
+from ..continuation.binding import OPTIONS, copy_with
+
+WHOLE, NUMBER, VECTOR = types.int64, types.float64, types.Array(types.float64, 1, "C")
+
+kernel: Any = None  # these are put in by `copy_with`
+by_address: Any = None
+data_at: Any = None
+work_at: Any = None
+
+
+# ------------------------------------------------------------------ tuples that stay where they are
+
+
+def _loader(kind: Any) -> Any:
+    """An intrinsic address -> the tuple of this type that is stored there."""
+
+    @intrinsic
+    def load(typingctx: Any, address: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            pointer = builder.inttoptr(values[0], context.get_value_type(kind).as_pointer())
+            return builder.load(pointer)
+
+        return kind(WHOLE), generate
+
+    return load
+
+
+@intrinsic
+def _store(typingctx: Any, address: Any, content: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        pointer = builder.inttoptr(values[0], context.get_value_type(content).as_pointer())
+        builder.store(values[1], pointer)
+        return context.get_dummy_value()
+
+    return types.none(WHOLE, content), generate
+
+
+_write: Any = _store
+
+
+@njit(**OPTIONS)
+def _put(address, content):
+    _write(address, content)
+
+
+class Stored:
+    """A tuple of arrays and numbers, stored for compiled code.
+
+    Attributes
+    ----------
+    address : int
+    """
+
+    def __init__(self, content: Any) -> None:
+        context: Any = cpu_target.target_context
+        size = context.get_abi_sizeof(context.get_value_type(typeof(content)))
+        self.content = content  # the arrays live as long as this
+        self.room = np.zeros(size // 8 + 1)
+        self.address = int(self.room.ctypes.data)
+        _put(self.address, content)
+
+
+# ------------------------------------------------------------------ the callers
+
+
+def _calls(result: Any) -> Any:
+    """An intrinsic (address, *arguments) -> result that calls compiled code by numba's own convention."""
+
+    @intrinsic
+    def call(typingctx: Any, address: Any, *arguments: Any) -> Any:
+        given = arguments[0].types if len(arguments) == 1 and hasattr(arguments[0], "types") else arguments
+
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            parts = [builder.extract_value(values[1], i) for i in range(len(given))]
+            kind = context.call_conv.get_function_type(result, given)
+            pointer = builder.inttoptr(values[0], kind.as_pointer())
+            status, found = context.call_conv.call_function(builder, pointer, result, given, parts)
+            with cgutils.if_unlikely(builder, status.is_error):
+                context.call_conv.return_status_propagate(builder, status)
+            return found
+
+        return result(types.int64, types.StarArgTuple(given)), generate
+
+    return call
+
+
+def linearise(calls, data, u, p, work):
+    """See the protocol."""
+    return by_address(calls[0], data, u, p, work)
+
+
+def bordered(calls, data, work, border, n, step, tangent):
+    """See the protocol."""
+    return by_address(calls[1], data, work, border, n, step, tangent)
+
+
+def inspect(calls, data, u, p, work, row):
+    """See the protocol."""
+    by_address(calls[2], data, u, p, work, row)
+
+
+def assign(calls, data, other, value):
+    """See the protocol."""
+    by_address(calls[3], data, other, value)
+
+
+def flip(calls, data, work, sign):
+    """See the protocol."""
+    by_address(calls[4], data, work, sign)
+
+
+def transpose(calls, data, work, column, other):
+    """See the protocol."""
+    by_address(calls[5], data, work, column, other)
+
+
+@cache
+def callers() -> dict[str, Any]:
+    """The six kernels by name; the first argument is the array of addresses that `addresses` returns."""
+    number, nothing = _calls(NUMBER), _calls(types.none)
+    compile_ = njit(**OPTIONS)
+    kinds = {linearise: number, bordered: number, inspect: nothing, assign: nothing}
+    kinds |= {flip: nothing, transpose: nothing}
+    return {f.__name__: compile_(copy_with(f, by_address=kind)) for f, kind in kinds.items()}
+
+
+# ------------------------------------------------------------------ what is called
+
+
+def _linearise(data, u, p, work):
+    return kernel(data_at(data), u, p, work_at(work))
+
+
+def _bordered(data, work, border, n, step, tangent):
+    return kernel(data_at(data), work_at(work), border, n, step, tangent)
+
+
+def _inspect(data, u, p, work, row):
+    kernel(data_at(data), u, p, work_at(work), row)
+
+
+def _assign(data, other, value):
+    kernel(data_at(data), data_at(other), value)
+
+
+def _flip(data, work, sign):
+    kernel(data_at(data), work_at(work), sign)
+
+
+def _transpose(data, work, column, other):
+    kernel(data_at(data), work_at(work), column, work_at(other))
+
+
+def addresses(kernels: dict[str, Any], data: Any, work: Any, digest: str) -> np.ndarray:
+    """Where the compiled kernels of a problem are in this process, in the order of `callers`.
+
+    Parameters
+    ----------
+    kernels : dict
+        By name.
+    data, work : tuple
+        Of the problem; only their types matter.
+    digest : str
+        Of the sources of the kernels.
+    """
+    signatures = {
+        _linearise: (WHOLE, VECTOR, NUMBER, WHOLE),
+        _bordered: (WHOLE, WHOLE, VECTOR, NUMBER, VECTOR, VECTOR),
+        _inspect: (WHOLE, VECTOR, NUMBER, WHOLE, VECTOR),
+        _assign: (WHOLE, WHOLE, NUMBER),
+        _flip: (WHOLE, WHOLE, NUMBER),
+        _transpose: (WHOLE, WHOLE, VECTOR, WHOLE),
+    }
+    loaders = {"data_at": _loader(typeof(data)), "work_at": _loader(typeof(work))}
+    found = []
+    for function, arguments in signatures.items():
+        outlined = copy_with(function, f"_{digest}", kernel=kernels[function.__name__[1:]], **loaders)
+        compiled = njit(cache=True, **OPTIONS)(outlined)
+        compiled.compile(arguments)
+        overload = compiled.overloads[arguments]
+        found.append(overload.library.get_pointer_to_function(overload.fndesc.llvm_func_name))
+        _kept.append(compiled)
+    return np.array(found, np.int64)
+
+
+_kept: list[Any] = []  # compiled code lives as long as this

@@ -1,0 +1,81 @@
+"""The kernels of a locus, made from those of the problem whose special points it collects.
+
+Interpreted kernels are called as they are, compiled ones by address (:mod:`contvines.loci.addresses`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..continuation.binding import OPTIONS, copy_with
+from ..problems.protocol import Kernels, kernels_digest
+from . import kernels as source
+
+HELPERS = ("null_test", "flipped_test", "pair_of", "tests", "slopes_along", "close", "renew")
+NAMES = ("linearise", "bordered", "inspect", "assign", "flip", "transpose")
+_interpreted: dict[tuple[Any, ...], Kernels] = {}
+_addresses: dict[tuple[Any, ...], np.ndarray] = {}
+
+
+def locus_kernels(problem: Any) -> tuple[Kernels, np.ndarray]:
+    """Kernels of the loci of a problem, and the addresses of the problem's own; made once per process."""
+    kernels = problem.kernels
+    given = {name: getattr(kernels, name) for name in NAMES}
+    key = tuple(given.values())
+    if not kernels.compiled:
+        if key not in _interpreted:
+            _interpreted[key] = _bind(
+                {name: _direct(f) for name, f in given.items()}, lambda function: function, "", False
+            )
+        return _interpreted[key], np.zeros(0, np.int64)
+    from numba import typeof
+
+    from .addresses import addresses
+
+    data, work = problem.data, problem.workspace()
+    key = (*key, typeof(data), typeof(work))
+    if key not in _addresses:
+        types = hashlib.blake2b(repr((typeof(data), typeof(work))).encode(), digest_size=4).hexdigest()
+        _addresses[key] = addresses(given, data, work, f"{kernels_digest(kernels)}_{types}")
+    return _compiled_once(), _addresses[key]
+
+
+@cache
+def _compiled_once() -> Kernels:
+    """The compiled kernels of all loci."""
+    from numba import njit
+
+    from .addresses import callers
+
+    sources = (Path(str(source.__file__)), Path(__file__).with_name("addresses.py"))
+    digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=6).hexdigest()
+    return _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")
+
+
+def _bind(
+    known: dict[str, Any], compile_: Callable[[Any], Any], suffix: str, compiled: bool, digest: str = ""
+) -> Kernels:
+    known = dict(known)
+    for name in HELPERS:
+        known[name] = compile_(copy_with(getattr(source, name), suffix, **known))
+    parts = [
+        compile_(copy_with(getattr(source, f"locus_{name}"), suffix, **known))
+        for name in ("linearise", "bordered", "inspect")
+    ]
+    return Kernels(*parts, compiled=compiled, digest=digest)
+
+
+@cache
+def _direct(function: Callable[..., Any]) -> Callable[..., Any]:
+    """An interpreted kernel, which needs no address."""
+
+    def call(calls: Any, *arguments: Any) -> Any:
+        return function(*arguments)
+
+    return call

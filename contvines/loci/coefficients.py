@@ -1,0 +1,188 @@
+"""Coefficients of normal forms at a special point, from derivatives of the equations there.
+
+A cycle (or half of it, closed by the mirror) is a map z -> m z + ... on the critical directions; an equilibrium a flow
+z' = l z + .... With J(m) the Jacobian whose closure is multiplied by m, K the part of J that belongs to the closure (-1 for a
+flow), B and C the second and third derivatives of the equations, whose arguments are closed by their own multipliers,
+
+    fold          z + a z^2      a = -w.B(v, v) / (2 w.K v)
+    pitchfork     z + a z^3      a = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(1) h = -B(v, v)
+    flip          -z + c z^3     the same with J(-1) v = 0
+    Neimark-Sacker  m z + c z^2 z*  c = -w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.K q),  m = exp(i theta),
+                                 J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);      d = Re(c / m)
+    Hopf          the same with J - i omega;                                        l1 = Re c / omega
+
+The critical vectors have unit length (of a cycle: over all its unknowns), as in the textbook. Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7; Kuznetsov and Meijer,
+SIAM J. Sci. Comput. 26 (2005) 1932, for maps; the form for cycles follows from the same expansion of the block-cyclic system.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .taylor import Line, along_line
+
+
+class Coefficient(NamedTuple):
+    """A normal-form coefficient with an estimate of its error."""
+
+    value: float
+    error: float
+
+
+class Forms:
+    """Normal forms of a problem at one point.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its ``kernels`` have ``matrix``; for maps ``offspring`` gives the cycle written twice.
+    u, p
+        The special point.
+    rough : bool
+        A few digits only, for scanning.
+    """
+
+    def __init__(self, problem: Any, u: np.ndarray, p: float, rough: bool = False) -> None:
+        self.rough = rough
+        self.problem, self.u, self.p = problem, np.array(u, dtype=float), float(p)
+        self.n = len(self.u)
+        self.work = problem.workspace()
+        self.flow = problem.spectrum != "map"
+        here = self._jacobian(problem, self.work, self.u)
+        if here is None:
+            raise ValueError("the equations cannot be evaluated here")
+        self.J = here
+        if self.flow:
+            self.K = -np.eye(self.n)
+            self.open, self.open_work, self.whole = problem, self.work, self.u
+        else:
+            problem.kernels.linearise(problem.data, self.u, self.p, self.work)
+            problem.kernels.flip(problem.data, self.work, -1.0)
+            self.K = 0.5 * (self.J - problem.kernels.matrix(problem.data, self.work))
+            embedding = problem.offspring(
+                problem.flip_kind, self.u, self.p, np.zeros(self.n + 1), -1.0 + 0.0j
+            )[0]
+            self.open = embedding.problem
+            self.open_work, self.whole = self.open.workspace(), np.array(embedding.u, dtype=float)
+        self.lines: dict[bytes, Line] = {}
+
+    def _jacobian(self, problem: Any, work: Any, u: np.ndarray) -> np.ndarray | None:
+        residual = problem.kernels.linearise(problem.data, np.ascontiguousarray(u), self.p, work)
+        if not residual < 1e300:
+            return None
+        return problem.kernels.matrix(problem.data, work)
+
+    # ------------------------------------------------------------------ open ends
+    def closed_by(self, factor: complex) -> np.ndarray:
+        """J with its closure multiplied (maps), or J - factor (flows)."""
+        if self.flow:
+            return self.J - factor * np.eye(self.n)
+        return self.J + (factor - 1.0) * self.K
+
+    def extended(self, x: np.ndarray, factor: complex) -> np.ndarray:
+        """A perturbation of one period followed by itself times its multiplier, in the unknowns of the doubled cycle."""
+        if self.flow:
+            return x
+        parts = [self._continued(part) for part in (np.real(x), np.imag(x))]
+        return np.concatenate([x, factor * (parts[0] + 1j * parts[1] if np.iscomplexobj(x) else parts[0])])
+
+    def _continued(self, x: np.ndarray) -> np.ndarray:
+        """What the doubled cycle has in its second half if the perturbation goes on with multiplier one."""
+        if not x.any():
+            return np.zeros(self.n)
+        tangent = np.append(x, 0.0)
+        embedding = self.problem.offspring(self.problem.flip_kind, self.u, self.p, tangent, -1.0 + 0.0j)[0]
+        return np.asarray(embedding.tangent, dtype=float)[self.n : 2 * self.n]
+
+    def line(self, x: np.ndarray, factor: complex) -> Line:
+        """Derivatives of the rows of one period along a real perturbation whose closure is multiplied."""
+        return self.line_of(self.extended(x, factor))
+
+    def line_of(self, direction: np.ndarray) -> Line:
+        """The same for a direction of the doubled cycle."""
+        direction = np.ascontiguousarray(np.real(direction))
+        key = direction.tobytes()
+        if key not in self.lines:
+
+            def rows(u: np.ndarray) -> np.ndarray | None:
+                found = self._jacobian(self.open, self.open_work, u)
+                return None if found is None else found[: self.n]
+
+            found = along_line(
+                rows, self.whole, direction, max(float(np.sqrt(np.mean(self.u**2))), 1.0), self.rough
+            )
+            if found is None:
+                raise ValueError("the equations cannot be evaluated near the special point")
+            self.lines[key] = found
+        return self.lines[key]
+
+    # ------------------------------------------------------------------ one real critical direction
+    def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
+        """Unit right and left null vector of J closed by a multiplier."""
+        left, values, right = np.linalg.svd(self.closed_by(factor))
+        return right[-1].conj(), left[:, -1].conj()
+
+    def quadratic(self) -> Coefficient:
+        """a at a fold: z + a z^2, or z' = a z^2."""
+        v, w = self.null(1.0 if not self.flow else 0.0)
+        v, w = np.real(v), np.real(w)
+        line, weight = self.line(v, 1.0), float(w @ self.K @ v)
+        value = -0.5 * float(w @ line.second @ self.extended(v, 1.0)) / weight
+        return Coefficient(value, abs(0.5 * self.n * line.second_error / weight))
+
+    def cubic(self, factor: float) -> Coefficient:
+        """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
+        v, w = self.null(factor)
+        v, w = np.real(v), np.real(w)
+        closure = factor if not self.flow else 1.0
+        line, weight = self.line(v, closure), float(w @ self.K @ v)
+        x = self.extended(v, closure)
+        regular = self.closed_by(0.0 if self.flow else 1.0)
+        h = self._solve(regular, -(line.second @ x))
+        total = w @ (line.third @ x) + 3.0 * w @ (line.second @ self.extended(h, 1.0))
+        error = abs(self.n * (line.third_error + 3.0 * line.second_error) / (6.0 * weight))
+        return Coefficient(-float(total) / (6.0 * weight), error)
+
+    @staticmethod
+    def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
+        """A solution, of least length where the matrix is singular."""
+        return np.linalg.lstsq(matrix, side, rcond=1e-10)[0]
+
+    # ------------------------------------------------------------------ a pair
+    def lyapunov(self, multiplier: complex) -> tuple[Coefficient, complex]:
+        """(first Lyapunov coefficient, c) of a pair: d = Re(c / m) for maps, l1 = Re(c) / omega for flows.
+
+        Parameters
+        ----------
+        multiplier : complex
+            m on the unit circle (i omega for flows); the raw one of the problem's own period.
+        """
+        if self.flow:
+            multiplier = 1j * multiplier.imag
+        else:
+            multiplier = multiplier / abs(multiplier)
+        q, w = self.null(multiplier)
+        # the phase in which real and imaginary parts are orthogonal
+        square = np.sum(q * q)
+        q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > 1e-300 else q
+        one: Any = self.extended(q, multiplier)
+        a, b = self.line_of(one.real), self.line_of(one.imag)
+        first, third = a.second + 1j * b.second, a.third + b.third
+        conjugate = a.second - 1j * b.second
+        square, mixed = (0.0, 0.0) if self.flow else (multiplier**2, 1.0)
+        if self.flow:
+            square = 2.0 * multiplier
+        h20 = np.linalg.solve(self.closed_by(square), -(first @ one))
+        h11 = np.linalg.solve(self.closed_by(mixed), -np.real(first @ one.conj()))
+        total = third @ one
+        total = total + 2.0 * first @ self.extended(h11, 1.0)
+        total = total + conjugate @ self.extended(h20, multiplier**2)
+        weight = complex(w @ self.K @ q)
+        c = complex(-0.5 * (w @ total) / weight)
+        error = float(abs(self.n * (a.third_error + 3.0 * a.second_error) / weight))
+        if self.flow:
+            omega = abs(multiplier.imag)
+            return Coefficient(c.real / omega, error / omega), c
+        return Coefficient(float((c / multiplier).real), error), c

@@ -1,0 +1,396 @@
+"""Kernels of a locus: the special points of F(u, p) = 0 as solutions of a larger system, against a second parameter q.
+
+Unknowns are U = (u, p), at branch points (u, p, e); q is the parameter in which the locus is continued. The equations are
+
+    F(u, p, q) + e b = 0,    g(u, p, q) = 0    (at branch points two of them),
+
+minimally augmented (Griewank and Reddien, Math. Comp. 43 (1984) 511; Govaerts, Numerical Methods for Bifurcations of
+Dynamical Equilibria, 2000, chapters 3 and 4). With borders b and c, M = [[F_u, b], [c, 0]] and M (v, g) = (0, 1):
+
+    fold             g, which is zero where F_u is singular
+    flip             g of F_u with its closure turned round: perturbations that change sign over the period
+    branch point     g, and the last entry of M^-1 (F_p, 0): F_u and (F_u, F_p) lose rank together; e stays zero
+    margin           one margin of admissibility
+    pair             m1 m2 - 1 for the multipliers of a pair, l1 + l2 for eigenvalues of a flow
+
+Every solve is one elimination of the problem's own kernel with b in the place of F_p. What is left are two (at branch points
+three) directions in which F = 0 holds to first order; the tests are differentiated along these alone, by differences: the
+tests themselves stay exact, so nothing of the location is lost. The borders are renewed at each accepted point: c becomes the
+null vector, b the left one.
+
+This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
+"""
+
+import math
+from typing import Any
+
+FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
+
+# entries of `data`
+FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
+
+# entries of `work`
+(
+    RESIDUAL,
+    BASE,
+    TRIAL,
+    BASE_F,
+    BASE_Q,
+    TRIAL_F,
+    TRIAL_Q,
+    POINT,
+    COLUMNS,
+    SOLUTIONS,
+    DIRECTIONS,
+    BORDERS,
+    ROW,
+    SHIFTED,
+    SCALES,
+    VALUES,
+    SLOPES,
+    LINES,
+    REFERENCE,
+    SMALL,
+    MASKED,
+) = range(21)
+
+STEP = 1e-7  # of the differences, relative to the scales of the unknowns
+AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
+B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
+
+
+# the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
+linearise: Any = None
+bordered: Any = None
+inspect: Any = None
+assign: Any = None
+flip: Any = None
+transpose: Any = None
+
+
+def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
+    """Solve M (v, g) = (0, 1) with the linearisation at hand, into `tangent`; returns g."""
+    n = F.shape[0]
+    for i in range(n):
+        F[i] = 0.0
+        Q[i] = b[i]
+        line[i] = c[i]
+    line[n] = 0.0
+    bordered(calls, data, linear, line, 0.0, step, tangent)
+    return tangent[n]
+
+
+def flipped_test(calls, data, linear, F, Q, b, c, line, step, tangent):
+    """The same for perturbations that change sign over the period; the linearisation is left as it was."""
+    flip(calls, data, linear, -1.0)
+    value = null_test(calls, data, linear, F, Q, b, c, line, step, tangent)
+    flip(calls, data, linear, 1.0)
+    return value
+
+
+def pair_of(row, multipliers, flow, reference, found):
+    """(test, position) of the pair nearest to the stability boundary and to the reference, into `found`.
+
+    Maps: m1 m2 - 1 and (m1 + m2)/2, the cosine of the angle; flows: l1 + l2 and l1 l2, the square of the frequency.
+    """
+    best = math.inf
+    found[0] = math.nan
+    found[1] = math.nan
+    for i in range(multipliers):
+        a, b = row[2 * i], row[2 * i + 1]
+        for j in range(i + 1, multipliers):
+            c, d = row[2 * j], row[2 * j + 1]
+            if abs(b + d) > 1e-9 * (1.0 + abs(b)) or (b != 0.0 and abs(a - c) > 1e-9 * (1.0 + abs(a))):
+                continue  # neither two real ones nor a conjugate pair
+            total, product = a + c, a * c - b * d
+            if flow:
+                test, place = total, product
+                distance = abs(total) + 0.1 * abs(product - reference) / (1.0 + abs(reference))
+            else:
+                test, place = product - 1.0, 0.5 * total
+                distance = abs(test) + 0.1 * abs(place - reference)
+            if distance < best:
+                best = distance
+                found[0] = test
+                found[1] = place
+
+
+def tests(data, work, u, p, q, values):
+    """The tests g at any (u, p, q), into `values`; the linearisation in TRIAL is used up. Returns the residual."""
+    first, trial = data[FIRST], work[TRIAL]
+    F, Q, lines, borders, solutions = (
+        work[TRIAL_F],
+        work[TRIAL_Q],
+        work[LINES],
+        work[BORDERS],
+        work[SOLUTIONS],
+    )
+    n = F.shape[0]
+    kind, calls = data[KIND], data[CALLS]
+    assign(calls, first, data[SECOND], q)
+    residual = linearise(calls, first, u, p, trial)
+    if not residual < 1e300:
+        return residual
+    if kind == FOLD:
+        values[0] = null_test(
+            calls, first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[SPARE]
+        )
+    elif kind == FLIP:
+        values[0] = flipped_test(
+            calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[SPARE]
+        )
+    elif kind == BRANCH:
+        for i in range(n):
+            F[i] = Q[i]
+            Q[i] = borders[B, i]
+            lines[0, i] = borders[C, i]
+        lines[0, n] = 0.0
+        bordered(calls, first, trial, lines[0], 0.0, lines[1], solutions[SPARE])
+        values[0] = solutions[SPARE, n]
+        values[1] = lines[1, n]
+    else:
+        row = work[ROW]
+        inspect(calls, first, u, p, trial, row)
+        if kind == MARGIN:
+            values[0] = row[2 * data[MULTIPLIERS] + data[WHICH]]
+        else:
+            pair_of(row, data[MULTIPLIERS], data[FLOW], work[REFERENCE][0], work[REFERENCE][1:])
+            values[0] = work[REFERENCE][1]
+    return residual
+
+
+def locus_linearise(data, U, q, work):
+    """F, F_u, F_p, F_q and the tests at (U, q); see `linearise` in the protocol."""
+    first, second, base = data[FIRST], data[SECOND], work[BASE]
+    F, Q, point, columns, solutions = work[BASE_F], work[BASE_Q], work[POINT], work[COLUMNS], work[SOLUTIONS]
+    borders, lines, values, residuals = work[BORDERS], work[LINES], work[VALUES], work[RESIDUAL]
+    n, size = F.shape[0], U.shape[0]
+    kind, calls = data[KIND], data[CALLS]
+    u, p = U[:n], U[n]
+    for i in range(size):
+        point[i] = U[i]
+    point[size] = q
+    assign(calls, second, first, p)
+    largest = linearise(calls, second, u, q, base)
+    if not largest < 1e300:
+        return math.inf
+    for i in range(n):
+        columns[1, i] = Q[i]
+    assign(calls, first, data[SECOND], q)
+    largest = linearise(calls, first, u, p, base)
+    if not largest < 1e300:
+        return math.inf
+    for i in range(n):
+        columns[0, i] = Q[i]
+        residuals[i] = F[i]
+        if kind == BRANCH:
+            residuals[i] += U[n + 1] * borders[B, i]
+    for i in range(n):
+        Q[i] = borders[B, i]
+        lines[0, i] = borders[C, i]
+    lines[0, n] = 0.0
+    for column in range(2):
+        for i in range(n):
+            F[i] = columns[column, i]
+        bordered(calls, first, base, lines[0], 0.0, solutions[AT_P + column], solutions[NULL])
+    if kind == FOLD:
+        values[0] = solutions[NULL, n]
+    elif kind == BRANCH:
+        values[0] = solutions[NULL, n]
+        values[1] = solutions[AT_P, n]
+    else:
+        tests(data, work, u, p, q, values)
+    for k in range(size - n):
+        residuals[n + k] = values[k]
+        if not abs(values[k]) < math.inf:
+            return math.inf
+        largest = max(largest, abs(values[k]))
+    return largest
+
+
+def slopes_along(data, work, direction, slopes):
+    """Derivatives of the tests along a direction in (U, q), by differences."""
+    point, scales, shifted, values = work[POINT], work[SCALES], work[SHIFTED], work[VALUES]
+    n, last = work[BASE_F].shape[0], point.shape[0] - 1
+    count = last - n
+    length = abs(direction[last]) / scales[last]
+    for i in range(n + 1):
+        length = max(length, abs(direction[i]) / max(scales[i], abs(point[i])))
+    if not length > 1e-14:
+        for k in range(count):
+            slopes[k] = 0.0
+        return
+    h = STEP / length
+    for i in range(n + 1):
+        shifted[i] = point[i] + h * direction[i]
+    q = point[last] + h * direction[last]
+    tests(data, work, shifted[:n], shifted[n], q, slopes)
+    for k in range(count):
+        slopes[k] = (slopes[k] - values[k]) / h
+
+
+def close(small, size):
+    """Gauss elimination with row exchange of `size` equations with two right-hand sides; returns the determinant's sign."""
+    sign = 1.0
+    for j in range(size):
+        best = j
+        for i in range(j + 1, size):
+            if abs(small[i, j]) > abs(small[best, j]):
+                best = i
+        if best != j:
+            sign = -sign
+            for c in range(5):
+                small[j, c], small[best, c] = small[best, c], small[j, c]
+        if small[j, j] == 0.0:
+            small[j, j] = 1e-300
+        if small[j, j] < 0.0:
+            sign = -sign
+        for i in range(j + 1, size):
+            ratio = small[i, j] / small[j, j]
+            for c in range(j, 5):
+                small[i, c] -= ratio * small[j, c]
+    for j in range(size - 1, -1, -1):
+        for side in range(3, 5):
+            for c in range(j + 1, size):
+                small[j, side] -= small[j, c] * small[c, side]
+            small[j, side] /= small[j, j]
+    return sign
+
+
+def locus_bordered(data, work, border, target, step, tangent):
+    """Solve the bordered system of the locus; see `bordered` in the protocol."""
+    base = work[BASE]
+    F, Q, solutions, directions = work[BASE_F], work[BASE_Q], work[SOLUTIONS], work[DIRECTIONS]
+    borders, lines, residuals, slopes = work[BORDERS], work[LINES], work[RESIDUAL], work[SLOPES]
+    small, scales = work[SMALL], work[SCALES]
+    n, last = F.shape[0], work[POINT].shape[0] - 1
+    count = last - n  # tests; there are as many directions, and the one along the locus
+    for i in range(n):
+        F[i] = residuals[i]
+        Q[i] = borders[B, i]
+        lines[0, i] = borders[C, i]
+    lines[0, n] = 0.0
+    sign = bordered(data[CALLS], data[FIRST], base, lines[0], 0.0, solutions[AT_F], solutions[NULL])
+    # (u, p, e, q) = particular + dp first + dq second + a third, with one condition on (dp, dq, a)
+    for i in range(n):
+        for k in range(4):
+            directions[k, i] = solutions[k, i]
+    for k in range(4):
+        for i in range(n, last + 1):
+            directions[k, i] = 0.0
+    directions[AT_P, n] = 1.0
+    directions[AT_Q, last] = 1.0
+    if data[KIND] == BRANCH:
+        for k in range(4):
+            directions[k, n + 1] = solutions[k, n]
+    else:
+        # the one with the largest part in the condition is expressed by the others
+        pivot, largest = 1, -1.0
+        for k in range(1, 4):
+            part = abs(solutions[k, n])
+            if k == AT_P:
+                part *= scales[n]
+            elif k == AT_Q:
+                part *= scales[last]
+            if part > largest:
+                pivot, largest = k, part
+        by = solutions[pivot, n]
+        if by == 0.0:
+            by = 1e-300
+        if (by < 0.0) != (pivot == 2):
+            sign = -sign
+        for k in range(4):
+            if k == pivot:
+                continue
+            share = solutions[k, n] / by
+            for i in range(last + 1):
+                directions[k, i] -= share * directions[pivot, i]
+        for k in range(pivot, 3):
+            for i in range(last + 1):
+                directions[k, i] = directions[k + 1, i]
+    total = count + 1
+    slopes_along(data, work, directions[0], slopes)
+    across = 0.0
+    for i in range(last + 1):
+        across += border[i] * directions[0, i]
+    for k in range(count):
+        small[k, 3] = -residuals[n + k] - slopes[k]
+        small[k, 4] = 0.0
+    small[count, 3] = target - across
+    small[count, 4] = 1.0
+    for column in range(total):
+        slopes_along(data, work, directions[1 + column], slopes)
+        for k in range(count):
+            small[k, column] = slopes[k]
+        along = 0.0
+        for i in range(last + 1):
+            along += border[i] * directions[1 + column, i]
+        small[count, column] = along
+    for i in range(total):
+        for column in range(total, 3):
+            small[i, column] = 0.0
+    sign *= close(small, total)
+    for i in range(last + 1):
+        step[i] = directions[0, i]
+        tangent[i] = 0.0
+        for column in range(total):
+            step[i] += small[column, 3] * directions[1 + column, i]
+            tangent[i] += small[column, 4] * directions[1 + column, i]
+    return sign
+
+
+def renew(data, work, b, c, null):
+    """Borders from the null vectors: c along `null`, b along the left one; the linearisation is in BASE."""
+    n = b.shape[0] - 1
+    lines, left = work[LINES], work[SOLUTIONS][LEFT]
+    size = 0.0
+    for i in range(n):
+        size += null[i] * null[i]
+    if not 0.0 < size < math.inf:
+        return
+    size = math.sqrt(size)
+    for i in range(n):
+        c[i] = null[i] / size
+        lines[0, i] = b[i]
+    lines[0, n] = 0.0
+    transpose(data[CALLS], data[FIRST], work[BASE], c, work[TRIAL])
+    F = work[TRIAL_F]
+    for i in range(n):
+        F[i] = 0.0
+    bordered(data[CALLS], data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
+    size = 0.0
+    for i in range(n):
+        size += left[i] * left[i]
+    if not 0.0 < size < math.inf:
+        return
+    size = math.sqrt(size)
+    for i in range(n):
+        b[i] = left[i] / size
+
+
+def locus_inspect(data, U, q, work, row):
+    """Multipliers and margins of the problem, then of the locus: p within its bounds, and the pair still a pair.
+
+    The borders are renewed.
+    """
+    first, base = data[FIRST], work[BASE]
+    borders, solutions, reference = work[BORDERS], work[SOLUTIONS], work[REFERENCE]
+    kind, multipliers = data[KIND], data[MULTIPLIERS]
+    n = work[BASE_F].shape[0]
+    if kind != BRANCH:  # there e is measured along b
+        renew(data, work, borders[B], borders[C], solutions[NULL])
+    if kind == FLIP:
+        flip(data[CALLS], first, base, -1.0)
+        renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[SPARE])
+        flip(data[CALLS], first, base, 1.0)
+    own = row.shape[0] - 3
+    inspect(data[CALLS], first, U[:n], U[n], base, row[:own])
+    row[own] = U[n] - reference[3]
+    row[own + 1] = reference[4] - U[n]
+    row[own + 2] = math.inf
+    for j in work[MASKED]:
+        row[2 * multipliers + j] = math.inf
+    if kind == PAIR:
+        pair_of(row, multipliers, data[FLOW], reference[0], reference[1:])
+        reference[0] = reference[2]
+        row[own + 2] = reference[2] if data[FLOW] else 1.0 - reference[2] * reference[2]

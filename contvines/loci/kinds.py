@@ -1,0 +1,116 @@
+"""Points of codimension two: their kinds and labels, and what is looked for along each sort of locus."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
+
+#: kind of a point of codimension two -> prefix of its label
+PREFIXES = {
+    "cusp": "CP",
+    "generalized-period-doubling": "GPD",
+    "degenerate-symmetry-breaking": "GSB",
+    "chenciner": "CH",
+    "resonance-1-1": "R1",
+    "resonance-1-2": "R2",
+    "resonance-1-3": "R3",
+    "resonance-1-4": "R4",
+    "fold-flip": "LPPD",
+    "fold-symmetry-breaking": "LPSB",
+    "fold-neimark-sacker": "LPNS",
+    "flip-neimark-sacker": "PDNS",
+    "symmetry-breaking-neimark-sacker": "SBNS",
+    "double-neimark-sacker": "NSNS",
+    "bogdanov-takens": "BT",
+    "generalized-hopf": "GH",
+    "zero-hopf": "ZH",
+    "double-hopf": "HH",
+    "border-fold": "BLP",
+    "border-flip": "BPD",
+    "border-symmetry-breaking": "BSB",
+    "border-neimark-sacker": "BNS",
+    "double-border": "BB",
+    "degenerate-border": "DB",
+}
+
+
+class Look(NamedTuple):
+    """What to look for along a locus: a test and the kind of point that its zero is.
+
+    Attributes
+    ----------
+    test : str
+        "quadratic", "cubic", "lyapunov", "plus", "minus", "pair", "second-pair", "double" (two multipliers at ``value``), "angle"
+        (the cosine of a pair is ``value``).
+    kind : str
+    value : float
+    """
+
+    test: str
+    kind: str
+    value: float = 0.0
+
+
+def looks(problem: Any, condition: int) -> list[Look]:
+    """What is looked for along a locus with this condition; borders are found by the margins themselves."""
+    spectrum, m = problem.spectrum, int(problem.n_multipliers)
+    half = problem.flip_kind == "symmetry-breaking"
+    flow, found = spectrum == "flow", []
+    pairs = m >= (2 if condition in (MARGIN, PAIR) else 3)
+    if condition == FOLD:
+        found.append(Look("quadratic", "cusp"))
+    if spectrum == "none":
+        return found if condition != MARGIN else [Look("plus", "border-fold")]
+    if condition in (FOLD, BRANCH) and m >= 2:
+        found.append(Look("double", "bogdanov-takens" if flow else "resonance-1-1", 0.0 if flow else 1.0))
+        if pairs:
+            found.append(Look("pair", "zero-hopf" if flow else "fold-neimark-sacker"))
+        if not flow:
+            found.append(Look("minus", "fold-symmetry-breaking" if half else "fold-flip"))
+    if condition == FLIP:
+        found.append(Look("cubic", "degenerate-symmetry-breaking" if half else "generalized-period-doubling"))
+        if m >= 2:
+            found.append(Look("double", "resonance-1-1" if half else "resonance-1-2", -1.0))
+            found.append(Look("plus", "fold-symmetry-breaking" if half else "fold-flip"))
+        if pairs:
+            found.append(Look("pair", "symmetry-breaking-neimark-sacker" if half else "flip-neimark-sacker"))
+    if condition == PAIR:
+        found.append(Look("lyapunov", "generalized-hopf" if flow else "chenciner"))
+        if flow:
+            found.append(Look("angle", "bogdanov-takens", 0.0))
+        else:
+            found += resonances(half)
+        if m >= 3:
+            found.append(Look("plus", "zero-hopf" if flow else "fold-neimark-sacker"))
+            if not flow:
+                found.append(
+                    Look("minus", "symmetry-breaking-neimark-sacker" if half else "flip-neimark-sacker")
+                )
+        if m >= 4:
+            found.append(Look("second-pair", "double-hopf" if flow else "double-neimark-sacker"))
+    if condition == MARGIN:
+        found.append(Look("plus", "border-fold"))
+        if not flow:
+            found.append(Look("minus", "border-symmetry-breaking" if half else "border-flip"))
+        if m >= 2:
+            found.append(Look("pair", "border-neimark-sacker"))
+    return found
+
+
+def resonances(half: bool) -> list[Look]:
+    """Strong resonances by the cosine of the raw angle; on half maps the multipliers of the full period are squares."""
+    if not half:
+        return [
+            Look("angle", "resonance-1-1", 1.0),
+            Look("angle", "resonance-1-2", -1.0),
+            Look("angle", "resonance-1-3", -0.5),
+            Look("angle", "resonance-1-4", 0.0),
+        ]
+    root = 0.5**0.5
+    return [
+        *(Look("angle", "resonance-1-1", c) for c in (1.0, -1.0)),
+        Look("angle", "resonance-1-2", 0.0),
+        *(Look("angle", "resonance-1-3", c) for c in (0.5, -0.5)),
+        *(Look("angle", "resonance-1-4", c) for c in (root, -root)),
+    ]

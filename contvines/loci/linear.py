@@ -1,0 +1,104 @@
+"""A problem's linearisation from Python: solves with borders, null vectors, the spectrum, at single points."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
+
+
+class Null(NamedTuple):
+    """Unit null vectors, right and left, of a nearly singular matrix, and the test g that is zero where it is singular."""
+
+    right: np.ndarray
+    left: np.ndarray
+    test: float
+
+
+class Linearisation:
+    """F, F_u and F_p of a problem at one point, and solves with them through the problem's own kernels.
+
+    Parameters
+    ----------
+    problem : Problem
+        With the optional kernels of the protocol.
+    """
+
+    def __init__(self, problem: Any) -> None:
+        self.problem, self.kernels, self.data = problem, problem.kernels, problem.data
+        self.size = int(problem.dimension)
+        self.work, self.other = problem.workspace(), problem.workspace()
+        column = self.kernels.column
+        self.F, self.Q = self.work[0].reshape(-1), self.work[column].reshape(-1)
+        self.other_F = self.other[0].reshape(-1)
+        self.line, self.step, self.tangent = (np.zeros(self.size + 1) for _ in range(3))
+        self.residual = self.slope = np.zeros(self.size)
+        self.point: tuple[np.ndarray, float] = (np.zeros(self.size), 0.0)
+
+    def at(self, u: np.ndarray, p: float) -> float:
+        """Linearise; returns the largest residual. ``residual`` and ``slope`` are then copies of F and F_p."""
+        here = np.array(u, dtype=float)
+        largest = float(self.kernels.linearise(self.data, here, float(p), self.work))
+        self.residual, self.slope, self.point = self.F.copy(), self.Q.copy(), (here, float(p))
+        return largest
+
+    def again(self) -> None:
+        """Linearise at the same point once more, after something that uses the linearisation up."""
+        self.kernels.linearise(self.data, self.point[0], self.point[1], self.work)
+
+    def solve(self, side: np.ndarray, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
+        """(x, s) with F_u x + b s = side and c.x = 0."""
+        self.F[:], self.Q[:], self.line[:-1], self.line[-1] = -side, b, c, 0.0
+        self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
+        return self.step[:-1].copy(), float(self.step[-1])
+
+    def null(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
+        """(v, g) with F_u v + b g = 0 and c.v = 1."""
+        self.F[:], self.Q[:], self.line[:-1], self.line[-1] = 0.0, b, c, 0.0
+        self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
+        return self.tangent[:-1].copy(), float(self.tangent[-1])
+
+    def left(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
+        """(w, g) with F_u^T w + c g = 0 and b.w = 1."""
+        self.kernels.transpose(self.data, self.work, np.ascontiguousarray(c), self.other)
+        self.other_F[:], self.line[:-1], self.line[-1] = 0.0, b, 0.0
+        self.kernels.bordered(self.data, self.other, self.line, 0.0, self.step, self.tangent)
+        return self.tangent[:-1].copy(), float(self.tangent[-1])
+
+    def flip(self, sign: float) -> None:
+        """Turn to perturbations that change sign over the period, and back."""
+        self.kernels.flip(self.data, self.work, sign)
+
+    def null_vectors(self, flipped: bool = False) -> Null:
+        """The null vectors of the matrix, or of the flipped one; for a regular one those of its smallest singular values."""
+        rng = np.random.default_rng(5)
+        v, w = rng.standard_normal((2, self.size)) / np.sqrt(self.size)
+        g = np.nan
+        if flipped:
+            self.flip(-1.0)
+        for _ in range(SWEEPS):
+            v, g = self.null(w, v)
+            v /= np.linalg.norm(v)
+            w, _ = self.left(w, v)
+            w /= np.linalg.norm(w)
+        v, g = self.null(w, v)
+        if flipped:
+            self.again()
+        return Null(v / np.linalg.norm(v), w, g)
+
+    def row(self) -> np.ndarray:
+        """Multipliers as (re, im) pairs, then margins."""
+        row = np.zeros(2 * int(self.problem.n_multipliers) + int(self.problem.n_margins))
+        self.again()
+        self.kernels.inspect(self.data, self.point[0], self.point[1], self.work, row)
+        self.again()
+        return row
+
+    def spectrum(self) -> NDArray[np.complex128]:
+        """Raw multipliers, or eigenvalues."""
+        m = int(self.problem.n_multipliers)
+        row = self.row()
+        return row[0 : 2 * m : 2] + 1j * row[1 : 2 * m : 2]

@@ -1,0 +1,173 @@
+"""Plane: a problem at points of the plane of two parameters, and Newton's method for any conditions there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .kernels import pair_of
+from .linear import Linearisation
+from .problem import LocusProblem
+
+STEP = 1e-5  # of central differences of the conditions, relative to the unknowns
+CLOSE = 1e-9  # corrections below this no longer shrink: roundoff of the conditions
+
+
+class Place(NamedTuple):
+    """A point (u, p, q)."""
+
+    u: np.ndarray
+    p: float
+    q: float
+
+
+class Plane:
+    """Evaluates F and its derivatives, multipliers and margins at (u, p, q).
+
+    Parameters
+    ----------
+    locus : LocusProblem
+        Whose problem and parameters are meant.
+    """
+
+    def __init__(self, locus: LocusProblem) -> None:
+        self.locus, self.problem = locus, locus.base
+        self.flow = self.problem.spectrum == "flow"
+        self.m = int(self.problem.n_multipliers)
+        # problems of its own: a trace changes the parameters of the locus in place
+        self.first = Linearisation(self.problem.against(locus.inner))
+        self.second = Linearisation(self.first.problem.against(locus.over))
+        self.place = Place(np.zeros(locus.size), 0.0, 0.0)
+        self._row: np.ndarray | None = None
+
+    def at(self, place: Place) -> float:
+        """Linearise in both parameters; returns the largest residual."""
+        assign = self.first.kernels.assign
+        assign(self.first.data, self.second.data, float(place.q))
+        assign(self.second.data, self.first.data, float(place.p))
+        self.place, self._row = place, None
+        self.second.at(place.u, place.q)
+        return self.first.at(place.u, place.p)
+
+    @property
+    def row(self) -> np.ndarray:
+        """Multipliers as (re, im) pairs, then margins."""
+        if self._row is None:
+            self._row = self.first.row()
+        return self._row
+
+    @property
+    def spectrum(self) -> NDArray[np.complex128]:
+        """Raw multipliers, or eigenvalues."""
+        return self.row[0 : 2 * self.m : 2] + 1j * self.row[1 : 2 * self.m : 2]
+
+    def pair(self, reference: float) -> tuple[float, float]:
+        """(test, position) of the pair of multipliers nearest to the boundary and to a reference; see ``pair_of``."""
+        found = np.zeros(2)
+        pair_of(self.row, self.m, self.flow, reference, found)
+        return float(found[0]), float(found[1])
+
+    def two_nearest(self, place: float) -> float:
+        """Sum of the two multipliers nearest to a place of the real axis, less twice that place."""
+        spectrum = self.spectrum
+        nearest = spectrum[np.argsort(np.abs(spectrum - place), kind="stable")[:2]]
+        return float(np.real(np.sum(nearest)) - 2.0 * place)
+
+    def singular_test(self, b: np.ndarray, c: np.ndarray, flipped: bool = False) -> float:
+        """g of F_u, or of the flipped one, with given borders."""
+        if not flipped:
+            return self.first.null(b, c)[1]
+        self.first.flip(-1.0)
+        value = self.first.null(b, c)[1]
+        self.first.again()
+        return value
+
+    def unfolding_test(self, b: np.ndarray, c: np.ndarray) -> float:
+        """The second condition of a branch point: the part of F_p that F_u does not reach."""
+        return self.first.solve(-self.first.slope, b, c)[1]
+
+    def refined(
+        self, conditions: Sequence[Callable[[Plane], float]], guess: Place, reach: float, unfolded: bool
+    ) -> tuple[Place, float] | None:
+        """Newton's method for F = 0 and the conditions; (place, last correction), or None.
+
+        Parameters
+        ----------
+        conditions : two functions of the plane, or three where F is unfolded
+        guess : Place
+        reach : float
+            Largest distance from the guess, relative to the scales of the unknowns, at which the solution is still meant.
+        unfolded : bool
+            F = 0 is asked for up to one multiple of the left null vector.
+        """
+        u, p, q = np.array(guess.u), guess.p, guess.q
+        widths = [max(abs(p), self._width(p)), max(abs(q), 1e-3)]
+        scale = np.append(1.0 + np.abs(u), widths)
+        last = np.inf
+        for _ in range(12):
+            if not self.at(Place(u, p, q)) < 1e300:
+                return None
+            line, second = self.first, self.second
+            null = line.null_vectors()
+            b, c = null.left, null.right
+            sides = (-line.residual, -line.slope, -second.slope)
+            solved = [line.solve(side, b, c) for side in sides]
+            v, g = line.null(b, c)
+            directions = [np.append(solved[0][0], [0.0, 0.0]), np.append(solved[1][0], [1.0, 0.0])]
+            directions += [np.append(solved[2][0], [0.0, 1.0]), np.append(v, [0.0, 0.0])]
+            here = Place(u, p, q)
+            values = np.array([f(self) for f in conditions])
+            slopes = np.array([self._slope(conditions, here, d, scale) for d in directions])
+            if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
+                return None
+            rows, right = [slopes[1:].T], [-values - slopes[0]]
+            if not unfolded:
+                rows.append(np.array([[solved[1][1], solved[2][1], g]]))
+                right.append(np.array([-solved[0][1]]))
+            matrix, side = np.vstack(rows), np.concatenate(right)
+            try:
+                dp, dq, a = np.linalg.solve(matrix, side)
+            except np.linalg.LinAlgError:
+                return None
+            change = directions[0] + dp * directions[1] + dq * directions[2] + a * directions[3]
+            size = float((np.abs(change) / scale).max())
+            if not size < 10.0 * max(reach, 1e-3):
+                return None
+            u, p, q = u + change[:-2], p + float(dp), q + float(dq)
+            if size < 1e-14 or (size < CLOSE and size > 0.3 * last):
+                last = size
+                break
+            last = size
+        if last > CLOSE:
+            return None
+        far = np.append(np.abs(u - guess.u), [abs(p - guess.p), abs(q - guess.q)]) / scale
+        if far.max() > reach or not self.at(Place(u, p, q)) < 1e-6:
+            return None
+        return Place(u, p, q), last
+
+    def _width(self, p: float) -> float:
+        low, high = self.locus.bounds
+        return high - low if np.isfinite(high - low) else max(abs(p), 1e-3)
+
+    def _slope(
+        self,
+        conditions: Sequence[Callable[[Plane], float]],
+        place: Place,
+        direction: np.ndarray,
+        scale: np.ndarray,
+    ) -> np.ndarray:
+        length = float((np.abs(direction) / scale).max())
+        if length < 1e-13:
+            return np.zeros(len(conditions))
+        h = STEP / length
+        ends = []
+        for sign in (1.0, -1.0):
+            shifted = sign * h * direction
+            moved = Place(place.u + shifted[:-2], place.p + shifted[-2], place.q + shifted[-1])
+            if not self.at(moved) < 1e300:
+                return np.full(len(conditions), np.nan)
+            ends.append(np.array([f(self) for f in conditions]))
+        return (ends[0] - ends[1]) / (2.0 * h)

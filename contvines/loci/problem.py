@@ -1,0 +1,304 @@
+"""LocusProblem: the special points of one kind as solutions of a problem like any other, against a second parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..problems.protocol import ProblemDefaults
+from .binding import locus_kernels
+from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
+
+#: kind of a special point -> what is followed, unless it is a border (then its margin)
+CONDITIONS = {
+    "fold": FOLD,
+    "branch-point": BRANCH,
+    "neimark-sacker": PAIR,
+    "hopf": PAIR,
+    "period-doubling": FLIP,
+    "symmetry-breaking": FLIP,
+}
+
+
+def condition(problem: Any, kind: str) -> int:
+    """What is followed for a special point of this kind, seen in this problem.
+
+    A symmetry breaking or period doubling is a multiplier -1 where the problem says so (``flip_kind``), else a branch point
+    of the problem itself, on the fixed space of a symmetry.
+    """
+    if kind in ("period-doubling", "symmetry-breaking") and not (
+        problem.spectrum == "map" and problem.flip_kind == kind
+    ):
+        return BRANCH
+    return CONDITIONS.get(kind, MARGIN)
+
+
+class Work(NamedTuple):
+    """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.kernels`."""
+
+    residual: np.ndarray
+    base: Any
+    trial: Any
+    base_F: np.ndarray
+    base_Q: np.ndarray
+    trial_F: np.ndarray
+    trial_Q: np.ndarray
+    point: np.ndarray
+    columns: np.ndarray
+    solutions: np.ndarray
+    directions: np.ndarray
+    borders: np.ndarray
+    row: np.ndarray
+    shifted: np.ndarray
+    scales: np.ndarray
+    values: np.ndarray
+    slopes: np.ndarray
+    lines: np.ndarray
+    reference: np.ndarray
+    small: np.ndarray
+    masked: np.ndarray
+
+
+class LocusProblem(ProblemDefaults):
+    """Special points of one kind of a problem, against a second parameter.
+
+    Unknowns are (u, p), with the unfolding e at branch points (zero along the locus); the parameter is q.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ``parameters``, ``against`` and the optional kernels of the protocol.
+    kind : str
+        Of the special points.
+    over : str
+        Name of the second parameter.
+    index : int
+        Which margin, for borders.
+    bounds : (float, float)
+        Interval of the first parameter; the locus ends there.
+    borders : ndarray, shape (4, N + 1), optional
+        Of the bordered systems, as :func:`contvines.loci.starts.begin` finds them.
+    reference : float
+        Position of the pair of multipliers; see ``pair_of``.
+    masked : sequence of int
+        Margins that are zero all along the locus, as those of a border are.
+
+    Raises
+    ------
+    ValueError
+        If the problem has no such parameter, or its kernels cannot be asked for loci.
+    """
+
+    spectrum = "none"
+
+    def __init__(
+        self,
+        problem: Any,
+        kind: str,
+        over: str,
+        index: int = 0,
+        bounds: tuple[float, float] = (-np.inf, np.inf),
+        borders: np.ndarray | None = None,
+        reference: float = 0.0,
+        masked: Sequence[int] = (),
+    ) -> None:
+        kernels = problem.kernels
+        names = list(getattr(problem, "parameters", {}))
+        if over == problem.parameter:
+            raise ValueError(
+                f"over = {over!r} is the parameter of the diagram itself; name another one: "
+                + (", ".join(name for name in names if name != over) or "this problem has no other")
+            )
+        if over not in names:
+            raise ValueError(
+                f"over = {over!r}: the problem has no such parameter; it has {', '.join(names) or 'none by name'}"
+            )
+        if getattr(kernels, "transpose", None) is None:
+            raise ValueError(
+                f"{type(problem).__name__} has no kernels for loci (assign, flip, transpose, column)"
+            )
+        self.base, self.kind, self.over, self.index = problem, kind, over, int(index)
+        self.condition = condition(problem, kind)
+        if self.condition == FLIP and getattr(problem, "pinned", 0) == 2:
+            raise ValueError(
+                "symmetric motions without impacts may be moved as a whole; their symmetry breaking is not isolated and "
+                "has no locus"
+            )
+        if self.condition == PAIR and problem.n_multipliers < 2:
+            raise ValueError("a pair of multipliers needs a problem with at least two of them")
+        # copies: their arrays of parameters are changed in place
+        self.first = problem.against(problem.parameter)
+        self.second = self.first.against(over)
+        self.parameter = over
+        self.inner = problem.parameter
+        self.unfolded = self.condition == BRANCH
+        self.size = int(problem.dimension)
+        self.dimension = self.size + (2 if self.unfolded else 1)
+        self.bounds = (float(bounds[0]), float(bounds[1]))
+        self.reference = float(reference)
+        self.masked = tuple(int(j) for j in masked)
+        self.borders = self._fresh_borders() if borders is None else np.array(borders, dtype=float)
+        self.n_multipliers = int(problem.n_multipliers)
+        self.n_margins = int(problem.n_margins) + 3
+        self.kernels, calls = locus_kernels(self.first)
+        self._stored: list[Any] = []
+        self.compiled = bool(kernels.compiled)
+        self.data = (
+            self._place(self.first.data),
+            self._place(self.second.data),
+            calls,
+            self.condition,
+            self.index,
+            self.n_multipliers,
+            problem.spectrum == "flow",
+        )
+        shift = problem.period_shift
+        if shift is not None and np.any(shift):
+            self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
+
+    def _place(self, content: Any) -> Any:
+        """Data or workspace as the kernels of the locus get it: an address if they are compiled."""
+        if not self.compiled:
+            return content
+        from .addresses import Stored
+
+        self._stored.append(Stored(content))
+        return self._stored[-1].address
+
+    def _fresh_borders(self) -> np.ndarray:
+        borders = np.random.default_rng(5).standard_normal((4, self.size + 1))
+        return borders / np.sqrt(self.size)
+
+    def workspace(self) -> Work:
+        """Arrays for the kernels; borders and reference are state that a trace renews."""
+        problem, n = self.base, self.size
+        base, trial = self.first.workspace(), self.first.workspace()
+        column = problem.kernels.column
+        tests = self.dimension - n
+        scales = np.ones(n + 3)
+        own = getattr(problem, "scale", None)
+        if own is not None:
+            scales[:n] = own
+        return Work(
+            residual=np.zeros(self.dimension),
+            base=self._place(base),
+            trial=self._place(trial),
+            base_F=base[0].reshape(-1),
+            base_Q=base[column].reshape(-1),
+            trial_F=trial[0].reshape(-1),
+            trial_Q=trial[column].reshape(-1),
+            point=np.zeros(self.dimension + 1),
+            columns=np.zeros((2, n)),
+            solutions=np.zeros((6, n + 1)),
+            directions=np.zeros((4, self.dimension + 1)),
+            borders=self.borders.copy(),
+            row=np.zeros(2 * problem.n_multipliers + problem.n_margins),
+            shifted=np.zeros(n + 1),
+            scales=scales,
+            values=np.zeros(max(tests, 2)),
+            slopes=np.zeros(max(tests, 2)),
+            lines=np.zeros((2, n + 1)),
+            reference=np.array([self.reference, 0.0, 0.0, *self.bounds]),
+            small=np.zeros((3, 5)),
+            masked=np.array(self.masked, np.int64).reshape(-1),
+        )
+
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
+        scale = np.ones(self.dimension + 1)
+        if self.compiled:
+            return scale
+        own = getattr(self.base, "scale_within", None)
+        if own is not None and np.isfinite(self.bounds).all():
+            typical = own(self.bounds)
+            scale[: self.size], scale[self.size] = typical[:-1], typical[-1]
+        return scale
+
+    # ------------------------------------------------------------------ what a solution is
+    def split(self, U: np.ndarray) -> tuple[np.ndarray, Any]:
+        """(u, p) of a solution."""
+        return np.asarray(U[..., : self.size]), U[..., self.size]
+
+    def at(self, q: float) -> Any:
+        """The problem of the branches at a value of the second parameter."""
+        return self.base.against(self.inner, {self.over: float(q)})
+
+    def margin_kind(self, j: int) -> str:
+        """Kind of the border, "end" where p leaves its interval, "resonance" where a pair becomes real."""
+        own = int(self.base.n_margins)
+        if j < own:
+            return self.base.margin_kind(j)
+        return "resonance" if j == own + 2 else "end"
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period along the locus."""
+        return self.base.to_multipliers(spectrum)
+
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
+        """Of the special point, with its parameter value."""
+        inner, value = self.split(np.asarray(u, dtype=float))
+        key, vector = self.base.canonical(inner, float(value))
+        return (self.kind, self.index if self.condition == MARGIN else 0, key), np.append(vector, value)
+
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """The first parameter, and the measures of the problem."""
+        return (self.inner, *self.base.measure_names)
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures of special points along the locus."""
+        inner, values = self.split(np.atleast_2d(u))
+        result: dict[str, np.ndarray] = {self.inner: np.array(values)} if self.inner in names else {}
+        others = tuple(name for name in names if name != self.inner)
+        if others:
+            rows = [
+                self.at(q).measures(others, u[None, :], np.array([v]))
+                for u, v, q in zip(inner, values, np.atleast_1d(np.asarray(p)))
+            ]
+            result |= {name: np.array([row[name][0] for row in rows]) for name in others}
+        return result
+
+    def orbit(self, u: np.ndarray, p: float) -> Any:
+        """The special solution as the object that the problem hands to users."""
+        inner, value = self.split(u)
+        return self.at(p).orbit(inner, float(value))
+
+    def describe(self) -> dict[str, Any]:
+        """A description from which `from_description` builds the problem again."""
+        about = dict(self.base.describe())
+        return {
+            **{key: about[key] for key in ("word", "periods", "impacts", "symmetric") if key in about},
+            "name": f"{self.kind} locus",
+            "kind": self.kind,
+            "parameter": self.over,
+            "first": self.inner,
+            "index": self.index,
+            "bounds": list(self.bounds),
+            "reference": self.reference,
+            "masked": list(self.masked),
+            "borders": self.borders.tolist(),
+            "problem": about,
+            "factory": "contvines.loci.problem:from_description" if about.get("factory") else None,
+        }
+
+
+def from_description(description: Mapping[str, Any], trust: bool = False) -> LocusProblem | None:
+    """The LocusProblem that `describe` described; None where functions of the user's own are not at hand."""
+    from ..problems.registry import rebuild
+
+    problem = rebuild(description["problem"], trust)
+    if problem is None:
+        return None
+    low, high = description["bounds"]
+    return LocusProblem(
+        problem,
+        description["kind"],
+        description["parameter"],
+        description["index"],
+        (low, high),
+        np.array(description["borders"]),
+        description["reference"],
+        description["masked"],
+    )

@@ -1,0 +1,95 @@
+"""From a special point to the problem of its locus and a first point on it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..continuation.engine import Engine, Solved
+from ..continuation.settings import Settings
+from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR, pair_of
+from .linear import Linearisation
+from .problem import LocusProblem, condition
+
+ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
+
+
+def begin(
+    problem: Any,
+    kind: str,
+    u: np.ndarray,
+    p: float,
+    over: str,
+    index: int = 0,
+    bounds: tuple[float, float] = (-np.inf, np.inf),
+) -> LocusProblem:
+    """The problem of the locus through a special point, with borders and the pair that belong to that point.
+
+    Parameters
+    ----------
+    problem : Problem
+    kind : str
+        Of the special point.
+    u, p
+        The special point.
+    over : str
+        The second parameter.
+    index : int
+        Which margin, at a border.
+    bounds : (float, float)
+        Of the first parameter.
+    """
+    wanted = condition(problem, kind)
+    smooth = getattr(problem, "smooth_margin", None)
+    if wanted == MARGIN and smooth is not None:
+        index = smooth(index)
+    locus = LocusProblem(problem, kind, over, index, bounds)
+    line = Linearisation(problem)
+    line.at(u, p)
+    n = locus.size
+    null = line.null_vectors()
+    if wanted in (FOLD, BRANCH):
+        locus.borders[0, :n], locus.borders[1, :n] = null.left, null.right
+    else:  # a regular matrix: any borders that are not special
+        b = np.random.default_rng(6).standard_normal(n) / np.sqrt(n)
+        v, _ = line.null(b, null.right)
+        locus.borders[0, :n], locus.borders[1, :n] = b, v / np.linalg.norm(v)
+    if wanted == FLIP:
+        null = line.null_vectors(flipped=True)
+        locus.borders[2, :n], locus.borders[3, :n] = null.left, null.right
+    if wanted == MARGIN:
+        margins = line.row()[2 * int(problem.n_multipliers) :]
+        locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < ZERO)) or (index,)
+    if wanted == PAIR:
+        found = np.zeros(2)
+        row = line.row()
+        nearest = _critical_pair(line.spectrum(), problem.spectrum == "flow")
+        pair_of(row, int(problem.n_multipliers), problem.spectrum == "flow", nearest, found)
+        locus.reference = float(found[1])
+    return locus
+
+
+def _critical_pair(spectrum: NDArray[np.complex128], flow: bool) -> float:
+    """Position of the complex pair nearest to the stability boundary; see ``pair_of``."""
+    upper = spectrum[spectrum.imag > 0.0]
+    if not len(upper):
+        return 0.0
+    if flow:
+        return float(np.abs(upper[np.argmin(np.abs(upper.real))]) ** 2)
+    nearest = upper[np.argmin(np.abs(np.abs(upper) - 1.0))]
+    return float(nearest.real)
+
+
+def first_point(
+    locus: LocusProblem, u: np.ndarray, p: float, q: float, within: tuple[float, float], settings: Settings
+) -> tuple[Engine, Solved | None]:
+    """An engine for the locus and the solved special point; None if it does not converge or is another one."""
+    engine = Engine(locus, within, settings)
+    U = np.concatenate([u, [p], np.zeros(locus.dimension - locus.size - 1)])
+    found = engine.start(U, float(q))
+    if found is None:
+        return engine, None
+    gap = np.abs(found.u - U) / (engine.scale[:-1] + np.abs(U))
+    return engine, found if gap.max() < 0.05 else None

@@ -1,0 +1,96 @@
+"""Second and third derivatives of a problem along given directions, from its Jacobians on a line through the point.
+
+J(u + t x) is sampled at Chebyshev nodes in [-r, r] and fitted; its first and second derivative at t = 0 are the matrices
+B(x, .) and C(x, x, .). The Jacobians are exact where the problem's are, so one or two derivatives remain, and the fit
+converges like the Taylor series at the distance r. Two radii give an estimate of the error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+NODES = 12
+RADIUS = 0.4  # relative to the scale of the unknowns
+SMALLER = 0.6
+ROUGH = 0.02  # of the largest radius
+
+
+class Line(NamedTuple):
+    """B(x, .) and C(x, x, .) as matrices, and estimates of their largest errors."""
+
+    second: np.ndarray
+    third: np.ndarray
+    second_error: float
+    third_error: float
+
+
+def along_line(
+    jacobian: Callable[[np.ndarray], np.ndarray | None],
+    u: np.ndarray,
+    x: np.ndarray,
+    scale: float = 1.0,
+    rough: bool = False,
+) -> Line | None:
+    """Derivatives of the Jacobian along a direction; None where it cannot be evaluated.
+
+    Parameters
+    ----------
+    jacobian : callable
+        u -> F_u(u), of any shape (m, N); None: not evaluable.
+    u : ndarray, shape (N,)
+    x : ndarray, shape (N,)
+    scale : float
+        Typical size of the unknowns.
+    rough : bool
+        One radius and no estimate: a few digits, for scanning.
+    """
+    size = float(np.abs(x).max())
+    if size == 0.0:
+        here = jacobian(u)
+        return None if here is None else Line(np.zeros_like(here), np.zeros_like(here), 0.0, 0.0)
+    radius = RADIUS * scale / size
+    if rough:
+        once = _fit(jacobian, u, x, ROUGH * radius)
+        return None if once is None else Line(*once, 0.0, 0.0)
+    best: Line | None = None
+    for _ in range(14):
+        wide, narrow = _fit(jacobian, u, x, radius), _fit(jacobian, u, x, SMALLER * radius)
+        if wide is not None and narrow is not None:
+            errors = [float(np.abs(a - b).max()) for a, b in zip(wide, narrow)]
+            if best is None or errors[1] < best.third_error:
+                best = Line(*wide, *errors)
+            elif errors[1] > 8.0 * best.third_error:
+                break
+        radius *= SMALLER
+    return best
+
+
+def _fit(
+    jacobian: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray, x: np.ndarray, radius: float
+) -> tuple[np.ndarray, np.ndarray] | None:
+    nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+    samples = []
+    for t in nodes:
+        found = jacobian(u + radius * t * x)
+        if found is None:
+            return None
+        samples.append(found)
+    values = np.array(samples)
+    first, second = _weights()
+    shape = values.shape[1:]
+    flat = values.reshape(NODES, -1)
+    return (first @ flat).reshape(shape) / radius, (second @ flat).reshape(shape) / radius**2
+
+
+def _weights() -> tuple[np.ndarray, np.ndarray]:
+    """Weights of the samples in the first and second derivative at 0 of the polynomial through them, on [-1, 1]."""
+    nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+    chebyshev = np.polynomial.chebyshev
+    series = np.linalg.inv(chebyshev.chebvander(nodes, NODES - 1))
+    unit = np.eye(NODES)
+    first = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row)) for row in unit])
+    second = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row, 2)) for row in unit])
+    return first @ series, second @ series

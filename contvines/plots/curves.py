@@ -1,0 +1,166 @@
+"""Branches as curves on the page: broken where an angle wraps, refined where the eye would see corners."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .wraps import angles_of, broken
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+CORNER = 0.06  # radians: a turn between neighbouring segments on the page that the eye sees
+SHORT = 4.0  # pixels: a segment this short needs no refinement
+MOST = 40  # points put between two neighbours, at most
+
+
+class Curve:
+    """A run of points of one branch as lines of a picture.
+
+    Parameters
+    ----------
+    branch : Branch
+    x, y : str
+        Measures.
+    first, last : int
+        Inclusive indices of the run.
+    """
+
+    def __init__(self, branch: Any, x: str, y: str, first: int, last: int) -> None:
+        self.branch, self.x, self.y = branch, x, y
+        self.first, self.last = first, last
+        self.turning = (x in angles_of(branch), y in angles_of(branch))
+        self.lines: list[Any] = []
+        self._stored = _strands(
+            branch, x, y, branch.points[first : last + 1], branch.values[first : last + 1]
+        )
+
+    def strands(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """x and y of each line through the stored points: one, or one per point of a cycle."""
+        return [broken(xs, ys, self.turning) for xs, ys in self._stored]
+
+    def draw(self, axes: Axes, **style: Any) -> None:
+        """Draw through the stored points."""
+        self.lines = [axes.plot(xs, ys, **style)[0] for xs, ys in self.strands()]
+
+    def refine(self, axes: Axes) -> None:
+        """Put points between the stored ones where the drawn line has corners, for the limits that the axes have now."""
+        strands = self._stored
+        if len(strands[0][0]) < 3 or not self.lines:
+            return
+        wanted = np.max([_missing(axes, xs, ys) for xs, ys in strands], axis=0)
+        if wanted.any():
+            u, p, inside = between(self.branch, self.first, self.last, wanted)
+            try:
+                new = _strands(self.branch, self.x, self.y, u, p)
+            except (KeyError, ValueError, ArithmeticError):
+                return
+            for j, (xs, ys) in enumerate(strands):
+                nx, ny = (np.array(part) for part in new[j])
+                nx[~inside], ny[~inside] = xs, ys  # stored points stay what they are
+                good = np.isfinite(nx) & np.isfinite(ny) | ~inside
+                self.lines[j].set_data(*broken(nx[good], ny[good], self.turning))
+        else:
+            for line, (xs, ys) in zip(self.lines, strands, strict=True):
+                line.set_data(*broken(xs, ys, self.turning))
+
+
+def between(
+    branch: Any, first: int, last: int, counts: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points of a branch and, between neighbours i and i + 1, `counts[i]` more on cubics through points and tangents.
+
+    Parameters
+    ----------
+    branch : Branch
+    first, last : int
+        Inclusive indices.
+    counts : int array (last - first,)
+
+    Returns
+    -------
+    u : float array (m, N)
+    p : float array (m,)
+    inside : bool array (m,)
+        Which of them are no stored points.
+    """
+    z = np.column_stack([branch.points[first : last + 1], branch.values[first : last + 1]])
+    slopes = np.asarray(branch.tangents[first : last + 1], dtype=float)
+    rows, new = [], []
+    for i in range(len(z)):
+        rows.append(z[i : i + 1])
+        new.append(np.zeros(1, bool))
+        if i + 1 == len(z) or counts[i] == 0:
+            continue
+        s = (np.arange(1, counts[i] + 1) / (counts[i] + 1))[:, None]
+        chord = z[i + 1] - z[i]
+        ends = _ends(slopes[i], slopes[i + 1], chord)
+        # cubic Hermite basis on [0, 1]
+        rows.append(
+            (1 + 2 * s) * (1 - s) ** 2 * z[i]
+            + s * (1 - s) ** 2 * ends[0]
+            + s**2 * (3 - 2 * s) * z[i + 1]
+            + s**2 * (s - 1) * ends[1]
+        )
+        new.append(np.ones(int(counts[i]), bool))
+    joined = np.concatenate(rows)
+    return joined[:, :-1], joined[:, -1], np.concatenate(new)
+
+
+def _ends(first: np.ndarray, last: np.ndarray, chord: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives at both ends of an arc with these directions: those of the parabola where there is one.
+
+    A quadratic arc z(s), s in [0, 1], has z'(0) + z'(1) = 2 chord; its lengths follow by least squares.
+    """
+    length = np.linalg.norm(chord)
+    sizes = np.linalg.norm(first), np.linalg.norm(last)
+    if not (min(sizes) > 0.0 and min(first @ chord / sizes[0], last @ chord / sizes[1]) > 0.3 * length):
+        return chord, chord  # a kink, or points that do not follow one another: a straight line
+    one, two = first / sizes[0], last / sizes[1]
+    lengths = np.array([length, length])
+    if one @ two < 0.9999:
+        found = np.linalg.lstsq(np.column_stack([one, two]), 2.0 * chord, rcond=None)[0]
+        if np.all((found > 0.2 * length) & (found < 5.0 * length)):
+            lengths = found
+    return lengths[0] * one, lengths[1] * two
+
+
+def _strands(
+    branch: Any, x: str, y: str, u: np.ndarray, p: np.ndarray
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    columns = [_columns(branch, name, u, p) for name in (x, y)]
+    count = max(c.shape[1] for c in columns)
+    xs, ys = (np.broadcast_to(c, (len(p), count)) for c in columns)
+    return [(xs[:, j], ys[:, j]) for j in range(count)]
+
+
+def _columns(branch: Any, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """A measure of some solutions, shape (m, 1), or (m, n) where each point of an n-cycle has its own."""
+    if name == branch.parameter:
+        return np.asarray(p, dtype=float)[:, None]
+    each = getattr(branch.problem, "at_each_point", None)
+    if each is not None:
+        found = each(name, u, p)
+        if found is not None:
+            return np.asarray(found, dtype=float)
+    return np.asarray(branch.measure_of(name, u, p), dtype=float)[:, None]
+
+
+def _missing(axes: Axes, xs: np.ndarray, ys: np.ndarray) -> np.ndarray:
+    """How many points are wanted between neighbours, shape (n - 1,)."""
+    page = axes.transData.transform(np.column_stack([xs, ys]))
+    steps = np.diff(page, axis=0)
+    size = np.hypot(*steps.T)
+    angle = np.arctan2(steps[:, 1], steps[:, 0])
+    turn = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi)
+    sharp = np.zeros(len(size))
+    sharp[:-1] = np.maximum(sharp[:-1], turn)
+    sharp[1:] = np.maximum(sharp[1:], turn)
+    frame = axes.bbox
+    low, high = np.minimum(page[:-1], page[1:]), np.maximum(page[:-1], page[1:])
+    seen = (high[:, 0] > frame.x0) & (low[:, 0] < frame.x1) & (high[:, 1] > frame.y0) & (low[:, 1] < frame.y1)
+    with np.errstate(invalid="ignore"):
+        wanted = np.where((sharp > CORNER) & (size > SHORT) & seen, np.ceil(sharp / CORNER), 0.0)
+    return np.clip(np.nan_to_num(wanted), 0, MOST).astype(int)

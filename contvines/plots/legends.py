@@ -1,0 +1,153 @@
+"""The legend of a diagram: what its lines and marks mean, once per axes, in a place that hides nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .figures import settle
+from .style import LINES, STATES, WIDTHS, Mark
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+NARROW = 5.0  # inches: in a narrower figure the legend stands below the axes
+PLACES = ("inside", "beside", "below")
+
+
+@dataclass
+class Key:
+    """What a picture has used: states of branches, colours with a meaning, marks, and remarks in words."""
+
+    states: dict[str, None] = field(default_factory=dict)
+    colors: dict[str, str] = field(default_factory=dict)
+    marks: dict[str, Mark] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
+
+    def handles(self) -> list[Any]:
+        """Artists for the entries, in order."""
+        import matplotlib as mpl
+        from matplotlib.lines import Line2D
+
+        width, size = mpl.rcParams["lines.linewidth"], mpl.rcParams["lines.markersize"]
+        found = []
+        for state, name in STATES.items():
+            if state in self.states:
+                look = {"linestyle": LINES[state], "linewidth": WIDTHS[state] * width, "label": name}
+                found.append(Line2D([], [], color=self.colors.get(name, "0.2"), **look))
+        for name, color in self.colors.items():
+            if name not in STATES.values():
+                found.append(Line2D([], [], color=color, linewidth=width, label=name))
+        for mark in self.marks.values():
+            face = "0.2" if mark.filled else "white"
+            look = {
+                "marker": mark.marker,
+                "markerfacecolor": face,
+                "markersize": 0.9 * size,
+                "label": mark.name,
+            }
+            found.append(Line2D([], [], linestyle="none", color="0.2", **look))
+        found += [Line2D([], [], linestyle="none", label=text) for text in self.remarks]
+        return found
+
+
+def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: np.ndarray) -> None:
+    """Write or renew the legend of axes: entries that stand there already, and what `Key` adds.
+
+    Parameters
+    ----------
+    axes : Axes
+    key : Key
+    where : bool or str
+        False: none. True: inside, else where it covers nothing. "inside", "beside", "below", or a place of matplotlib's.
+    own : bool
+        Whether the figure is ours to be laid out.
+    obstacles : float array (n, 2)
+        Data coordinates of what should not be covered.
+    """
+    if where is False:
+        return
+    before = axes.get_legend()
+    known = {}
+    if before is not None:
+        for handle, text in zip(before.legend_handles, before.get_texts(), strict=False):
+            known[text.get_text()] = handle
+    for handle in (*key.handles(), *axes.get_legend_handles_labels()[0]):
+        known.setdefault(str(handle.get_label()), handle)
+    if not known:
+        return
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    options: dict[str, Any] = {"handles": list(known.values()), "labels": list(known), "handlelength": 2.4}
+    if isinstance(where, str) and where not in PLACES:
+        options["loc"] = where
+        axes.legend(**options)
+        return
+    narrow = figure.get_size_inches()[0] < NARROW
+    if where == "below" or (where is True and narrow and own):
+        _below(figure, axes, key, known)
+        return
+    axes.legend(loc="best", **options)
+    settle(figure)
+    if where == "beside" or (where is True and own and _covers(axes, obstacles)):
+        legend = axes.get_legend()
+        assert legend is not None
+        legend.set_loc("upper left")
+        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+        settle(figure)
+
+
+def hold_legend(axes: Axes) -> list[tuple[float, float, float, float]]:
+    """Keep the legend where it is now, whatever is written later; its box on the page."""
+    legend = axes.get_legend()
+    if legend is None:
+        return []
+    box = legend.get_window_extent()
+    (left, low) = axes.transAxes.inverted().transform((box.x0, box.y0))
+    legend.set_bbox_to_anchor(None)
+    legend.set_loc((float(left), float(low)))
+    return [(box.x0, box.y0, box.x1, box.y1)]
+
+
+def _below(figure: Figure, axes: Axes, key: Key, entries: dict[str, Any]) -> None:
+    """Under the axes, small, in as many columns as fit the figure; remarks go to the axis's label."""
+    import matplotlib as mpl
+    from matplotlib.font_manager import FontProperties
+
+    for remark in key.remarks:
+        entries.pop(remark, None)
+        axes.set_xlabel(f"{axes.get_xlabel()}\n{remark}")
+    size = 0.92 * FontProperties(size=mpl.rcParams["legend.fontsize"]).get_size_in_points()
+    wide = size * (0.54 * max(len(text) for text in entries) + 4.0)
+    columns = int(np.clip(figure.get_size_inches()[0] * 72.0 // wide, 1, len(entries)))
+    old = axes.get_legend()
+    if old is not None:
+        old.remove()
+    options: dict[str, Any] = {"loc": "outside lower center"}  # a place that the stubs do not know
+    figure.legend(
+        handles=list(entries.values()),
+        labels=list(entries),
+        **options,
+        ncols=columns,
+        fontsize=size,
+        handlelength=1.8,
+        handletextpad=0.5,
+        columnspacing=0.9,
+        labelspacing=0.25,
+        borderpad=0.0,
+        frameon=False,
+    )
+    settle(figure)
+
+
+def _covers(axes: Axes, obstacles: np.ndarray) -> bool:
+    legend = axes.get_legend()
+    if legend is None:
+        return False
+    box = legend.get_window_extent()
+    drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
+    points = axes.transData.transform(np.vstack([obstacles, *drawn, np.empty((0, 2))]))
+    return any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)])

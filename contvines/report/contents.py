@@ -1,0 +1,148 @@
+"""What a report shows of a graph, as data for its page: curves, special points, orbits and how to get them again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..graph.shortening import short_word
+from ..plots.diagram import default_measure
+from ..plots.style import MARKS, PLAIN, axis_label
+
+if TYPE_CHECKING:
+    from ..branch import Branch
+    from ..graph.graph import Graph
+    from ..special import SpecialPoint
+
+NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
+SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most
+MEASURES = 14  # at most, to choose the axes from
+
+
+def contents(graph: Graph, source: str) -> dict[str, Any]:
+    """The data of a page.
+
+    Parameters
+    ----------
+    graph : Graph
+        With its problems attached, or branches come without orbits.
+    source : str
+        Name of the file, as the commands on the page shall write it.
+
+    Returns
+    -------
+    dict
+        Plain numbers, text and lists.
+    """
+    from .. import __version__
+
+    y = default_measure(graph)
+    return {
+        "version": __version__,
+        "source": source,
+        "parameter": graph.parameter,
+        "within": [float(v) for v in graph.within],
+        "model": {str(k): v for k, v in graph.model.items() if not isinstance(v, dict | list)},
+        "settings": {str(k): v for k, v in graph.settings.items()},
+        "finished": graph.finished,
+        "message": graph.message,
+        "axes": {"x": graph.parameter, "y": y},
+        "names": {name: _plain(axis_label(name, unit=graph.units.get(name))) for name in _measures(graph, y)},
+        "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
+        "special": [_point(point) for point in graph.special.values()],
+        "switches": [switch.to_dict() for switch in graph.switches],
+        "orbits": _orbits(graph),
+    }
+
+
+def _measures(graph: Graph, y: str) -> list[str]:
+    names = [graph.parameter, y]
+    for branch in graph.branches.values():
+        names += [n for n in branch.measure_names if not n.endswith("_mean")]
+    return list(dict.fromkeys(names))[:MEASURES]
+
+
+def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
+    measures = {}
+    for name in _measures(graph, y):
+        try:
+            measures[name] = _short(branch.measure(name))
+        except (KeyError, ValueError):
+            continue  # a measure that this branch does not have
+    about = branch.to_dict()
+    word = about["word"]
+    return about | {
+        "word": None if word is None else str(word),
+        "what": "" if word is None else short_word(str(word)) or "stuck",
+        "stable_points": branch.stable.astype(int).tolist(),
+        "measures": measures,
+        "marks": [[int(i), label] for i, label in branch.marks],
+        "multipliers": [_pairs(row[:8]) for row in branch.multipliers],
+        "margin": _short(branch.margin),
+    }
+
+
+def _point(point: SpecialPoint) -> dict[str, Any]:
+    mark = MARKS.get(point.kind, PLAIN)
+    return point.to_dict() | {"name": mark.name, "marker": mark.marker, "index": int(point.index)}
+
+
+def _orbits(graph: Graph) -> dict[str, Any]:
+    """Per branch the scenes of its orbits, every `step`-th point; fewer samples where there are many points."""
+    kept = [b for b in graph.branches.values() if b.problem is not None and len(b)]
+    total = sum(len(b) for b in kept)
+    if not total:
+        return {}
+    fewest, most = SAMPLES
+    samples = int(np.clip(NUMBERS / (total * 8), fewest, most))
+    step = max(1, int(np.ceil(total * samples * 8 / NUMBERS)))
+    found = {}
+    for branch in kept:
+        marked = {i for i, _ in branch.marks}
+        scenes = {}
+        for i in range(len(branch)):
+            if i % step and i not in marked:
+                continue
+            scene = _scene(branch.orbit(i), samples)
+            if scene is None:
+                break  # a problem whose solutions have no motion
+            scenes[str(i)] = scene
+        if scenes:
+            found[branch.label] = scenes
+    return found
+
+
+def _scene(orbit: Any, samples: int) -> dict[str, Any] | None:
+    draw = getattr(orbit, "scene", None)
+    if draw is None:
+        return None
+    return _rounded(draw(samples))
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return _short(value, 5)
+    if isinstance(value, dict):
+        return {k: _rounded(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(v) for v in value]
+    return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
+def _short(values: Any, digits: int = 9) -> list[float | None]:
+    return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
+
+
+def _pairs(values: Any) -> list[list[float]]:
+    return [[float(f"{v.real:.8g}"), float(f"{v.imag:.8g}")] for v in values if np.isfinite(v)]
+
+
+def _plain(label: str) -> str:
+    """A matplotlib label as plain text: no dollars and commands."""
+    for old, new in (
+        ("$", ""), (r"\Omega", "Ω"), (r"\mu", "μ"), (r"\tilde g", "g"), (r"\varepsilon", "ε"), (r"\lambda", "λ"),
+        ("^+", "⁺"), ("^-", "⁻"), ("^2", "²"), ("_1", "₁"), ("_-", "₋"), (r"\,", " "),
+    ):  # fmt: skip
+        label = label.replace(old, new)
+    return label

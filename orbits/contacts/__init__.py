@@ -1,0 +1,1 @@
+"""Contact laws: walls, dry friction, switches."""

@@ -1,0 +1,279 @@
+"""The equations of an orbit of a declared machine, flight by flight, and their linear algebra.
+
+Node i = (c_i, x_i): the clock and the states just after event i; of a self-excited machine c_i is the duration of the flight that
+follows. Flight i leads from x_i to y_i; with g the function that is zero at event i + 1 and J what the event does to the states,
+
+    g(y_i) = 0,    J(y_i) - x_{i+1} = 0,
+
+n + 1 equations for n + 1 unknowns. The clock of the forcing is the phase psi: dx/dpsi = f/Omega, so that y_i depends on c_i and
+c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.linalg import get_lapack_funcs
+
+(_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
+SPARSE = 120  # unknowns from which sparse elimination is faster
+TINY = 1e-300
+LONGEST = 1e3  # clock of one flight: Newton's method has lost its way beyond it
+
+
+class Work(NamedTuple):
+    """Arrays of one linearisation: F, dF_i/dnode_i, dF_i/dnode_{i+1}, dF/dp; then states and rates at the ends of the flights."""
+
+    residual: np.ndarray
+    own: np.ndarray
+    following: np.ndarray
+    derivative: np.ndarray
+    flown: np.ndarray
+    arrival: np.ndarray
+    first_rates: np.ndarray
+    last_rates: np.ndarray
+    end: np.ndarray
+    numbers: np.ndarray
+
+
+def workspace(length: int, states: int, numbers: int) -> Work:
+    """Arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
+    L, n, d = length, states, states + 1
+    return Work(
+        np.zeros((L, d)),
+        np.zeros((L, d, d)),
+        np.zeros((L, d, d)),
+        np.zeros((L, d)),
+        np.zeros((L, n + n * (n + 1))),
+        np.zeros((L, n)),
+        np.zeros((L, n)),
+        np.zeros((L, n)),
+        np.zeros(L),
+        np.zeros((L, numbers)),
+    )
+
+
+def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
+    """F, its blocks and its parameter derivative, into `work`; returns the largest absolute residual (inf: not evaluable)."""
+    n, length = data.size, data.length
+    nodes = np.asarray(u).reshape(length, n + 1)
+    if not (np.all(np.isfinite(nodes)) and math.isfinite(p)) or not data.allowed(p):
+        return math.inf
+    numbers = work.numbers
+    numbers[:] = data.base_numbers
+    numbers[:, data.index] = p
+    begin, end = data.clocks(nodes)
+    spans = end - begin
+    if np.abs(spans).max() > LONGEST:
+        return math.inf
+    flown = work.flown
+    for i, flight in enumerate(data.flights):
+        if not flight(nodes[i, 1:], begin[i], end[i], numbers[i], flown[i]):
+            return math.inf
+    arrival = work.arrival
+    arrival[:] = flown[:, :n]
+    sensitivity = flown[:, n:].reshape(length, n, -1)
+    by_state, by_number = sensitivity[:, :, :n], sensitivity[:, :, n]
+    for values, places in data.rate_groups:
+        rates = values(
+            np.concatenate([nodes[places, 1:], arrival[places]]),
+            np.concatenate([begin[places], end[places]]),
+            np.concatenate([numbers[places], numbers[places]]),
+        )
+        work.first_rates[places], work.last_rates[places] = rates[: len(places)], rates[len(places) :]
+    work.end[:] = end
+    onward = np.empty((length, n))  # x_{i+1}
+    onward[:-1] = nodes[1:, 1:]
+    onward[-1] = data.twist * nodes[0, 1:]
+    residual, own, following, derivative = work.residual, work.own, work.following, work.derivative
+    last = work.last_rates
+    for values, places, jumps in data.event_groups:
+        if values is None:  # the strobe of a motion without events: at phase zero
+            residual[0, 0] = end[0] - data.shift
+            residual[0, 1:] = arrival[0] - onward[0]
+            own[0], following[0] = 0.0, 0.0
+            own[0, 1:, 1:] = by_state[0]
+            own[0, 1:, 0] = -by_state[0] @ work.first_rates[0]
+            following[0, 0, 0] = 1.0
+            following[0, 1:, 0] = last[0]
+            derivative[0, 0], derivative[0, 1:] = 0.0, by_number[0]
+            continue
+        table = values(arrival[places], end[places], numbers[places]).reshape(len(places), -1, n + 3)
+        # columns of `table`: value, by states, by clock, by the parameter; rows: g, then J
+        flow, speed, moved = by_state[places], last[places], by_number[places]
+        if jumps:
+            slopes, explicit, along = table[:, :, 1 : n + 1], table[:, :, n + 1], table[:, :, n + 2]
+            value = table[:, :, 0].copy()
+        else:
+            m = len(places)
+            slopes = np.zeros((m, n + 1, n))
+            slopes[:, 0] = table[:, 0, 1 : n + 1]
+            slopes[:, 1:] = data.identity
+            explicit, along = np.zeros((m, n + 1)), np.zeros((m, n + 1))
+            explicit[:, 0], along[:, 0] = table[:, 0, n + 1], table[:, 0, n + 2]
+            value = np.empty((m, n + 1))
+            value[:, 0], value[:, 1:] = table[:, 0, 0], arrival[places]
+        value[:, 1:] -= onward[places]
+        residual[places] = value
+        through = slopes @ flow
+        own[places, :, 1:] = through
+        by_end = (slopes @ speed[:, :, None])[:, :, 0]
+        following[places] = data.minus
+        if data.forced:
+            own[places, :, 0] = -(through @ work.first_rates[places][:, :, None])[:, :, 0]
+            following[places, :, 0] = by_end + explicit
+        else:
+            own[places, :, 0] = by_end
+        derivative[places] = (slopes @ moved[:, :, None])[:, :, 0] + along
+    size = float(np.abs(residual).max())
+    return size if math.isfinite(size) else math.inf
+
+
+def bordered(
+    data: Any, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+) -> float:
+    """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign."""
+    size = data.dimension
+    sides = np.zeros((size + 1, 2), order="F")
+    sides[:size, 0] = -work.residual.ravel()
+    sides[size, 0], sides[size, 1] = target, 1.0
+    if size > SPARSE:
+        return _sparse(data, work, border, sides, step, tangent)
+    matrix = np.zeros((size + 1, size + 1), order="F")
+    fill(data, work, matrix)
+    matrix[:size, size] = work.derivative.ravel()
+    matrix[size] = border
+    if not np.all(np.isfinite(matrix)):
+        return 0.0
+    # gesv: unlike getrs it does not wake other threads for a matrix of a few rows
+    factors, pivots, solution, singular = _gesv(matrix, sides)
+    diagonal = np.diagonal(factors)
+    flips = np.count_nonzero(pivots != np.arange(size + 1)) + np.count_nonzero(diagonal < 0.0)
+    sign = -1.0 if flips % 2 else 1.0
+    if singular:
+        sign = 0.0
+        nearby = matrix + 1e-16 * np.abs(matrix).max() * np.eye(size + 1)
+        _, _, solution, singular = _gesv(nearby, sides)
+        if singular:
+            return 0.0
+    step[:], tangent[:] = solution[:, 0], solution[:, 1]
+    return sign
+
+
+def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
+    """The blocks of F_u in a dense matrix."""
+    d, length = data.size + 1, data.length
+    for i in range(length):
+        rows = slice(i * d, (i + 1) * d)
+        matrix[rows, i * d : (i + 1) * d] += work.own[i]
+        if i + 1 < length:
+            matrix[rows, (i + 1) * d : (i + 2) * d] += work.following[i]
+        else:
+            matrix[rows, :d] += work.following[i] * data.turned
+
+
+def _sparse(
+    data: Any, work: Work, border: np.ndarray, sides: np.ndarray, step: np.ndarray, tangent: np.ndarray
+) -> float:
+    from scipy.sparse import csc_matrix
+    from scipy.sparse.linalg import splu
+
+    size = data.dimension
+    rows, columns = data.sparsity
+    last = work.following[-1] * data.turned
+    entries = np.concatenate(
+        [work.own.ravel(), work.following[:-1].ravel(), last.ravel(), work.derivative.ravel(), border]
+    )
+    if not np.all(np.isfinite(entries)):
+        return 0.0
+    matrix = csc_matrix((entries, (rows, columns)), shape=(size + 1, size + 1))
+    try:
+        factors = splu(matrix)
+    except RuntimeError:  # exactly singular
+        matrix = matrix + csc_matrix((np.full(size + 1, 1e-18), (np.arange(size + 1),) * 2))
+        try:
+            factors = splu(matrix)
+        except RuntimeError:
+            return 0.0
+    solution = factors.solve(sides)
+    step[:], tangent[:] = solution[:, 0], solution[:, 1]
+    negative = np.count_nonzero(factors.U.diagonal() < 0.0)
+    odd = _odd(factors.perm_r) + _odd(factors.perm_c) + negative
+    return -1.0 if odd % 2 else 1.0
+
+
+def _odd(permutation: np.ndarray) -> int:
+    """1 if a permutation is odd."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(permutation)
+    graph = coo_matrix((np.ones(n), (np.arange(n), permutation)), shape=(n, n))
+    cycles = connected_components(graph, directed=False)[0]
+    return (n - cycles) % 2
+
+
+def sparsity(length: int, d: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns of the entries of the bordered matrix, in the order in which `_sparse` lists them."""
+    i, r, c = np.meshgrid(np.arange(length), np.arange(d), np.arange(d), indexing="ij")
+    rows, own, onward = (i * d + r).ravel(), (i * d + c).ravel(), (((i + 1) % length) * d + c).ravel()
+    size = length * d
+    every = np.arange(size)
+    return (
+        np.concatenate([rows, rows, every, np.full(size + 1, size)]),
+        np.concatenate([own, onward, np.full(size, size), np.arange(size + 1)]),
+    )
+
+
+def factors(data: Any, work: Work) -> np.ndarray:
+    """Derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, states alone otherwise."""
+    own, following = work.own, work.following
+    with np.errstate(all="ignore"):
+        if data.forced:
+            clock = -own[:, :1, :] / following[:, 0, 0][:, None, None]
+            states = own[:, 1:, :] + following[:, 1:, :1] * clock
+            result = np.concatenate([clock, states], axis=1)
+        else:
+            through = own[:, :, 1:]
+            duration = -through[:, :1, :] / own[:, 0, 0][:, None, None]
+            result = through[:, 1:, :] + own[:, 1:, :1] * duration
+    if data.twist < 0.0:  # the mirror, after the last flight: the clock stays, the states turn
+        result = result.copy()
+        result[-1, (1 if data.forced else 0) :, :] *= -1.0
+    return result
+
+
+def multipliers(data: Any, work: Work) -> Any:
+    """Multipliers of the closed map between event surfaces, largest first; the one that is always zero is left out."""
+    chain = factors(data, work)
+    if not np.all(np.isfinite(chain)):
+        return np.full(data.n_multipliers, np.nan, complex)
+    size = chain.shape[1]
+    norms = np.abs(chain).sum(axis=2).max(axis=1)
+    if np.prod(np.maximum(norms, 1.0)) < SAFE or len(chain) == 1:
+        product = chain[0]
+        for factor in chain[1:]:
+            product = factor @ product
+        values = np.linalg.eigvals(product).astype(complex)
+    else:
+        values = _periodic(chain, size)
+    values = values[np.argsort(-np.abs(values), kind="stable")]
+    if data.loose is not None:  # a motion that may be shifted as a whole
+        values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
+    return values[: data.n_multipliers]
+
+
+SAFE = 1e5  # product of norms up to which the product of the factors keeps the multipliers that matter
+
+
+def _periodic(chain: np.ndarray, size: int) -> np.ndarray:
+    from orbits.multipliers.periodic_schur import multipliers as periodic
+    from orbits.multipliers.periodic_schur import scratch_size
+
+    length = len(chain)
+    re, im = np.zeros(size), np.zeros(size)
+    against = np.tile(-np.eye(size), (length, 1, 1))
+    periodic(np.ascontiguousarray(chain), against, 1.0, re, im, np.zeros(scratch_size(length, size)))
+    return re + 1j * im

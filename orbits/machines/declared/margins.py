@@ -1,0 +1,149 @@
+"""Margins of an orbit of a declared machine: nothing may happen that is not in its word, and what is in it must.
+
+Per node and the flight after it: for every contact the least value that its guard has in that flight (at the ends, unless the event
+there is its own, and at every minimum inside, found as roots of the guard's rate in the Taylor steps); the strength of the event;
+the duration.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.wall import HELD, Wall
+from orbits.machines.declared.flights import Work
+from orbits.machines.declared.words import HIT, SLIP, STICK, STROBE, SWITCH, TURN, Word
+
+OWN = (
+    1e-9  # share of a flight next to its ends in which the guard of the event there has no minimum of its own
+)
+
+
+def per_node(contacts: int) -> int:
+    """Margins per node: one per contact, the event's, the duration."""
+    return contacts + 2
+
+
+def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
+    """All margins of a linearised solution, shape (L (contacts + 2),); infinity where one does not apply."""
+    n, length, contacts = data.size, data.length, data.contacts
+    nodes = np.asarray(u).reshape(length, n + 1)
+    begin, end = data.clocks(nodes)
+    table = row.reshape(length, contacts + 2)
+    table[:] = np.inf
+    table[:, contacts + 1] = (end - begin) / data.clock_rate(work.numbers)
+    for values, guards, watch, places in data.guard_groups:
+        m, count = len(places), len(guards)
+        if not count:
+            continue
+        both = values(
+            np.concatenate([nodes[places, 1:], work.arrival[places]]),
+            np.concatenate([begin[places], end[places]]),
+            np.concatenate([work.numbers[places], work.numbers[places]]),
+        )
+        at_start, at_end = both[:m, :count], both[m:, :count]
+        rate_start, rate_end = both[:m, count:], both[m:, count:]
+        found: list[tuple[int, int, np.ndarray, float]] = []
+        for k, i in enumerate(places):
+            first, last = data.letters[i], data.letters[i + 1]
+            span = end[i] - begin[i]
+            for g, guard in enumerate(guards):
+                j = guard.contact
+                if first.contact != j:
+                    table[i, j] = min(table[i, j], at_start[k, g])
+                if last.contact != j:
+                    table[i, j] = min(table[i, j], at_end[k, g])
+                _strength(
+                    table, data, i, first, last, guard, at_start[k, g], rate_start[k, g], rate_end[k, g]
+                )
+            if not span > 0.0:
+                continue
+            for clock, g, state in watch(nodes[i, 1:], begin[i], end[i], work.numbers[i]):
+                own = OWN * span
+                j = guards[g].contact
+                if (first.contact == j and clock - begin[i] < own) or (
+                    last.contact == j and end[i] - clock < own
+                ):
+                    continue
+                found.append((i, g, state, clock))
+        if found:
+            inner = values(
+                np.array([f[2] for f in found]),
+                np.array([f[3] for f in found]),
+                work.numbers[[f[0] for f in found]],
+            )
+            for (i, g, _, _), there in zip(found, inner):
+                j = guards[g].contact
+                table[i, j] = min(table[i, j], there[g])
+
+
+def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -> None:
+    """How definite the events at both ends of flight i are, as far as this guard tells."""
+    column = data.contacts
+    following = (i + 1) % data.length
+    if guard.contact == first.contact:
+        if first.kind == TURN or first.kind == SWITCH:
+            table[i, column] = min(table[i, column], rate_start)
+        elif first.kind == STICK:
+            table[i, column] = min(table[i, column], start)
+    if guard.contact == last.contact and (
+        last.kind in (HIT, SWITCH) or (last.kind == SLIP and guard.sign == data.slips[i + 1])
+    ):
+        table[following, column] = min(table[following, column], -rate_end)
+
+
+def margin_name(word: Word, index: int) -> str:
+    """What margin `index` watches."""
+    contacts = word.alphabet.contacts
+    place, column = divmod(index, per_node(len(contacts)))
+    if column == len(contacts) + 1:
+        return "duration"
+    if column == len(contacts):
+        if not word.events:
+            return "strobe"
+        return {
+            HIT: "approach",
+            TURN: "turn",
+            STICK: "stick",
+            SLIP: "slip",
+            SWITCH: "switch",
+            STROBE: "strobe",
+        }[word.letter(place).kind]
+    mode = word.modes[place % len(word.modes)][column]
+    contact = contacts[column]
+    if isinstance(contact, Wall):
+        return "push" if mode == HELD else "wall"
+    if isinstance(contact, DryFriction):
+        return "hold" if mode == STUCK else "flight"
+    return "switch"
+
+
+def border_kind(word: Word, index: int) -> str:
+    """The kind of border that is met where margin `index` vanishes."""
+    name = margin_name(word, index)
+    if name != "duration":
+        return {
+            "wall": "wall-graze",
+            "approach": "wall-graze",
+            "push": "wall-graze",
+            "flight": "velocity-graze",
+            "turn": "stick",
+            "stick": "stick",
+            "slip": "stick",
+            "hold": "stick",
+            "switch": "switch-graze",
+            "strobe": "corner",
+        }[name]
+    if not word.events:
+        return "corner"
+    here = word.letter(index // per_node(len(word.alphabet.contacts)))
+    following = word.letter(index // per_node(len(word.alphabet.contacts)) + 1)
+    if here.contact != following.contact:
+        return "corner"
+    if here.kind == HIT:
+        return "chatter"
+    if here.kind == SWITCH:
+        return "switch-graze"
+    return "velocity-graze" if {here.kind, following.kind} == {TURN} else "stick"

@@ -1,0 +1,228 @@
+"""DeclaredOrbit: one periodic motion of a declared machine, its nodes, its stability, and whether the machine can follow it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from orbits.cycles.margins import Margin
+from orbits.machines.declared import identity
+from orbits.machines.declared.machine import Machine
+from orbits.machines.declared.margins import margin_name, per_node
+from orbits.machines.declared.problem import DeclaredProblem
+from orbits.machines.declared.solving import examined
+from orbits.machines.declared.words import Word
+
+REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
+
+
+@dataclass(frozen=True, eq=False)
+class DeclaredOrbit:
+    """A periodic orbit.
+
+    Attributes
+    ----------
+    machine : Machine
+    word : Word
+        Its events over the whole period.
+    periods : int
+        Forcing periods; 1 for a self-excited machine.
+    nodes : float array (L, n + 1)
+        Per event the phase (of a self-excited machine: the duration of the flight that follows) and the states after it.
+    params : float array (P,)
+    """
+
+    machine: Machine
+    word: Word
+    periods: int
+    nodes: np.ndarray = field(repr=False)
+    params: np.ndarray = field(repr=False)
+
+    # ------------------------------------------------------------------ facts
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name."""
+        return dict(zip(self.machine.parameter_names, map(float, self.params)))
+
+    @property
+    def impacts(self) -> int:
+        """Impacts per period of the orbit."""
+        return self.word.impacts
+
+    @property
+    def period(self) -> float:
+        """Duration."""
+        if not self.machine.forced:
+            return float(self.nodes[:, 0].sum())
+        return 2.0 * np.pi * self.periods / self.parameters[str(self.machine.phase_rate)]
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether the orbit equals its mirror image after half its period."""
+        return identity.is_symmetric(self.word, self.periods, self.nodes, self.machine.forced)
+
+    @cached_property
+    def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
+        problem = self.problem(symmetric=False)
+        residual, spectrum, margins = examined(problem, *self.seed(problem))
+        return residual, problem.to_multipliers(spectrum), margins
+
+    @property
+    def residual(self) -> float:
+        """Largest residual of the equations."""
+        return self._examined[0]
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Multipliers of the period, complex, largest modulus first; none of them is trivial."""
+        return self._examined[1]
+
+    @property
+    def half_multipliers(self) -> np.ndarray:
+        """Multipliers of the half map (half a period, then the mirror) of a symmetric orbit.
+
+        Raises
+        ------
+        ValueError
+            If the orbit is not symmetric.
+        """
+        if not self.symmetric:
+            raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
+        problem = self.problem(symmetric=True)
+        return examined(problem, *self.seed(problem))[1]
+
+    @property
+    def margins(self) -> list[Margin]:
+        """The finite margins, all positive for a real orbit."""
+        width = per_node(len(self.machine.contacts))
+        return [
+            Margin(margin_name(self.word, index), index // width, float(value))
+            for index, value in enumerate(self._examined[2])
+            if np.isfinite(value)
+        ]
+
+    @property
+    def margin(self) -> float:
+        """The smallest margin."""
+        return float(np.min(self._examined[2]))
+
+    @property
+    def real(self) -> bool:
+        """Whether the machine can follow the orbit: all margins positive."""
+        return self.margin > REAL
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.all(np.abs(self.multipliers) < 1.0))
+
+    def measure(self, name: str) -> float:
+        """One measure of the orbit; names: `problem().measure_names`."""
+        return float(self.measures(name)[name])
+
+    def measures(self, *wanted: str) -> dict[str, float]:
+        """Measures by name, all of them if none is named."""
+        from orbits.machines.declared.measures import measure, names
+
+        asked = wanted or names(self.machine)
+        values = measure(
+            self.machine, self.word, self.periods, self.nodes[None], self.params[None], list(asked)
+        )
+        return {name: float(value[0]) for name, value in values.items()}
+
+    # ------------------------------------------------------------------ other descriptions of it
+    def _with(self, word: Word, periods: int, nodes: np.ndarray) -> DeclaredOrbit:
+        return DeclaredOrbit(self.machine, word, periods, nodes, self.params)
+
+    def root(self) -> DeclaredOrbit:
+        """The shortest orbit of which this one is a repetition."""
+        return self._with(*identity.root(self.word, self.periods, self.nodes, self.machine.forced))
+
+    def repeat(self, times: int) -> DeclaredOrbit:
+        """The same orbit, written `times` times."""
+        turn = 2.0 * np.pi * self.periods if self.machine.forced else 0.0
+        parts = []
+        for copy in range(times):
+            part = self.nodes.copy()
+            part[:, 0] += copy * turn
+            parts.append(part)
+        periods = self.periods * times if self.machine.forced else self.periods
+        return self._with(self.word.repeat(times), periods, np.concatenate(parts))
+
+    def mirror(self) -> DeclaredOrbit:
+        """The mirror image, half a forcing period later.
+
+        Raises
+        ------
+        ValueError
+            If the machine declares no mirror.
+        """
+        if self.word.alphabet.mirror is None:
+            raise ValueError(f"the machine {self.machine.name!r} declares no mirror symmetry")
+        nodes = -self.nodes
+        nodes[:, 0] = self.nodes[:, 0] + (np.pi if self.machine.forced else 0.0)
+        return self._with(self.word.mirror(), self.periods, nodes)
+
+    def rotate(self, places: int) -> DeclaredOrbit:
+        """The same orbit, read from the event `places` further on."""
+        if not len(self.word):
+            return self
+        n = len(self.word)
+        nodes = np.roll(self.nodes, -places, axis=0)
+        if self.machine.forced:
+            nodes[:, 0] += ((np.arange(n) + places) // n) * 2.0 * np.pi * self.periods
+        return self._with(self.word.rotate(places), self.periods, nodes)
+
+    # ------------------------------------------------------------------ towards continuation
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> DeclaredProblem:
+        """The orbit's word as a continuation problem against `parameter` (default: the forcing's frequency)."""
+        half = self.symmetric if symmetric is None else symmetric
+        name = parameter or self.machine.default_parameter
+        return DeclaredProblem(self.machine, self.word, self.periods, name, self.params, half)
+
+    def seed(self, problem: DeclaredProblem) -> tuple[np.ndarray, float]:
+        """Unknowns and parameter value of this orbit in `problem`."""
+        return problem.reduce(self.nodes), float(self.params[problem.index])
+
+    # ------------------------------------------------------------------ seeing and proving
+    def sample(self, points: int = 400) -> dict[str, np.ndarray]:
+        """States over one period; see `orbits.machines.declared.sampling.sample`."""
+        from orbits.machines.declared.sampling import sample
+
+        return sample(self, points)
+
+    def replay(self) -> float:
+        """Largest deviation of the event-driven simulation over one period; see `orbits.machines.declared.deviation`."""
+        from orbits.machines.declared.deviation import deviation
+
+        return deviation(self)
+
+    def plot(self, **options: Any) -> Any:
+        """Phase portrait and time history; see `orbits.plots.declared.portrait`."""
+        from orbits.plots.declared import portrait
+
+        return portrait(self, **options)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The orbit as JSON: events, multipliers, margins."""
+        clock = "phase" if self.machine.forced else "duration"
+        events = self.word.events or ("",)
+        nodes = [
+            {"event": event, clock: float(row[0]), **dict(zip(self.machine.states, map(float, row[1:])))}
+            for event, row in zip(events, self.nodes)
+        ]
+        return {
+            "word": self.word.text,
+            "periods": self.periods,
+            "impacts": self.impacts,
+            "symmetric": self.symmetric,
+            "parameters": self.parameters,
+            "nodes": nodes,
+            "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
+            "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],
+            "real": self.real,
+            "residual": self.residual,
+        }

@@ -1,0 +1,406 @@
+"""DeclaredProblem: the orbits of a declared machine with one word, as solutions of F(u, p) = 0.
+
+The contract is that of `orbits.problem.OrbitProblem`; kernels are plain Python around the compiled flights.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from orbits.machines.declared import flights
+from orbits.machines.declared.identity import canonical, is_symmetric
+from orbits.machines.declared.identity import root as shortest
+from orbits.machines.declared.machine import Machine
+from orbits.machines.declared.margins import border_kind, fill_margins, per_node
+from orbits.machines.declared.words import STROBE, Letter, Word
+from orbits.protocol import Embedding, Symmetry
+
+TURN_OF_PHASE = 2.0 * np.pi
+STROBED = Letter("", -1, STROBE)
+
+
+class Kernels(NamedTuple):
+    """The three functions that a continuation loop calls; plain Python."""
+
+    linearise: Any
+    bordered: Any
+    inspect: Any
+    compiled: bool = False
+    digest: str = "declared"
+
+
+def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
+    """Multipliers as (re, im) pairs, then the margins, into `row`."""
+    m = data.n_multipliers
+    values = flights.multipliers(data, work)
+    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = values.real, values.imag
+    fill_margins(data, u, work, row[2 * m :])
+
+
+KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
+
+
+class DeclaredProblem:
+    """Periodic orbits with a given word, against one parameter of a declared machine.
+
+    Parameters
+    ----------
+    machine : Machine
+    word : Word
+        Of the whole cycle.
+    periods : int
+        Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
+    parameter : str
+    params : float array (P,)
+        The entry of `parameter` is the starting value only.
+    symmetric : bool
+        Solve for symmetric orbits, on half the word.
+
+    Raises
+    ------
+    ValueError
+        If the parameter is unknown, or `symmetric` is asked of a word whose halves are not mirror images.
+    """
+
+    spectrum = "map"
+    loose: int | None = None
+
+    def __init__(
+        self,
+        machine: Machine,
+        word: Word,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
+    ) -> None:
+        if parameter not in machine.parameter_names:
+            raise ValueError(
+                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}; choose one of "
+                + ", ".join(machine.parameter_names)
+            )
+        if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):
+            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
+        if not len(word) and not machine.forced:
+            raise ValueError(
+                f"the machine {machine.name!r} has no forcing, so a motion without events is no cycle whose period can be "
+                "counted; give a word"
+            )
+        self.machine, self.word, self.periods = machine, word, int(periods)
+        self.parameter, self.params = parameter, np.array(params, dtype=float)
+        self.symmetric, self.forced = bool(symmetric), machine.forced
+        self.index = machine.parameter_names.index(parameter)
+        self.size, self.contacts = machine.size, len(machine.contacts)
+        whole = max(1, len(word))
+        self.length = whole if not symmetric or not len(word) else whole // 2
+        self.dimension = self.length * (self.size + 1)
+        self.twist = -1.0 if symmetric else 1.0
+        self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0
+        self.n_multipliers = self.size if self.forced else self.size - 1
+        self.n_margins = per_node(self.contacts) * self.length
+        self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
+        self.period_shift = np.zeros(self.dimension) if self.forced else None
+        if self.period_shift is not None:
+            self.period_shift[:: self.size + 1] = TURN_OF_PHASE
+        self.turned = np.full(self.size + 1, self.twist)
+        self.turned[0] = 1.0
+        self.identity = np.eye(self.size)
+        self.minus = np.zeros((self.size + 1, self.size + 1))
+        self.minus[1:, 1:] = -self.identity
+        self.kernels, self.data = KERNELS, self
+        self._assign()
+
+    def _assign(self) -> None:
+        """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
+        compiled, e, word = self.machine.compiled, self.machine.equations, self.word
+        modes = [word.modes[i % len(word.modes)] for i in range(self.length)]
+        keys = [e.pattern_key(mode) for mode in modes]
+        active = (self.index,)
+        self.base_numbers = np.array([compiled.numbers(self.params, mode) for mode in modes])
+        self.letters = [word.letter(i) if len(word) else STROBED for i in range(self.length + 1)]
+        self.slips = [
+            word.modes[i % len(word.modes)][letter.contact] if letter.contact >= 0 else 0
+            for i, letter in enumerate(self.letters)
+        ]
+        self.flights = [compiled.flight(key, active) for key in keys]
+        self.rate_groups = [
+            (compiled.rates(key), np.array([i for i in range(self.length) if keys[i] == key]))
+            for key in dict.fromkeys(keys)
+        ]
+        events: dict[int, tuple[Any, list[int], bool]] = {}
+        for i in range(self.length):
+            letter = self.letters[i + 1]
+            if letter.kind == STROBE:
+                events[-1] = (None, [i], False)
+                continue
+            values = compiled.event(letter, self.slips[i + 1], keys[i], active)
+            events.setdefault(id(values), (values, [], values.count > self.size + 3))[1].append(i)
+        self.event_groups = [(values, np.array(places), jumps) for values, places, jumps in events.values()]
+        self._keys = keys
+
+    @cached_property
+    def guard_groups(self) -> list[tuple[Any, Any, Any, list[int]]]:
+        """(guards compiled, guards, watch, flights) per pattern."""
+        compiled, e = self.machine.compiled, self.machine.equations
+        return [
+            (
+                compiled.guards(key),
+                e.pattern(key).guards,
+                compiled.watch(key),
+                [i for i in range(self.length) if self._keys[i] == key],
+            )
+            for key in dict.fromkeys(self._keys)
+        ]
+
+    @cached_property
+    def sparsity(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of the bordered matrix's entries."""
+        return flights.sparsity(self.length, self.size + 1)
+
+    # ------------------------------------------------------------------ numerics
+    def workspace(self) -> flights.Work:
+        """Arrays for the kernels."""
+        return flights.workspace(self.length, self.size, self.base_numbers.shape[1])
+
+    def values(self, p: float) -> np.ndarray:
+        """The parameter vector at parameter value `p`."""
+        params = self.params.copy()
+        params[self.index] = p
+        return params
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return float(params[self.index])
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters and measures: a declared machine has plain numbers."""
+        return {}
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name."""
+        return dict(zip(self.machine.parameter_names, map(float, self.params)))
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> DeclaredProblem:
+        """The same orbits against another parameter, with other values."""
+        params = self.machine.vector({**self.parameters, **(values or {})})
+        return DeclaredProblem(self.machine, self.word, self.periods, parameter, params, self.symmetric)
+
+    def allowed(self, p: float) -> bool:
+        """Whether the parameter may have this value."""
+        return not (self.machine.phase_rate == self.parameter and p <= 0.0)
+
+    def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Clock at the beginning and the end of every flight, from the nodes (L, n + 1)."""
+        if not self.forced:
+            return np.zeros(self.length), nodes[:, 0].copy()
+        begin = nodes[:, 0].copy()
+        end = np.empty_like(begin)
+        end[:-1] = begin[1:]
+        end[-1] = begin[0] + self.shift
+        return begin, end
+
+    def clock_rate(self, numbers: np.ndarray) -> Any:
+        """Clock per unit of time, from runtime numbers (L, ...)."""
+        if not self.forced:
+            return 1.0
+        return numbers[:, self.machine.parameter_names.index(str(self.machine.phase_rate))]
+
+    def margin_kind(self, j: int) -> str:
+        """Kind of the border at which margin `j` vanishes."""
+        return border_kind(self.word, j)
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        spectrum = np.asarray(spectrum, dtype=complex)
+        return spectrum**2 if self.symmetric else spectrum
+
+    # ------------------------------------------------------------------ shapes
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n + 1)."""
+        u = np.asarray(u, dtype=float)
+        nodes = u.reshape(*u.shape[:-1], self.length, self.size + 1)
+        if not self.symmetric or not len(self.word):
+            return nodes
+        return np.concatenate([nodes, self._image(nodes)], axis=-2)
+
+    def _image(self, nodes: np.ndarray) -> np.ndarray:
+        image = -nodes
+        image[..., 0] = nodes[..., 0] + self.shift
+        return image
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
+
+    # ------------------------------------------------------------------ symmetries and larger problems
+    @cached_property
+    def symmetries(self) -> tuple[Symmetry, ...]:
+        """Images of a solution of the full word: the mirror some places on, and a doubled word's shift by its half."""
+        if self.symmetric or not len(self.word):
+            return ()
+        found = []
+        places = self._mirror_places()
+        if places:
+            periods = 2 * self.periods * places // self.length if self.forced else 1
+            half = self.sibling(self.word.head(2 * places), periods, symmetric=True)
+            found.append(
+                Symmetry(
+                    "symmetry-breaking",
+                    lambda u: self._rotated(u, places, -1.0),
+                    lambda u: (half, half.reduce(self.expand(u))),
+                )
+            )
+        if self.word.repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
+            root = self.sibling(
+                self.word.head(len(self.word) // 2), max(1, self.periods // 2), symmetric=False
+            )
+            found.append(
+                Symmetry(
+                    "period-doubling",
+                    lambda u: self._rotated(u, self.length // 2, 1.0),
+                    lambda u: (root, root.reduce(self.expand(u))),
+                )
+            )
+        return tuple(found)
+
+    def root(self, u: np.ndarray, p: float) -> tuple[DeclaredProblem, np.ndarray] | None:
+        """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
+        word, periods, nodes = shortest(self.word, self.periods, self.expand(u), self.forced)
+        if len(word) == len(self.word):
+            return None
+        found = self.sibling(word, periods, is_symmetric(word, periods, nodes, self.forced))
+        return found, found.reduce(nodes)
+
+    def _mirror_places(self) -> int:
+        """After how many events the word may be its own mirror image, an odd number of half periods on; 0: never."""
+        word = self.word
+        if word.alphabet.mirror is None:
+            return 0
+        n = len(word)
+        for places in range(1, n // 2 + 1):
+            if n % (2 * places):
+                continue
+            times = n // (2 * places)
+            if self.forced and (self.periods % times or (self.periods // times) % 2 == 0):
+                continue
+            if word.rotate(places) == word.mirror():
+                return places
+        return 0
+
+    def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
+        """The solution read `places` events further on, with its states times `sign`."""
+        nodes = np.asarray(u).reshape(self.length, self.size + 1)
+        image = np.roll(nodes, -places, axis=0) * np.r_[1.0, np.full(self.size, sign)]
+        if self.forced:
+            turn = self.shift * places / self.length
+            image[: self.length - places, 0] -= turn
+            image[self.length - places :, 0] += self.shift - turn
+        return image.ravel()
+
+    def sibling(
+        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+    ) -> DeclaredProblem:
+        """The problem of another word of the same machine against the same parameter."""
+        given = self.params if params is None else params
+        return DeclaredProblem(self.machine, word, periods, self.parameter, given, symmetric)
+
+    def offspring(
+        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
+    ) -> list[Embedding]:
+        """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
+        along = np.asarray(tangent[:-1])
+        if kind == "symmetry-breaking" and self.symmetric and len(self.word):
+            full = self.sibling(self.word, self.periods, symmetric=False)
+            image = -along.reshape(self.length, -1)
+            image[:, 0] *= -1.0
+            direction = np.concatenate([along, image.ravel()])
+            return [Embedding(full, full.reduce(self.expand(u)), np.append(direction, tangent[-1]), kind)]
+        if kind == "period-doubling" and not self.symmetric and len(self.word):
+            double = self.sibling(self.word.double(), 2 * self.periods if self.forced else 1, symmetric=False)
+            nodes = self.expand(u)
+            second = nodes.copy()
+            second[:, 0] += self.shift
+            direction = np.append(np.concatenate([along, along]), tangent[-1])
+            return [Embedding(double, np.concatenate([nodes, second]).ravel(), direction, kind)]
+        if kind == "branch-point":
+            return [Embedding(self, np.array(u), np.array(tangent), kind)]
+        return []
+
+    def beyond(self, point: Any) -> Sequence[Any]:
+        """The orbits on the other side of a border, with the words that physics writes."""
+        from orbits.machines.declared.crossing import cross
+
+        return cross(self, point)
+
+    # ------------------------------------------------------------------ identity
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
+        """Key and vector that are equal for one orbit in all its descriptions."""
+        return canonical(self.word, self.periods, self.expand(u), self.forced)
+
+    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
+        """Whether a solution of another problem at the same parameter value is this motion, or its mirror image."""
+        from orbits.machines.declared.crossing import SAME, distance
+
+        if not isinstance(other, DeclaredProblem) or other.machine is not self.machine:
+            return False
+        return distance(self.orbit(u, p), other.orbit(v, p)) <= SAME
+
+    # ------------------------------------------------------------------ for people
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Measures that this machine's orbits have."""
+        from orbits.machines.declared.measures import names
+
+        return names(self.machine)
+
+    @property
+    def angles(self) -> tuple[str, ...]:
+        """Measures that are angles."""
+        return ("phase",)
+
+    @property
+    def default_measure(self) -> str:
+        """The measure that a diagram shows when none is asked for: impact speeds, or how far the first state goes."""
+        named = "impact_speed" in self.measure_names
+        return "impact_speed" if named else f"max_{self.machine.states[0]}"
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
+        from orbits.machines.declared.measures import measure
+
+        p = np.atleast_1d(np.asarray(p, dtype=float))
+        nodes = self.expand(np.atleast_2d(u))
+        params = np.array([self.values(value) for value in p])
+        return measure(self.machine, self.word, self.periods, nodes, params, names)
+
+    def orbit(self, u: np.ndarray, p: float) -> Any:
+        """The solution as a `DeclaredOrbit`."""
+        from orbits.machines.declared.orbit import DeclaredOrbit
+
+        return DeclaredOrbit(self.machine, self.word, self.periods, self.expand(u), self.values(p))
+
+    def replay(self, u: np.ndarray, p: float) -> float | None:
+        """Largest deviation of the event-driven simulation from the orbit over its period."""
+        return self.orbit(u, p).replay()
+
+    def describe(self) -> dict[str, Any]:
+        """A description that `rebuild` understands, ready for JSON."""
+        return {
+            "factory": "orbits.machines.declared.stored:rebuild",
+            "name": f"P_{self.word.impacts}^{self.periods}",
+            "model": self.machine.settings(),
+            "word": self.word.text,
+            "events": list(self.word.events),
+            "modes": [list(mode) for mode in self.word.modes],
+            "periods": self.periods,
+            "impacts": self.word.impacts,
+            "parameter": self.parameter,
+            "params": [float(value) for value in self.params],
+            "symmetric": self.symmetric,
+        }

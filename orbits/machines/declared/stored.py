@@ -1,0 +1,70 @@
+"""Problems of declared machines from what a file keeps of them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from orbits.machines.declared.machine import Machine
+from orbits.machines.declared.page import digest_of, load_page
+from orbits.machines.declared.problem import DeclaredProblem
+from orbits.machines.declared.words import Word
+
+
+def page_changed(settings: dict[str, Any]) -> str:
+    """A sentence if the page of a stored machine is gone or has changed since; empty if it is as it was."""
+    path = Path(settings["page"])
+    if not settings["page"]:
+        return "the machine was declared at a prompt, so its page cannot be found again"
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError:
+        return f"{path}: the page that declared the machine is gone; the file keeps its text"
+    if digest_of(text) != settings["digest"]:
+        return f"{path}: the page has changed since this file was made; the file keeps the text that was used"
+    return ""
+
+
+def loaded(settings: dict[str, Any]) -> Machine | None:
+    """The machine, if its page has been run in this process already."""
+    for module in list(sys.modules.values()):
+        if getattr(module, "__file__", None) is None:
+            continue
+        value = vars(module).get(settings["object"]) if settings["object"] else None
+        if isinstance(value, Machine) and value.page.digest == settings["digest"]:
+            return value
+    return None
+
+
+def rebuild(description: dict[str, Any], trust: bool = False) -> DeclaredProblem | None:
+    """The problem that `DeclaredProblem.describe` described.
+
+    A machine that this process has already is taken as it is. Else its page has to be run: only with `trust`; without it the
+    answer is None.
+
+    Raises
+    ------
+    ValueError
+        If the page is gone or has changed; the sentence says so.
+    """
+    settings = description["model"]
+    machine = loaded(settings)
+    if machine is None:
+        if not trust:
+            return None
+        problem = page_changed(settings)
+        if problem:
+            raise ValueError(problem)
+        machine = load_page(settings["page"], settings["object"])
+    word = Word(tuple(description["events"]), tuple(map(tuple, description["modes"])), machine.alphabet)
+    return DeclaredProblem(
+        machine,
+        word,
+        description["periods"],
+        description["parameter"],
+        np.array(description["params"]),
+        description["symmetric"],
+    )

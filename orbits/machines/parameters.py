@@ -1,0 +1,122 @@
+"""A machine's parameters: name, meaning, unit, symbol and limits, in one place.
+
+Refusals, studies, tables and axes read them from here; nothing else knows what a parameter may be.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+LARGEST = 1e6
+"""Of a number in a study, in the machine's own units, where all numbers are of order one; squares stay far from overflow."""
+
+
+class ParameterError(ValueError):
+    """A parameter without a sensible value; the sentence names it, its value and what would do."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """An interval of numbers.
+
+    Attributes
+    ----------
+    low, high : float
+        Its ends; infinite where there is none.
+    open : bool
+        Whether `low` itself is left out.
+    """
+
+    low: float = -math.inf
+    high: float = math.inf
+    open: bool = False
+
+    def __contains__(self, value: float) -> bool:
+        return (self.low < value if self.open else self.low <= value) and value <= self.high
+
+    @property
+    def text(self) -> str:
+        """As it follows "a number"."""
+        if self.low == -math.inf and self.high == math.inf:
+            return "that is finite"
+        if self.high == math.inf:
+            return f"above {self.low:g}" if self.open else f"{self.low:g} or above"
+        if self.open:
+            return f"above {self.low:g} and at most {self.high:g}"
+        return f"from {self.low:g} to {self.high:g}"
+
+    @property
+    def in_studies(self) -> Limits:
+        """The same for values in studies, which are neither huge nor, where 0 is left out, tiny."""
+        if self.open and self.low == 0.0:
+            return Limits(1.0 / LARGEST, min(self.high, LARGEST))
+        return Limits(max(self.low, -LARGEST), min(self.high, LARGEST), self.open)
+
+
+POSITIVE = Limits(0.0, open=True)
+NOT_NEGATIVE = Limits(0.0)
+RESTITUTION = Limits(0.0, 1.0, open=True)
+ANY = Limits()
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a machine.
+
+    Attributes
+    ----------
+    name : str
+        As in studies and in Python.
+    meaning : str
+        What it is, in a few words.
+    limits : Limits
+        Values that make sense.
+    symbol : str
+        As in formulas, in TeX without dollars.
+    unit : str
+        In which it is counted; "" for a pure number.
+    example : float
+        A usual value.
+    words : mapping
+        Words that stand for values.
+    """
+
+    name: str
+    meaning: str
+    limits: Limits
+    symbol: str
+    unit: str = ""
+    example: float = 1.0
+    words: Mapping[str, float] = field(default_factory=dict)
+
+    def number(self, value: Any) -> float:
+        """The number that a value stands for.
+
+        Raises
+        ------
+        ParameterError
+            If it is no finite number within the limits, nor one of the words.
+        """
+        name, says = self.name, self.limits.text
+        if isinstance(value, str) and self.words:
+            if value not in self.words:
+                known = ", ".join(f'"{word}"' for word in self.words)
+                raise ParameterError(f"{name} = {value!r} is unknown; give {known} or a number {says}")
+            return self.words[value]
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            raise ParameterError(f"{name} = {value!r} is not a number; give a number {says}") from None
+        if not math.isfinite(number):
+            raise ParameterError(f"{name} = {number} is not finite; give a number {says}")
+        if number not in self.limits:
+            raise ParameterError(f"{name} = {number:g} is out of range; give a number {says}")
+        return number
+
+    def named(self, value: Any) -> Any:
+        """The word for a value where there is one, else the number."""
+        number = self.number(value)
+        return next((word for word, code in self.words.items() if code == number), number)

@@ -1,0 +1,296 @@
+"""A machine whose parameters are physical quantities: kilograms, millimetres and hertz outside, its own numbers inside.
+
+The maps, the simulator and all else read the machine's dimensionless numbers, to whose vector the scales are appended. What varies is
+a quantity, counted in the unit in which it was given; it may move several numbers (`orbits.machines.path`). Measures are
+multiplied by what one dimensionless unit is.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+from types import ModuleType
+from typing import Any, ClassVar
+
+import numpy as np
+
+from orbits.machines.base import Model
+from orbits.machines.parameters import POSITIVE, Parameter
+from orbits.machines.path import along
+from orbits.machines.physical import units
+from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent
+
+HEAVY = 0.5  # share of the oscillator's mass from which on an absorber is none
+
+
+def tables(model: type[Model]) -> ModuleType:
+    """The module with a machine's `QUANTITIES`, `GAUGES`, `SCALES` and `completed`.
+
+    Raises
+    ------
+    QuantityError
+        If the machine has none.
+    """
+    room = model.__module__.rpartition(".")[0]
+    try:
+        return importlib.import_module(f"{room}.quantities")
+    except ModuleNotFoundError:
+        raise QuantityError(
+            f'units = "si": the machine {model.name!r} has no physical quantities of its own; leave units out'
+        ) from None
+
+
+def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section: str = "") -> Any:
+    """The machine called `name` with these quantities.
+
+    Parameters
+    ----------
+    name : str
+        As in studies.
+    given : mapping
+        Quantities as text, ``{"half_width": "15 mm", ...}``; those without a unit may be numbers.
+    unusual : bool
+        Allow values that no machine of the kind has.
+    section : str
+        Put before the names in refusals.
+
+    Returns
+    -------
+    Model
+        Of the class that `name` stands for; its quantities in `amounts` are counted in the units that were used.
+
+    Raises
+    ------
+    QuantityError
+        If a quantity is unknown, missing, of the wrong dimension, implausible, or said twice.
+    """
+    from orbits.machines.catalogue import model_class
+
+    base = model_class(name)
+    if issubclass(base, Physical):
+        raise QuantityError(f"the machine {name!r} has units already")
+    table = tables(base)
+    known: dict[str, Quantity] = table.QUANTITIES
+    counted: dict[str, tuple[float, str]] = {}
+    values: dict[str, float] = {}
+    for key, value in given.items():
+        if key not in known:
+            raise QuantityError(
+                f"{section}{key} = {value!r}: the machine {name!r} has no such quantity; it has {', '.join(known)}"
+            )
+        if isinstance(value, str) and key in base.parameter_names:
+            value = base.parameter(key).words.get(value, value)
+        counted[key] = units.read(known[key], value, section)
+        values[key] = units.si(known[key], *counted[key])
+        if not unusual:
+            units.check_usual(known[key], values[key], f"{section}{key} = {value!r}")
+    chosen = independent(known, values)
+    values = table.completed(values)
+    for quantity in chosen:
+        unit = units.unit_of(quantity)
+        if quantity.name in values:
+            counted.setdefault(quantity.name, (values[quantity.name] / units.si(quantity, 1.0, unit), unit))
+            continue
+        if quantity.default is None:
+            others = [q.name for q in known.values() if q.choice == quantity.choice and q is not quantity]
+            said = f" (or {', '.join(others)} instead)" if others else ""
+            would = f'"{quantity.example}"' if quantity.unit else quantity.example
+            raise QuantityError(f"{section}{quantity.name} is missing{said}: {would} would do")
+        counted[quantity.name] = units.read(quantity, quantity.default)
+    return _assembled(base, table, chosen, counted, unusual)
+
+
+def _assembled(
+    base: type[Model],
+    table: ModuleType,
+    chosen: tuple[Quantity, ...],
+    counted: Mapping[str, tuple[float, str]],
+    unusual: bool,
+) -> Any:
+    said = tuple(counted[q.name][1] for q in chosen)
+    sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, said)])
+    basis = Basis(chosen, (*base.parameter_names, *table.SCALES), sizes)
+    amounts = np.array([counted[q.name][0] for q in chosen])
+    numbers = dict(zip(basis.numbers, (float(v) for v in basis.numbers_of(amounts))))
+    machine = _made(base, numbers, basis, amounts, said, unusual)
+    ratio = numbers.get("mass_ratio", 0.0)
+    if ratio > HEAVY and not unusual:
+        raise QuantityError(
+            f"absorber_mass is {ratio:.3g} times oscillator_mass, which is implausible for an absorber: at most {HEAVY} times "
+            "would do; if it is meant, say unusual = true in [model]"
+        )
+    return machine
+
+
+def _made(
+    base: type[Model],
+    numbers: Mapping[str, float],
+    basis: Basis,
+    counts: np.ndarray,
+    said: tuple[str, ...],
+    unusual: bool,
+) -> Any:
+    """The machine with these numbers, and what was said of it."""
+    cls = _class_of(base)
+    own = cls.__dataclass_fields__
+    machine = cls(**{name: value for name, value in numbers.items() if name in own})
+    loose = {name: value for name, value in numbers.items() if name not in own}
+    for name, value in {
+        "basis": basis, "counts": counts, "said": said, "loose": loose, "unusual": unusual, "base": base,
+    }.items():  # fmt: skip
+        object.__setattr__(machine, name, value)
+    return machine
+
+
+@cache
+def _class_of(base: type[Model]) -> Any:
+    """The machine's class with the scales among its fields."""
+    table = tables(base)
+    body: dict[str, Any] = {
+        "__annotations__": dict.fromkeys(table.SCALES, float),
+        "__module__": __name__,
+        "__doc__": base.__doc__,
+        "table": (*base.table, *(Parameter(name, "a scale", POSITIVE, name) for name in table.SCALES)),
+        "tables": table,
+    }
+    made = type(f"Physical{base.__name__}", (Physical, base), body)
+    return dataclass(frozen=True, kw_only=True)(made)
+
+
+class Physical(Model):
+    """What a physical machine does otherwise than the machine of numbers behind it; see the top of this file."""
+
+    tables: ClassVar[ModuleType]
+    base: type[Model]
+    basis: Basis
+    counts: np.ndarray
+    said: tuple[str, ...]
+    loose: dict[str, float]
+    unusual: bool
+
+    # ------------------------------------------------------------------ quantities
+    @property
+    def amount_names(self) -> tuple[str, ...]:
+        return self.basis.names
+
+    def amounts(self, params: np.ndarray) -> np.ndarray:
+        return self.basis.amounts_of(np.asarray(params, dtype=float))
+
+    def path(self, name: str, params: np.ndarray) -> np.ndarray:
+        return self.basis.path(self.place_of(name), self.amounts(params))
+
+    @property
+    def law(self) -> np.ndarray:
+        return self.basis.law.copy()
+
+    @property
+    def quantities(self) -> dict[str, float]:
+        """The machine's quantities by name, counted in `units`."""
+        return dict(zip(self.amount_names, (float(value) for value in self.counts)))
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Units of quantities and measures by name; plain numbers have none."""
+        from orbits.cycles.measures import KINDS, names
+
+        gauges: dict[str, Quantity] = self.tables.GAUGES
+        found = dict(zip(self.amount_names, self.said))
+        for name in names(self):
+            kind = KINDS.get(name, "")
+            found.setdefault(
+                name, "rad" if kind == "angle" else units.unit_of(gauges[kind]) if kind in gauges else ""
+            )
+        return {name: unit for name, unit in found.items() if unit}
+
+    def described(self, params: np.ndarray) -> dict[str, Any]:
+        """The quantities with their units, and the numbers behind them."""
+        amounts = dict(zip(self.amount_names, (float(v) for v in self.amounts(params))))
+        numbers = dict(zip(self.parameter_names, (float(v) for v in params)))
+        return {"parameters": amounts, "units": self.units, "numbers": numbers}
+
+    def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
+        """What one dimensionless unit of a kind of measure is, in the unit that is shown; params (..., P), result (...)."""
+        quantity: Quantity | None = self.tables.GAUGES.get(kind)
+        if quantity is None:
+            return 1.0
+        powers = np.array([quantity.powers.get(name, 0.0) for name in self.basis.numbers])
+        size = units.size(units.unit_of(quantity), quantity.unit)
+        assert size
+        return np.prod(np.asarray(params, dtype=float) ** powers, axis=-1) / size
+
+    # ------------------------------------------------------------------ parameters
+    def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        """The parameter vector; text is a quantity (``frequency="7.9 Hz"``), a number one of the machine's own numbers."""
+        given = dict(values or {})
+        told = {
+            name: value
+            for name, value in given.items()
+            if isinstance(value, str) and name in self.tables.QUANTITIES
+        }
+        if told:
+            rest = {name: value for name, value in given.items() if name not in told}
+            return self.with_(**told).vector(rest)
+        return super().vector({**self.loose, **given})
+
+    def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        """`vector` with quantity `name` at `value`, counted in `units`."""
+        params = self.vector(values)
+        moved = along(self.path(name, params), params, value)
+        return super().vector({**self.loose, **dict(zip(self.parameter_names, (float(v) for v in moved)))})
+
+    def with_(self, **changes: Any) -> Any:
+        """The machine with other quantities, as text or as numbers counted in `units`."""
+        known: dict[str, Quantity] = self.tables.QUANTITIES
+        groups = {known[name].choice for name in changes if name in known}
+        own = {name: value for name, value in self._texts.items() if known[name].choice not in groups}
+        counted = {
+            name: units.text(float(value), self.units[name])
+            if not isinstance(value, str) and self.units.get(name)
+            else value
+            for name, value in changes.items()
+        }
+        return physical(self.name, own | counted, self.unusual)
+
+    def told_by(self, name: str) -> Any:
+        """The same machine with quantity `name` in the place of the one that says the same.
+
+        Raises
+        ------
+        ParameterError
+            If the machine has no such quantity.
+        """
+        known: dict[str, Quantity] = self.tables.QUANTITIES
+        if name in self.amount_names or name not in known:
+            self.place_of(name)
+            return self
+        chosen = tuple(known[name] if q.choice == known[name].choice else q for q in self.basis.quantities)
+        params = self.vector({})
+        ones = Basis(chosen, self.basis.numbers, np.ones(len(chosen)))
+        units_ = {q.name: self.units.get(q.name) or units.unit_of(q) for q in chosen}
+        counted = {
+            q.name: (float(value) / units.si(q, 1.0, units_[q.name]), units_[q.name])
+            for q, value in zip(chosen, ones.amounts_of(params))
+        }
+        kept = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
+        return _assembled(self.base, self.tables, chosen, {**counted, **kept}, self.unusual)
+
+    @property
+    def _texts(self) -> dict[str, Any]:
+        return {name: units.text(value, self.units.get(name, "")) for name, value in self.quantities.items()}
+
+    def settings(self) -> dict[str, Any]:
+        """The machine's quantities as text, ready for JSON."""
+        return {"name": self.name, "units": "si", "unusual": self.unusual, **self._texts}
+
+    def changed(self, **values: Any) -> Any:
+        """The same machine with other values of its own numbers."""
+        numbers = dict(zip(self.parameter_names, (float(value) for value in self.vector(values))))
+        counts = self.basis.amounts_of(np.array([*numbers.values()]))
+        return _made(self.base, numbers, self.basis, counts, self.said, self.unusual)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from orbits.machines.catalogue import build
+
+        return build, (self.settings(),)

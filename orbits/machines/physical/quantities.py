@@ -1,0 +1,138 @@
+"""Physical quantities of a machine: products of powers of its dimensionless numbers and its scales.
+
+The numbers of a machine and its scales (half-width b, rate omega_0, a mass) together are its *state*. A quantity is a constant times
+a product of powers of them, so the state follows from as many independent quantities: the exponents are those of the inverse
+matrix. The same matrix tells what one quantity moves while the others stay: each number goes like a power of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from orbits.machines.base import ParameterError
+
+
+class QuantityError(ParameterError):
+    """A physical quantity without a sensible value; the sentence names it, its value and what would do."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One physical quantity.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        SI unit as pint reads it; "" for a plain number.
+    example : str
+        A value that would do, in the unit in which people speak of it.
+    powers : mapping
+        Exponent of each number of the state in it.
+    usual : (float, float)
+        Values [SI] of machines that people build; what lies outside is a slip of the pen.
+    meaning : str
+    constant : float
+        The factor before the powers.
+    group : str
+        Quantities of one group say the same thing: one of them is given.
+    zero : bool
+        Whether 0 makes sense.
+    default : str or float, optional
+        Where neither it nor another of its group is given.
+    """
+
+    name: str
+    unit: str
+    example: str
+    powers: Mapping[str, float]
+    usual: tuple[float, float]
+    meaning: str
+    constant: float = 1.0
+    group: str = ""
+    zero: bool = False
+    default: str | float | None = None
+
+    @property
+    def choice(self) -> str:
+        """The group, or the quantity itself where it is alone."""
+        return self.group or self.name
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Independent quantities, as many as the state has numbers.
+
+    Attributes
+    ----------
+    quantities : tuple of Quantity
+    numbers : tuple of str
+        The state's numbers.
+    units : float array (Q,)
+        SI values of the units in which the quantities are counted.
+    """
+
+    quantities: tuple[Quantity, ...]
+    numbers: tuple[str, ...]
+    units: np.ndarray = field(repr=False)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the quantities."""
+        return tuple(quantity.name for quantity in self.quantities)
+
+    @cached_property
+    def powers(self) -> np.ndarray:
+        """Exponent of number j in quantity i, shape (Q, P)."""
+        return np.array([[q.powers.get(name, 0.0) for name in self.numbers] for q in self.quantities])
+
+    @cached_property
+    def law(self) -> np.ndarray:
+        """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents."""
+        exponents = (
+            np.round(4.0 * np.linalg.inv(self.powers)) / 4.0 + 0.0
+        )  # they are halves and whole numbers
+        sizes = self.units / np.array([quantity.constant for quantity in self.quantities])
+        return np.vstack([np.prod(sizes**exponents, axis=1), exponents.T])
+
+    def numbers_of(self, amounts: np.ndarray) -> np.ndarray:
+        """The numbers, shape (P,), of quantities (Q,) counted in their units."""
+        return self.law[0] * np.prod(amounts[:, None] ** self.law[1:], axis=0)
+
+    def amounts_of(self, numbers: np.ndarray) -> np.ndarray:
+        """The quantities, counted in their units, of numbers (..., P); shape (..., Q)."""
+        constants = np.array([quantity.constant for quantity in self.quantities])
+        return constants / self.units * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
+
+    def path(self, place: int, amounts: np.ndarray) -> np.ndarray:
+        """How the numbers follow quantity number `place` while the others stay, shape (2, P); see `orbits.machines.path`."""
+        exponents = self.law[1 + place]
+        others = amounts.copy()
+        others[place] = 1.0
+        return np.array([np.where(exponents != 0.0, self.numbers_of(others), 0.0), exponents])
+
+
+def independent(quantities: Mapping[str, Quantity], given: Collection[str]) -> tuple[Quantity, ...]:
+    """One quantity of each group: the one that is given, else the first.
+
+    Raises
+    ------
+    QuantityError
+        If two of one group are given.
+    """
+    chosen: dict[str, Quantity] = {}
+    for quantity in quantities.values():
+        choice = quantity.choice
+        if quantity.name not in given:
+            chosen.setdefault(choice, quantity)
+        elif choice in chosen and chosen[choice].name in given:
+            raise QuantityError(
+                f"{chosen[choice].name} and {quantity.name} say the same thing twice: leave one of them out"
+            )
+        else:
+            chosen[choice] = quantity
+    return tuple(chosen.values())

@@ -1,0 +1,154 @@
+"""Quantities as text, read by pint: ``"15 mm"`` is 0.015 m, ``"8 Hz"`` a frequency and never a rate of 8 radians a second."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import Any
+
+from orbits.machines.physical.quantities import Quantity, QuantityError
+
+_KINDS = {
+    "kg": "mass",
+    "m": "length",
+    "Hz": "frequency",
+    "N/m": "stiffness",
+    "N s/m": "damping coefficient",
+    "m/s^2": "acceleration",
+    "N": "force",
+    "m/s": "velocity",
+    "J": "energy",
+    "m^2": "area",
+    "s": "time",
+}
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:[^\W\d]|%).*?|)\s*")
+
+
+@cache
+def registry() -> Any:
+    """pint's registry of units.
+
+    Raises
+    ------
+    QuantityError
+        If pint is not installed.
+    """
+    try:
+        import pint
+    except ImportError:
+        raise QuantityError(
+            "quantities with units are read by pint, which is not installed: pip install 'contvines[units]'"
+        ) from None
+    return pint.UnitRegistry(cache_folder=":auto:")
+
+
+@cache
+def size(unit: str, kind: str) -> float | None:
+    """How many of the SI unit `kind` one `unit` is; None if it is something else.
+
+    Radians are no number here: 1 rad/s is a frequency of 1/(2 pi) Hz.
+    """
+    if unit == kind:
+        return 1.0
+    units = registry()
+    try:
+        one = units.Quantity(1.0, units.parse_units(unit)).to_base_units()
+        wanted = units.Quantity(1.0, units.parse_units(kind)).to_base_units()
+    except Exception:  # pint refuses in many ways; which one does not matter
+        return None
+    if one.dimensionality != wanted.dimensionality:
+        return None
+    turns = one.units._units.get("radian", 0) - wanted.units._units.get("radian", 0)
+    found = float(one.magnitude) / float(wanted.magnitude) * (2.0 * math.pi) ** -float(turns)
+    return found if math.isfinite(found) and found > 0.0 else None
+
+
+def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]:
+    """A quantity as a number and the unit in which it was given.
+
+    Parameters
+    ----------
+    quantity : Quantity
+    value : str or number
+        ``"15 mm"``; a plain number only where the quantity has no unit.
+    section : str
+        Put before the name in refusals.
+
+    Raises
+    ------
+    QuantityError
+        If it is no number with a unit of this kind.
+    """
+    shown = f"{section}{quantity.name} = {value!r}"
+    would = f'"{quantity.example}" would do' if quantity.unit else f"{quantity.example} would do"
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise QuantityError(f"{shown} is no quantity; {would}")
+    if not isinstance(value, str):
+        if quantity.unit and value != 0:
+            raise QuantityError(f"{shown} has no unit; {would}")
+        return _finite(quantity, float(value), shown, would), unit_of(quantity)
+    match = _NUMBER.fullmatch(value)
+    if match is None:
+        raise QuantityError(f"{shown} is not a number with a unit; {would}")
+    number, unit = float(match[1]), match[2]
+    if not quantity.unit:
+        factor = size(unit, "") if unit else 1.0
+        if factor is None:
+            raise QuantityError(f"{shown}: {quantity.name} is a plain number; {would}")
+        return _finite(quantity, number * factor, shown, would), ""
+    if not unit:
+        raise QuantityError(f"{shown} has no unit; {would}")
+    factor = size(unit, quantity.unit)
+    if factor is None:
+        kind = _KINDS.get(quantity.unit, quantity.unit)
+        other = next((name for known, name in _KINDS.items() if size(unit, known) is not None), None)
+        what = f"{unit!r} is the unit of a {other}" if other else f"the unit {unit!r} is not one of a {kind}"
+        raise QuantityError(f"{shown}: {what}, but {quantity.name} is a {kind}; {would}")
+    return _finite(quantity, number, shown, would), unit
+
+
+def unit_of(quantity: Quantity) -> str:
+    """The unit of its example: the one in which people speak of it."""
+    match = _NUMBER.fullmatch(str(quantity.example))
+    return match[2] if match and quantity.unit else ""
+
+
+def si(quantity: Quantity, number: float, unit: str) -> float:
+    """The SI value of a number counted in `unit`."""
+    factor = size(unit, quantity.unit) if unit else 1.0
+    assert factor is not None
+    return number * factor
+
+
+def text(value: float, unit: str) -> str | float:
+    """A value with its unit, as it is read."""
+    return f"{value!r} {unit}" if unit else value
+
+
+def check_usual(quantity: Quantity, value: float, shown: str) -> None:
+    """Refuse values that no machine of the kind has.
+
+    Raises
+    ------
+    QuantityError
+        With the values that machines have, and how to insist.
+    """
+    low, high = quantity.usual
+    if (value == 0.0 and quantity.zero) or low <= value <= high:
+        return
+    unit = unit_of(quantity)
+    factor = si(quantity, 1.0, unit)
+    ends = f"{low / factor:.6g} to {high / factor:.6g}{' ' + unit if unit else ''}"
+    raise QuantityError(
+        f"{shown} is implausible for {quantity.meaning}: {ends} would do; if it is meant, say unusual = true in [model]"
+    )
+
+
+def _finite(quantity: Quantity, value: float, shown: str, would: str) -> float:
+    if not math.isfinite(value):
+        raise QuantityError(f"{shown} is not finite; {would}")
+    if value < 0.0 or (value == 0.0 and not quantity.zero):
+        rule = "0 or above" if quantity.zero else "above 0"
+        raise QuantityError(f"{shown} is out of range; give a value {rule}: {would}")
+    return value

@@ -1,0 +1,252 @@
+"""Admissibility: every inequality that a real machine needs, on the whole of every flight, or one of them proved broken.
+
+On a flight, f > 0 is proved by bisection with mean value forms. At an end where f vanishes exactly (the relative velocity
+at a turn, the distance at an impact) a derivative of known sign takes its place: f(0) = 0 and f' > 0 on [0, b] prove f > 0 on (0, b].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from orbits.proofs.balls import interval, library
+from orbits.proofs.equations import Motif
+from orbits.proofs.flights import WALLS, Coupled, Flight, Shaken
+from orbits.proofs.obstacles import Obstacle, Remedy, Step
+
+Rates = tuple[Any, Any, Any, Any]
+"""A function and its first three rates in time, at an instant or over an interval."""
+
+EVALUATIONS = 6000
+
+
+@dataclass(frozen=True)
+class Zero:
+    """What vanishes exactly at a border: the margin `name` of event (or flight) `event`, and where inside the flight."""
+
+    name: str
+    event: int
+    phase: Any = None
+    side: int = 0
+
+
+NOTHING = Zero("", -1)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """An inequality f > 0 on the open interval of a flight (or, without `function`, a number that must be positive).
+
+    `pace` is the time per radian of the phase; `start` and `end` count the rates of f, f itself first, that vanish exactly there; `touch` is a phase inside where f and f' do.
+    """
+
+    name: str
+    event: int
+    value: Any = None
+    side: int = 0
+    function: Callable[[Any], Rates] | None = field(default=None, repr=False)
+    phases: tuple[Any, Any] | None = None
+    pace: Any = None
+    start: int = 0
+    end: int = 0
+    touch: Any = None
+
+
+@dataclass(frozen=True)
+class Reality:
+    """Whether the orbit is real: True (all proved), False (`broken` is proved broken), None (`open` remains)."""
+
+    real: bool | None
+    broken: Condition | None = None
+    open: tuple[Condition, ...] = ()
+
+    def obstacles(self) -> list[Obstacle]:
+        """What could not be decided."""
+        if self.real is not None:
+            return []
+        return [Obstacle(Step.ADMISSIBILITY, Remedy.BORDER, c.event, c.name) for c in self.open]
+
+
+def examine(
+    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], zero: Zero = NOTHING
+) -> Reality:
+    """Decide every condition for all solutions with nodes in these balls.
+
+    Parameters
+    ----------
+    motif, p : the word, and the parameters as balls.
+    nodes : the solution's balls.
+    zero : at a border, the margin that is known to vanish and not to be judged.
+    """
+    if not well_formed(motif):
+        return Reality(False, Condition("word", 0))
+    undecided = []
+    for condition in conditions(motif, p, nodes, zero):
+        holds = _decide(condition)
+        if holds is False:
+            return Reality(False, condition)
+        if holds is None:
+            undecided.append(condition)
+    return Reality(None if undecided else True, None, tuple(undecided))
+
+
+def well_formed(motif: Motif) -> bool:
+    """Whether the modes fit the events."""
+    if motif.frictionless:
+        return all(letter in WALLS for letter in motif.events)
+    for i, letter in enumerate(motif.events):
+        before, after = motif.incoming(i), motif.modes[i]
+        fits = {
+            "L": before == 1 and after == -1,
+            "R": before == -1 and after == 1,
+            "t": before in (-1, 1) and after == -before,
+            "s": before in (-1, 1) and after == 0,
+            "u": before == 0 and after in (-1, 1),
+        }
+        if not fits.get(letter, False):
+            return False
+    return len(motif) > 0
+
+
+def conditions(
+    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], zero: Zero = NOTHING
+) -> Iterator[Condition]:
+    """All inequalities of the orbit, the one that vanishes at a border left out or marked."""
+    flights = motif.flights(p)
+    for i in range(len(motif)):
+        following = motif.after(i, nodes)
+        flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
+        phases = (nodes[i][0], following[0])
+        for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights.friction):
+            if zero.event != i or not _vanishes(condition, zero):
+                yield condition
+        if zero.event != i or zero.name != "stop":
+            yield Condition("duration", i, phases[1] - phases[0])
+            yield from _in_flight(motif, i, flight, phases, flights, zero)
+
+
+def _vanishes(condition: Condition, zero: Zero) -> bool:
+    """Whether a condition at the border's event is the one that vanishes."""
+    name = "stick" if zero.name == "stop" else zero.name
+    return condition.name == name and (name not in ("wall", "stick") or condition.side == zero.side)
+
+
+def _at_event(motif: Motif, i: int, here: Any, node: Sequence[Any], friction: Any) -> Iterator[Condition]:
+    letter = motif.events[i]
+    if letter in WALLS:
+        # w'- = -w'+/r: approaching before is leaving after
+        yield Condition("approach", i, -WALLS[letter] * here.w1)
+        return
+    for side in (1, -1):
+        yield Condition("wall", i, 1 - side * node[1], side=side)
+    if letter == "t":
+        yield Condition("turn", i, -motif.incoming(i) * here.push - friction)
+    elif letter == "s":
+        for side in (1, -1):
+            yield Condition("stick", i, friction - side * here.push, side=side)
+    else:
+        yield Condition("slip", i, motif.modes[i] * here.push1)
+
+
+def _in_flight(
+    motif: Motif, i: int, flight: Flight, phases: tuple[Any, Any], machine: Shaken | Coupled, zero: Zero
+) -> Iterator[Condition]:
+    friction, pace = machine.friction, 1 / machine.omega
+    letter, mode = motif.events[i], motif.modes[i]
+    arrival, after = motif.arrival(i)
+    following = (i + 1) % len(motif)
+    touching = zero.phase if zero.event == i else None
+    if motif.frictionless:
+        for side, wall in ((1, "L"), (-1, "R")):
+
+            def room(phase: Any, side: int = side) -> Rates:
+                m = flight(phase)
+                return 1 - side * m.w, -side * m.w1, -side * m.w2, -side * m.w3
+
+            graze = zero.name == "approach"
+            start = 0 if letter != wall else 2 if graze and zero.event == i else 1
+            end = 0 if arrival != wall else 2 if graze and zero.event == following else 1
+            touch = touching if zero.name == "reversal" and zero.side == side else None
+            yield Condition("wall", i, None, 0, room, phases, pace, start, end, touch)
+    elif mode == 0:
+        for side in (after, -after):
+
+            def hold(phase: Any, side: int = side) -> Rates:
+                m = flight(phase)
+                return friction - side * m.push, -side * m.push1, None, None
+
+            held = zero.name == "stick" and zero.event == i and side == zero.side
+            touch = touching if zero.name == "hold" and zero.side == side else None
+            yield Condition(
+                "hold", i, None, 0, hold, phases, pace, 1 if held else 0, 1 if side == after else 0, touch
+            )
+    else:
+
+        def slide(phase: Any) -> Rates:
+            m = flight(phase)
+            return mode * m.w1, mode * m.w2, mode * m.w3, None
+
+        start = {"t": 1, "u": 2}.get(letter, 0)
+        end = 1 if arrival in "ts" else 0
+        if zero.event == i and zero.name in ("turn", "approach", "slip"):
+            start += 1
+        if zero.event == following and zero.name == "approach":
+            end = 1
+        if zero.event == following and zero.name == "stop" and zero.side == mode:
+            end = 2  # it would slide on in the same direction
+        yield Condition(
+            "flight", i, None, 0, slide, phases, pace, start, end, touching if zero.name == "flight" else None
+        )
+
+
+def _decide(condition: Condition) -> bool | None:
+    """True: proved; False: proved broken somewhere; None: neither."""
+    if condition.function is None:
+        value = condition.value
+        return True if value > 0 else False if value < 0 else None
+    return _positive(condition)
+
+
+def _positive(c: Condition) -> bool | None:
+    assert c.function is not None and c.phases is not None
+    arb = library().arb
+    first, span = c.phases[0], c.phases[1] - c.phases[0]
+    half = arb(1) / 2
+    todo = [(arb(0), arb(1), 0)]
+    doubtful = False
+    for _ in range(EVALUATIONS):
+        if not todo:
+            return None if doubtful else True
+        low, high, depth = todo.pop()
+        middle = (low + high) * half
+        at = first + span * middle
+        over = first + span * interval(low, high)
+        value = c.function(at)[0]
+        if value < 0:
+            return False
+        if c.touch is not None and over.overlaps(c.touch):
+            over = interval(over, c.touch)
+            rates = c.function(over)
+            if rates[2] is not None and rates[2] > 0:
+                continue
+        else:
+            rates = c.function(over)
+            if _holds(rates, value, at, over, c, low, high):
+                continue
+        if depth > 60:
+            doubtful = True
+            continue
+        todo += [(low, middle, depth + 1), (middle, high, depth + 1)]
+    return None
+
+
+def _holds(rates: Rates, value: Any, at: Any, over: Any, c: Condition, low: Any, high: Any) -> bool:
+    if rates[0] > 0 or value + rates[1] * (over - at) * c.pace > 0:
+        return True
+    if low == 0 and c.start and rates[c.start] is not None and rates[c.start] > 0:
+        return True
+    if high == 1 and c.end:
+        rate = rates[c.end]
+        return rate is not None and bool((-rate if c.end == 1 else rate) > 0)
+    return False

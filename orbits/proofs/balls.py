@@ -1,0 +1,113 @@
+"""Balls: real numbers with a proved error bound, and their decimal texts (python-flint's `arb`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from decimal import Decimal, InvalidOperation
+from typing import Any
+
+from orbits.proofs.obstacles import ProofError
+
+#: a parameter as a proof takes it: a float (its shortest decimal is meant), an exact decimal as text, or middle and radius
+Given = float | int | str | tuple[str, str]
+
+
+def library() -> Any:
+    """The module `flint`.
+
+    Raises
+    ------
+    ProofError
+        If python-flint is not installed.
+    """
+    try:
+        import flint
+    except ImportError:
+        raise ProofError(
+            "proofs need the package python-flint, which is not installed: pip install 'contvines[proofs]'"
+        ) from None
+    return flint
+
+
+@contextmanager
+def precision(bits: int) -> Iterator[None]:
+    """All ball arithmetic inside the block carries `bits` bits."""
+    context = library().ctx
+    before = context.prec
+    context.prec = bits
+    try:
+        yield
+    finally:
+        context.prec = before
+
+
+def decimal(value: Given) -> str | tuple[str, str]:
+    """The exact decimal meant by a given value; a ball stays middle and radius.
+
+    A float stands for the shortest decimal that reads as this float: what a study's text says.
+
+    Raises
+    ------
+    ProofError
+        If it is no finite number.
+    """
+    if isinstance(value, tuple):
+        middle, radius = (str(part) for part in value)
+        if _finite(middle) is None or (_finite(radius) or Decimal(-1)) < 0:
+            raise ProofError(
+                f"{value!r} is no ball: give middle and radius as decimals, the radius 0 or above"
+            )
+        return middle, radius
+    text = value if isinstance(value, str) else repr(float(value))
+    if _finite(text) is None:
+        raise ProofError(f"{value!r} is no finite decimal number: give one")
+    return text
+
+
+def _finite(text: str) -> Decimal | None:
+    try:
+        number = Decimal(text)
+    except InvalidOperation:
+        return None
+    return number if number.is_finite() else None
+
+
+def ball(value: Given) -> Any:
+    """The ball that certainly holds a given value, at the precision in force."""
+    arb = library().arb
+    text = decimal(value)
+    return arb(*text) if isinstance(text, tuple) else arb(text)
+
+
+def interval(low: Any, high: Any) -> Any:
+    """The ball from the smallest value of one ball to the largest of another."""
+    return low.union(high)
+
+
+def texts(value: Any, digits: int = 40) -> list[str]:
+    """Middle and radius of a ball as decimals; the decimal ball holds the given one."""
+    middle, radius, exponent = (int(part) for part in value.mid_rad_10exp(digits))
+    drop = max(0, len(str(radius)) - 3)
+    radius = -(-radius // 10**drop) if radius else 0
+    return [_text(middle, exponent), f"{radius}e{exponent + drop}" if radius else "0"]
+
+
+def upper_text(radius: Any) -> str:
+    """A short decimal that is at least this radius."""
+    middle, slack, exponent = (int(part) for part in radius.abs_upper().mid_rad_10exp(1))
+    drop = max(0, len(str(middle)) - 3)
+    return f"{(middle + slack) // 10**drop + 1}e{exponent + drop}"
+
+
+def _text(integer: int, exponent: int) -> str:
+    sign, size = ("-" if integer < 0 else ""), str(abs(integer))
+    if integer == 0:
+        return "0"
+    shown = size.rstrip("0")
+    exponent += len(size) - len(shown)
+    if -400 <= exponent <= 0:
+        whole = shown.rjust(1 - exponent, "0")
+        cut = len(whole) + exponent
+        return sign + whole[:cut] + ("." + whole[cut:] if exponent else "")
+    return f"{sign}{shown}e{exponent}"

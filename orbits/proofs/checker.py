@@ -1,0 +1,251 @@
+# fmt: off
+"""Certificates checked anew, with nothing but the certificate and mpmath's intervals; none of the prover's code is used.
+
+The equations of motion are in `motion`; all else follows from w and v there. Numbers are truncated power series in time, in the
+directions of eigenvectors and in the unknowns, {(power of time, direction, unknown): interval}: coefficients are derivatives."""
+import math
+from typing import Any
+
+import mpmath
+
+iv: Any = mpmath.iv
+WALL, ZERO, MIRROR = {"L": 1, "R": -1}, (0, 0, 0), {"L": "R", "R": "L"}
+OWN = {"absorber": "amplitude restitution", "coupled": "forcing damping restitution excitation",
+       "cavity": "amplitude restitution_left restitution_right slope"}
+FITS = {"L": ((1,), (-1,)), "R": ((-1,), (1,)), "t": ((1, -1), (1, -1)), "s": ((1, -1), (0,)), "u": ((0,), (1, -1))}
+
+class Refused(ValueError):
+    """The certificate does not prove what it claims."""
+
+def need(holds, why):
+    if not holds: raise Refused(why)
+
+def num(text):
+    mid, rad = (text, "0") if isinstance(text, str) else text
+    return iv.mpf(str(mid)) + iv.mpf([-1, 1]) * iv.mpf(str(rad))
+
+class A:
+    def __init__(self, c): self.c = c if isinstance(c, dict) else {ZERO: iv.mpf(c)}
+    def __call__(self): return self.c.get(ZERO, iv.mpf(0))
+    def __sub__(self, o): return self + o * -1
+    def __truediv__(self, o): return self * (o.f("inv") if isinstance(o, A) else 1 / iv.mpf(o))
+    def rate(self, k) -> Any: return A({(0, d, v): x * math.factorial(k) for (t, d, v), x in self.c.items() if t == k})
+    def __add__(self, o):
+        o = (o if isinstance(o, A) else A(o)).c
+        return A({k: self.c[k] + o[k] if k in o and k in self.c else self.c.get(k, o.get(k)) for k in self.c | o})
+    def __mul__(self, o):
+        out, o = {}, o if isinstance(o, A) else A(o)
+        for ((t, d, v), a), ((s, e, w), b) in ((x, y) for x in self.c.items() for y in o.c.items()):
+            if t + s < 4 and not (d and e) and not (v and w):
+                out[key] = out.get(key := (t + s, d or e, v or w), 0) + a * b
+        return A(out)
+    __radd__, __rmul__ = __add__, __mul__
+    def f(self, name):  # sum of f^(k)(a)/k! (self - a)^k, finite since powers are truncated
+        a, out, power, k, c = self(), A(0), A(1), 0, None
+        rest, sines = A({key: x for key, x in self.c.items() if key != ZERO}), name in ("sin", "cos")
+        wave = [iv.sin(a), iv.cos(a), -iv.sin(a), -iv.cos(a)] * 2 if sines else [iv.exp(a)] if name == "exp" else []
+        while power.c:
+            if wave: c = wave[(k % 4 + (name == "cos")) * sines] / math.factorial(k)
+            elif k: c = c * ((-1 if name == "inv" else iv.mpf(3) / (2 * k) - 1) / a)  # the powers -1 and 1/2
+            else: c = 1 / a if name == "inv" else iv.sqrt(a)
+            out, power, k = out + power * c, power * rest, k + 1
+        return out
+
+def response(p, mass):  # q1 = X sin + Y cos under the forcing; decay and frequency of its free motion
+    e, om, chi, g = p["mass_ratio"], p["frequency"], p["excitation"], p["mass_ratio"] * p["damping"] * p["frequency"]
+    K, al = om * om * mass * -1 + 1, e * p["damping"] / (mass * 2)
+    n = e * p["forcing"] / (K * K + g * g)
+    return n * (K + chi * g * g), n * g * (chi * K - 1), al, (A(1) / mass - al * al).f("sqrt")
+
+def motion(p, letter, mode, x, phase):
+    """Series of w and v in the time after `phase`, on the flight that starts at node x; no letter: stuck for ever."""
+    om, e, T = p["frequency"], p["mass_ratio"], A({(1, 0, 0): iv.mpf(1)})
+    s, c, C = (om * T + phase).f("sin"), (om * T + phase).f("cos"), p.get("amplitude")
+    if not letter:
+        X, Y = (C, 0) if C else response(p, e + 1)[:2]
+        return A(0), (X * s + Y * c) * (A(1) if C else e + 1)
+    t, w0, s0, c0 = (phase - x[0]) / om + T, A(WALL[letter]) if letter in WALL else x[1], x[0].f("sin"), x[0].f("cos")
+    if C:
+        b = x[1] if letter in WALL else C * om * c0
+        return (w0 + C * s - C * s0 - b * t + (p["bias"] - p["limit"] * mode) * t * t / 2 if mode else w0), C * s
+    k1, pull = (x[1] if letter in WALL else x[3]) / (e + 1), p["friction"] * p["gravity"] * mode
+    X, Y, al, be = response(p, A(1) if mode else e + 1)
+    z, u = (x[2] + e * w0) / (e + 1) + e * pull - X * s0 - Y * c0, x[3] - e * k1 if letter in WALL else k1
+    u = u - om * (X * c0 - Y * s0)
+    q = X * s + Y * c - e * pull + (al * t * -1).f("exp") * (z * (be * t).f("cos") + (u + al * z) / be * (be * t).f("sin"))
+    k = (x[2] - w0) / (e + 1) + k1 * t + pull * t * t / 2
+    return (q - k, q + e * k) if mode else (w0, q * (e + 1) - e * w0)
+
+def finish(p):  # friction's limit a, and the bias by the slope
+    weight, tilt = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", A(0))
+    return p | {"limit": weight * p["friction"] * tilt.f("cos"), "bias": weight * tilt.f("sin") * -1}
+
+def closed(c, x, angle=None):  # the first node as it must be after the last flight, its directions times the multiplier
+    out, one = [], iv.mpf(1)
+    for j, y in enumerate(x):
+        a, b, d = (A({(t, 0, v): x for (t, d, v), x in y.c.items() if d == k}) for k in range(3))
+        if angle: b, d = angle.f("cos") * b - angle.f("sin") * d, angle.f("sin") * b + angle.f("cos") * d
+        y = a + b * A({(0, 1, 0): one * c.get("multiplier", 1)}) + d * A({(0, 2, 0): one})
+        out.append(y * c["sign"] if j else y + iv.pi * c["periods"] * (1 if c["half"] else 2))
+    return out
+
+def equations(c, p, z, e, shift=1):
+    """Rows {0: value, unknown: derivative}; the closing node's unknowns are numbered from `shift`, others from 1."""
+    n, k, size = c["n"], len(z[0]), len(z) * len(z[0]) + len(e)
+    def node(i, shift=1):
+        x = [A({ZERO: z[i][j], (0, 0, i * k + j + shift): iv.mpf(1)}) for j in range(min(n, k))]
+        for j in range(n, k): x[j % n] += A({(0, j // n, 0): z[i][j], (0, j // n, i * k + j + shift): iv.mpf(1)})
+        return x
+    ext, out = [A({ZERO: v, (0, 0, 1 + size - len(e) + j): iv.mpf(1)}) for j, v in enumerate(e)], []
+    p = finish(p | ({c["parameter"]: ext[0]} if e else {}))
+    for i, letter in enumerate(c["events"]):
+        y = node(i + 1) if i + 1 < len(z) else closed(c, node(0, shift), ext[1] if k == 3 * n else None)
+        (w, v), wall = motion(p, letter, c["signs"][i], node(i), y[0]), c["letters"][i + 1]
+        r = p.get("restitution", p.get("restitution_left" if wall == "L" else "restitution_right"))
+        out += [w.rate(0) - WALL[wall], v.rate(1) + r * w.rate(1) - y[1]] if wall in WALL else [
+            v.rate(2) + p["bias"] - p["limit"] * c["signs"][i + 1] if wall == "u" else w.rate(1), w.rate(0) - y[1]]
+        out += [v.rate(0) - y[2], v.rate(1) - y[3]] if n == 4 else []
+    rows = [{v: x for (_, f, v), x in row.c.items() if f == d} for row in out for d in range(k // n or 1)]
+    if "normal" in c:
+        b, j = c["normal"]
+        return rows + [{0: z[b][d * n + j] - (d == 1), 1 + b * k + d * n + j: iv.mpf(1)} for d in range(1, k // n)]
+    if not e: return rows
+    (name, i, side), x = c["border"], node(c["border"][1])
+    w, v = motion(p, c["events"][i:i + 1], c["signs"][i], x, ext[1] if len(e) > 1 else x[0])
+    push = p["limit"] - (v.rate(2) + p["bias"]) * side
+    out = {"flight": [w.rate(1), w.rate(2)], "hold": [push, v.rate(3)], "slip": [v.rate(3)], "approach": [w.rate(1)], "rest": [v.rate(3), push],
+           "reversal": [w.rate(0) * side - 1, w.rate(1)], "wall": [w.rate(0) * side - 1]}.get(name, [push])
+    return rows + [{v: x for (_, _, v), x in row.c.items()} for row in out]
+
+def solve(rows, order):
+    """Interval Gauss elimination of sparse rows {unknown: coefficient, 0: right side}."""
+    pivots, x = [], {}
+    need(len(rows) == len(order), "there are not as many equations as unknowns")
+    for col in order:
+        near = [row for row in rows if col in row and 0 not in row[col]]
+        need(near, "the equations may be singular")
+        pivot = max(near, key=lambda row: min(abs(row[col].a), abs(row[col].b)))
+        rows = [row for row in rows if row is not pivot]
+        for row in (row for row in rows if col in row):
+            factor = row.pop(col) / pivot[col]
+            for j in pivot.keys() - {col}: row[j] = row.get(j, 0) - factor * pivot[j]
+        pivots.append((col, pivot))
+    for col, pivot in reversed(pivots):
+        x[col] = (pivot.get(0, iv.mpf(0)) - sum(b * x[j] for j, b in pivot.items() if j not in (0, col))) / pivot[col]
+    return x
+
+def exists(c, p, z, e):
+    """The interval Newton operator maps the box into its interior."""
+    k, last, flat = len(z[0]), len(z) * len(z[0]), [v for node in z for v in node] + e
+    mid = [iv.mpf(v.mid) for v in flat]
+    values = equations(c, p, [mid[i * k:i * k + k] for i in range(len(z))], mid[last:])
+    rows = [row | {0: value.get(0, iv.mpf(0))} for row, value in zip(equations(c, p, z, e), values)]
+    step = solve(rows, [*range(k + 1, last + 1), *range(1, k + 1), *range(last + 1, len(flat) + 1)])
+    for j, (m, box) in enumerate(zip(mid, flat), start=1):
+        need((m - step[j]).a > box.a and (m - step[j]).b < box.b, f"unknown {j} leaves its ball")
+
+def conditions(c, p, z, name, event, side, touch):
+    """Inequalities (name, event, number) and (name, event, (f and its rates, first, last, zeros at start and end, touching phase))."""
+    a, frame, signs = p["limit"](), [[A(v) for v in node] for node in z], c["signs"]
+    for i, letter in enumerate(c["events"]):
+        mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
+        last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
+        def ws(ph, s, i=i) -> list[Any]: return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
+        def push(ph, i=i):
+            v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
+            return (v.rate(2) + p["bias"])(), v.rate(3)()
+        P = push(first)
+        tests = [("approach", 0, ws(first, -WALL[letter])[1])] if letter in WALL else [("wall", s, 1 - z[i][1] * s) for s in (1, -1)]
+        tests += {"t": [("turn", 0, -c["before"][i] * P[0] - a)], "u": [("slip", 0, mode * P[1])],
+                  "s": [("stick", s, a - P[0] * s) for s in (1, -1)]}.get(letter, [])
+        yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
+        if here == "stop": continue
+        yield "duration", i, last - first
+        for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
+            if c["frictionless"]:
+                f: Any = lambda ph, ws=ws, s=s: [v + (k == 0) for k, v in enumerate(ws(ph, -s))]  # noqa: E731
+                kind, start, end = "wall", (WALL[letter] == s) * (1 + (here == "approach")), (WALL[wall] == s) * (1 + (there == "approach"))
+            elif mode == 0:
+                f = lambda ph, push=push, s=s: [a - push(ph)[0] * s, push(ph)[1] * -s]  # noqa: E731
+                kind, start, end = "hold", here == "stick" and side == s, s == signs[i + 1]
+            else:
+                f = lambda ph, ws=ws, s=s: ws(ph, s)[1:]  # noqa: E731
+                kind, start = "flight", {"t": 1, "u": 2}.get(letter, 0) + (here in ("turn", "approach", "slip"))
+                end = 2 if there == "stop" and side == mode else wall in "ts" or there == "approach"
+            at = touch if here == {"wall": "reversal"}.get(kind, kind) and (kind == "flight" or side == s) else None
+            yield kind, i, (f, first, last, int(start), int(end), at)
+
+def positive(test, pace):
+    """True: f > 0 is proved; False: its contrary somewhere; None."""
+    if not isinstance(test, tuple): return True if test > 0 else False if test < 0 else None
+    (f, first, last, start, end, touch), todo = test, [(iv.mpf(0), iv.mpf(1))]
+    for _ in range(4000):
+        if not todo: return True
+        low, high = todo.pop()
+        half, mid, over = (low + high) / 2, first + (last - first) * (low + high) / 2, first + (last - first) * iv.mpf([low.a, high.b])
+        value, zero = f(mid)[0], touch is not None and not (over.b < touch.a or over.a > touch.b)
+        if value < 0: return False
+        rates = f(iv.mpf([min(over.a, touch.a), max(over.b, touch.b)]) if touch is not None and zero else over)
+        ends = [(2, 1)] if zero else [(0, 1), (start * (low == 0), 1), (end * (high == 1), (-1) ** end if high == 1 else 1)]
+        if not any(k < len(rates) and rates[k] * s > 0 for k, s in ends) and (zero or not value + rates[1] * (over - mid) * pace > 0):
+            todo += [(low, half), (half, high)]
+
+def steady(c, p, z):
+    """Whether all multipliers lie inside the unit circle, or one outside: by norm and trace of powers of their matrix."""
+    n, size, e = c["n"], len(z) * c["n"], p["mass_ratio"]()
+    rows, order = equations(c, p, z, [], size + 1), [*range(n + 1, size + n + 1)]
+    M = [[0] * n for _ in range(n)]
+    for j in range(n):
+        x = solve([{q: row[q] for q in row if q > n} | {0: -row.get(1 + j, iv.mpf(0))} for row in rows], order)
+        for i in range(n): M[i][j] = x[size + 1 + i]
+    if not any(letter in WALL for letter in c["events"]):  # shifting w, v + eps w kept, changes nothing: a trivial multiplier
+        need(c["half"], "a sliding motion is stable or not on half its word")
+        if n == 4: M[2] = [x + e * y for x, y in zip(M[2], M[1])]
+        M = [[row[0], *(row[j] for j in range(2, n))] for i, row in enumerate(M) if i != 1]
+    for _ in range(26):
+        if all(sum(abs(x) for x in row) < 1 for row in M): return True
+        if abs(sum(M[i][i] for i in range(len(M)))) > len(M): return False
+        M = [[sum(row[k] * M[k][j] for k in range(len(M))) for j in range(len(M))] for row in M]
+
+def check(c):
+    """Verify a certificate (a dict, as from JSON); raises `Refused` where it does not prove its claims."""
+    try: verify(c)
+    except (LookupError, TypeError, AttributeError, ArithmeticError, ValueError) as error: raise Refused(str(error)) from None
+
+def verify(c):
+    need(c["format"] == "contvines certificate 1" and 64 <= c["bits"] <= 9000, "not a certificate of this format")
+    iv.prec, sign, half = c["bits"] + 64, -1 if c["half"] else 1, c["half"]
+    z, e, (events, modes) = [[num(t) for t in x] for x in c["nodes"]], [num(t) for t in c["extras"]], (c["events"], c["modes"])
+    kind, stuck, border, claims = c["kind"], not events, c.get("border"), c["claims"]
+    need(len(events) == len(modes) == len(z) - bool(stuck and e) and claims["existence"] is True, "its parts do not fit together")
+    c = c | {"n": 4 if c["machine"] == "coupled" else 2, "sign": sign, "signs": [*modes, *(sign * m for m in modes[:1] or [0])],
+             "letters": [*events, MIRROR.get(events[:1], events[:1]) if half else events[:1]], "before": [sign * m for m in modes[-1:]] + modes[:-1]}
+    p = {name: A(num(t)) for name, t in c["parameters"].items()}
+    q = finish(p | ({c["parameter"]: A(e[0])} if e else {}))
+    names = {*OWN[c["machine"]].split(), "mass_ratio", "friction", "gravity", "frequency"}
+    need({*p, *([c["parameter"]] if e else [])} == names and len(p) + bool(e) == len(names), "parameters are missing, or too many")
+    need(all(q[name]() >= 0 for name in names - {"slope"}) and q["frequency"]() > 0, "a parameter is out of range")
+    need(all(q[name]() > 0 and q[name]() <= 1 for name in names if name[:4] == "rest"), "a restitution is out of range")
+    need(q["limit"]() == 0 if c["frictionless"] else q["limit"]() > 0, "the word does not fit the friction")
+    if half: need(c["periods"] % 2 and c["machine"] != "cavity", "no mirror symmetry")
+    for i, letter in enumerate(events):
+        fits = letter in WALL if c["frictionless"] else c["before"][i] in FITS[letter][0] and modes[i] in FITS[letter][1]
+        need(fits and (letter != "t" or modes[i] == -c["before"][i]), "no machine has this word")
+    wide, tau = {"fold": 2, "symmetry-breaking": 2, "period-doubling": 2, "neimark-sacker": 3}.get(kind, 1), c["periods"] * 1
+    need(tau > 0 and tau == int(tau) and all(len(x) == (wide * c["n"] if events else 1) for x in z), "nodes or periods")
+    if wide > 1:
+        mu = {"fold": (1, half), "symmetry-breaking": (-1, True), "period-doubling": (-1, False)}.get(kind, (1, half))
+        need((c.get("multiplier", 1), half) == mu and len(e) == wide - 1 and border is None, f"no system of a {kind}")
+    else: need(bool(border) == bool(e) == (kind != "orbit") and "normal" not in c and c.get("multiplier", 1) == 1, f"no {kind}")
+    if z: exists(c, p, z, e)
+    name, event, side, touch = (*border, e[1] if len(e) > 1 else None) if border else ("", -1, 0, None)
+    if stuck:  # the push is a harmonic of the forcing about the bias
+        one, two = (motion(q, "", 0, None, A(ph))[1].rate(2)() for ph in (iv.mpf(0), iv.pi / 2))
+        held = q["limit"]() - iv.sqrt(one * one + two * two) - abs(q["bias"]())
+        found = [("stick", 0, True if held > 0 or border else False if held < 0 else None)]
+    else: found = [(n, i, positive(test, 1 / q["frequency"]())) for n, i, test in conditions(c, q, [x[:c["n"]] for x in z], name, event, side, touch)]
+    real, stable, broken = claims["real"], claims["stable"], c.get("broken")
+    need(real is None or (all(v for *_, v in found) if real else (*broken, False) in found), "it is not proved real, or not virtual")
+    if kind != "orbit": return need(stable is None, "stability at a special point")
+    if stuck: return need(stable is None or (stable and (c["n"] == 2 or p["damping"]() > 0)), "stability")
+    need(stable is None or steady(c, q, z) is stable, "it is not proved stable, or not unstable")

@@ -1,0 +1,131 @@
+"""Interval Gauss elimination of bordered block-cyclic systems, O(l).
+
+    A_i x_i + D_i x_{i+1} + E_i e = b_i   (i = 0 ... l - 1, x_l = x_0),        sum_i r_i x_i + s e = c   (as many rows as e has entries)
+
+Every entry is a ball; the result encloses the solutions of all real systems inside, and that no pivot holds zero proves all of
+them regular (Neumaier, *Interval Methods for Systems of Equations*, section 4.5). The unknowns x_1 ... x_{l-1} are eliminated
+one after another between two block rows (and the border rows met so far), with pivoting among these; x_0 and e come last.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+class Singular(ArithmeticError):
+    """Some real matrix inside may be singular."""
+
+
+@dataclass
+class Blocks:
+    """A bordered block-cyclic system of balls; zeros may be the integer 0.
+
+    Attributes
+    ----------
+    A, D : list (l) of lists (k) of lists (k)
+        Coefficients of x_i and of x_{i+1}.
+    E : list (l) of lists (k) of lists (m)
+        Coefficients of the m further unknowns.
+    b : list (l) of lists (k)
+        Right sides.
+    rows : list (m) of dict of int to list (k)
+        Each border row's coefficients of the one x_i that it reads, by i.
+    corner : list (m) of lists (m)
+        The border rows' coefficients of the further unknowns.
+    c : list (m)
+        Their right sides.
+    """
+
+    A: list[list[list[Any]]]
+    D: list[list[list[Any]]]
+    E: list[list[list[Any]]]
+    b: list[list[Any]]
+    rows: list[dict[int, list[Any]]]
+    corner: list[list[Any]]
+    c: list[Any]
+
+
+def solve(system: Blocks) -> tuple[list[list[Any]], list[Any]]:
+    """Enclosures of x_0 ... x_{l-1} and of the further unknowns.
+
+    Raises
+    ------
+    Singular
+        If a pivot may be zero.
+    """
+    length, k, m = len(system.A), len(system.A[0]), len(system.c)
+    last = length - 1
+    nothing = [0] * k
+    borders: dict[int, list[list[Any]]] = {}  # by the block they read: coefficients of it, e, right side
+    for row, corner, c in zip(system.rows, system.corner, system.c):
+        for i, own in row.items():
+            borders.setdefault(i, []).append([own, [*corner, c]])
+    # columns of a running row: x_i, x_{i+1}, x_0, e, right side; after the last block: x_0, e, right side
+    running: list[list[Any]] = []
+    for row in range(k):
+        tail = [*system.E[0][row], system.b[0][row]]
+        A, D = system.A[0][row], system.D[0][row]
+        running.append([*[p + q for p, q in zip(A, D)], *tail] if length == 1 else [*D, *nothing, *A, *tail])
+    for own, tail in borders.get(0, []):
+        running.append([*own, *tail] if length == 1 else [*nothing, *nothing, *own, *tail])
+    kept: list[list[list[Any]]] = []
+    for i in range(1, length):
+        rows = running
+        for row in range(k):
+            D = system.D[i][row]
+            middle = [*nothing, *D] if i == last else [*D, *nothing]
+            rows.append([*system.A[i][row], *middle, *system.E[i][row], system.b[i][row]])
+        rows += [[*own, *nothing, *nothing, *tail] for own, tail in borders.get(i, [])]
+        kept.append(_eliminate(rows, k))
+        running = [row[2 * k :] if i == last else [*row[k : 2 * k], *nothing, *row[2 * k :]] for row in rows]
+    pivots = _eliminate(running, k + m)
+    solution = _back(pivots, k + m, [])
+    head, extra = solution[:k], solution[k:]
+    nodes: list[list[Any]] = [head]
+    following = nothing
+    for pivots in reversed(kept):
+        following = _back(pivots, k, [*following, *head, *extra])
+        nodes.insert(1, following)
+    return nodes, extra
+
+
+def _eliminate(rows: list[list[Any]], count: int) -> list[list[Any]]:
+    """Eliminate the first `count` columns from `rows` in place; the pivot rows leave them."""
+    pivots = []
+    for column in range(count):
+        sizes = [0.0 if _zero(row[column]) else float(row[column].abs_lower()) for row in rows]
+        best = max(range(len(rows)), key=sizes.__getitem__)
+        if not (sizes[best] > 0.0 or (not _zero(rows[best][column]) and rows[best][column].abs_lower() > 0)):
+            raise Singular
+        pivot = rows.pop(best)
+        pivots.append(pivot)
+        used = [j for j in range(column + 1, len(pivot)) if not _zero(pivot[j])]
+        for row in rows:
+            if _zero(row[column]):
+                continue
+            factor = row[column] / pivot[column]
+            for j in used:
+                row[j] = row[j] - factor * pivot[j]
+            row[column] = 0
+    return pivots
+
+
+def _back(pivots: list[list[Any]], count: int, known: list[Any]) -> list[Any]:
+    """Unknowns of `count` pivot rows, the other unknowns being known."""
+    result: list[Any] = [0] * count
+    for column in reversed(range(count)):
+        row = pivots[column]
+        value = row[-1]
+        for j in range(column + 1, count):
+            if not _zero(row[j]):
+                value = value - row[j] * result[j]
+        for j, number in enumerate(known, start=count):
+            if not _zero(row[j]) and not _zero(number):
+                value = value - row[j] * number
+        result[column] = value / row[column]
+    return result
+
+
+def _zero(value: Any) -> bool:
+    return isinstance(value, int)

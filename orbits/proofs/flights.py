@@ -1,0 +1,221 @@
+"""Flights in closed form over any numbers (balls, jets): the machines as the proofs see them.
+
+Written anew from the equations of motion, not from the compiled kernels: a proof must not inherit their slips. A flight
+starts at a node and gives the motion at any forcing phase Psi; t = (Psi - Psi_0)/Omega is the time since its start.
+
+Shaken cavity (`absorber`, `cavity`): v = C sin Psi and, in mode s,
+
+    w'' = push - s a,    push = v'' + bias,    v'' = -C Omega^2 sin Psi,
+
+with a = (1 + eps) mu g cos(slope) and bias = -(1 + eps) g sin(slope) (the slope pulls towards w = -1).
+
+Absorber on its oscillator (`coupled`), e = eps G sin Psi:
+
+    q1'' + eps lambda q1' + q1 = e + chi eps lambda e' - eps mu g s,    q2'' = mu g s,
+
+so q1 is a harmonic of the forcing, a constant and a damped oscillation; stuck, both move as one mass 1 + eps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from orbits.proofs.jets import exp, sin_cos, sqrt
+from orbits.proofs.obstacles import ProofError
+
+WALLS = {"L": 1, "R": -1}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion at one instant: w with three rates, what pushes against friction and its rate, v and its rate."""
+
+    w: Any
+    w1: Any
+    w2: Any
+    w3: Any
+    push: Any
+    push1: Any
+    v: Any
+    v1: Any
+
+
+Flight = Callable[[Any], Motion]
+
+
+class Flights(Protocol):
+    """A machine with closed-form flights and definite parameters."""
+
+    friction: Any  # a, the largest relative acceleration by friction
+    omega: Any
+
+    def restitution(self, letter: str) -> Any:
+        """Newton's coefficient of the wall."""
+        ...
+
+    def launch(self, letter: str, mode: int, node: Sequence[Any]) -> Flight:
+        """The flight in `mode` that begins with event `letter` at `node`."""
+        ...
+
+
+class Shaken:
+    """Flights of a cavity that is shaken harmonically; node (Psi, B+) at impacts, (Psi, w) elsewhere."""
+
+    node = 2
+
+    def __init__(self, p: Mapping[str, Any]) -> None:
+        self.amplitude, self.omega = p["amplitude"], p["frequency"]
+        weight = (1 + p["mass_ratio"]) * p["gravity"]
+        self.friction, self.bias = weight * p["friction"], 0
+        if "slope" in p:
+            sine, cosine = sin_cos(p["slope"])
+            self.friction, self.bias = self.friction * cosine, -weight * sine
+        self.left = p["restitution_left"] if "restitution_left" in p else p["restitution"]
+        self.right = p["restitution_right"] if "restitution_right" in p else p["restitution"]
+
+    def restitution(self, letter: str) -> Any:
+        """Newton's coefficient of the wall."""
+        return self.left if letter == "L" else self.right
+
+    def launch(self, letter: str, mode: int, node: Sequence[Any]) -> Flight:
+        """See `Flights.launch`."""
+        phase0, y = node
+        C, omega = self.amplitude, self.omega
+        speed = C * omega
+        peak = speed * omega
+        s0, c0 = sin_cos(phase0)
+        w0, beta = (WALLS[letter], y) if letter in WALLS else (y, speed * c0)
+        pull = self.bias - mode * self.friction
+
+        def flight(phase: Any) -> Motion:
+            s, c = sin_cos(phase)
+            shake, shake1 = -peak * s, -peak * omega * c
+            push = shake + self.bias
+            v, v1 = C * s, speed * c
+            if mode == 0:
+                return Motion(w0, 0, 0, 0, push, shake1, v, v1)
+            t = (phase - phase0) / omega
+            w = w0 + C * (s - s0) - (beta - pull * t / 2) * t
+            return Motion(w, v1 - beta + pull * t, shake + pull, shake1, push, shake1, v, v1)
+
+        return flight
+
+    def resting(self, phase: Any) -> tuple[Any, Any]:
+        """The push on the stuck absorber in steady state, and its rate."""
+        s, c = sin_cos(phase)
+        peak = self.amplitude * self.omega * self.omega
+        return self.bias - peak * s, -peak * self.omega * c
+
+
+class Coupled:
+    """Flights of the absorber on its oscillator; node (Psi, B+, v, v') at impacts, (Psi, w, v, v') elsewhere."""
+
+    node = 4
+    bias = 0
+
+    def __init__(self, p: Mapping[str, Any]) -> None:
+        self.eps, self.omega = p["mass_ratio"], p["frequency"]
+        self.whole = 1 + self.eps
+        self.pull = p["friction"] * p["gravity"]
+        self.friction = self.whole * self.pull
+        self.r = p["restitution"]
+        self.rate = self.eps * p["damping"]
+        self._force, self._chi = self.eps * p["forcing"], p["excitation"]
+        self._responses: dict[int, tuple[Any, Any, Any, Any]] = {}
+
+    def restitution(self, letter: str) -> Any:
+        """Newton's coefficient of the walls."""
+        return self.r
+
+    def _response(self, stuck: bool) -> tuple[Any, Any, Any, Any]:
+        """X, Y of the forced response X sin Psi + Y cos Psi, and decay alpha and angular frequency beta of the free one."""
+        if stuck not in self._responses:
+            mass = self.whole if stuck else 1
+            drag, stiffness = self.rate * self.omega, 1 - mass * self.omega * self.omega
+            scale = self._force / (stiffness * stiffness + drag * drag)
+            X = scale * (stiffness + self._chi * drag * drag)
+            Y = scale * drag * (self._chi * stiffness - 1)
+            alpha = self.rate / (2 * mass)
+            one = self._force * 0 + 1
+            self._responses[stuck] = X, Y, alpha, sqrt(one / mass - alpha * alpha)
+        return self._responses[stuck]
+
+    def launch(self, letter: str, mode: int, node: Sequence[Any]) -> Flight:
+        """See `Flights.launch`."""
+        phase0, y, v0, v1 = node
+        eps, omega, whole = self.eps, self.omega, self.whole
+        if letter in WALLS:
+            w0, q2r = WALLS[letter], y / whole
+            q1r = v1 - eps * q2r
+        else:
+            w0, q1r, q2r = y, v1 / whole, v1 / whole
+        q1, q2 = (v0 + eps * w0) / whole, (v0 - w0) / whole
+        X, Y, alpha, beta = self._response(mode == 0)
+        offset = -eps * (self.pull * mode)
+        s0, c0 = sin_cos(phase0)
+        z0 = q1 - X * s0 - Y * c0 - offset
+        z1 = q1r - omega * (X * c0 - Y * s0)
+        kappa = alpha * alpha + beta * beta
+
+        def flight(phase: Any) -> Motion:
+            t = (phase - phase0) / omega
+            s, c = sin_cos(phase)
+            sine, cosine = sin_cos(beta * t)
+            decay = exp(-alpha * t)
+            sine, cosine = decay * sine / beta, decay * cosine
+            Z = z0 * cosine + (z1 + alpha * z0) * sine
+            Z1 = z1 * cosine - (alpha * z1 + kappa * z0) * sine
+            Z2 = -2 * alpha * Z1 - kappa * Z
+            h, h1 = X * s + Y * c, omega * (X * c - Y * s)
+            q, q_1 = offset + h + Z, h1 + Z1
+            q_2 = Z2 - omega * omega * h
+            q_3 = -2 * alpha * Z2 - kappa * Z1 - omega * omega * h1
+            if mode == 0:
+                v, rate = whole * q - eps * w0, whole * q_1
+                return Motion(w0, 0, 0, 0, whole * q_2, whole * q_3, v, rate)
+            slide = self.pull * mode
+            q2_1 = q2r + slide * t
+            q2_0 = q2 + (q2r + slide * t / 2) * t
+            push = q_2 + eps * slide
+            return Motion(q - q2_0, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q + eps * q2_0, q_1 + eps * q2_1)
+
+        return flight
+
+    def resting(self, phase: Any) -> tuple[Any, Any]:
+        """The push on the stuck absorber in steady state, and its rate."""
+        s, c = sin_cos(phase)
+        X, Y, _, _ = self._response(True)
+        size = -self.whole * self.omega * self.omega
+        return size * (X * s + Y * c), size * self.omega * (X * c - Y * s)
+
+
+MACHINES: dict[str, type[Shaken] | type[Coupled]] = {
+    "absorber": Shaken,
+    "cavity": Shaken,
+    "coupled": Coupled,
+}
+
+_CAVITY = ("friction", "gravity", "mass_ratio", "frequency")
+NAMES: dict[str, tuple[str, ...]] = {
+    "absorber": ("amplitude", "restitution", *_CAVITY),
+    "cavity": ("amplitude", "restitution_left", "restitution_right", "slope", *_CAVITY),
+    "coupled": ("forcing", "damping", "restitution", "excitation", *_CAVITY),
+}
+
+
+def parameter_names(machine: str) -> tuple[str, ...]:
+    """The numbers that a machine's flights depend on.
+
+    Raises
+    ------
+    ProofError
+        If the machine has no flights in closed form.
+    """
+    if machine not in NAMES:
+        raise ProofError(
+            f"the machine {machine!r} has no flights in closed form, so its orbits cannot be proved; machines that have: "
+            + ", ".join(NAMES)
+        )
+    return NAMES[machine]

@@ -1,0 +1,120 @@
+"""Forward derivatives over any numbers: balls, or jets again.
+
+A `Jet` is a value and its partial derivatives, kept sparse. Evaluated at balls, every partial derivative is an enclosure of the
+derivative over the whole box (the chain rule holds for sets). Nested, they give second derivatives.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class Jet:
+    """A value with first derivatives.
+
+    Attributes
+    ----------
+    value : arb or Jet
+    partials : dict of int to arb or Jet
+        Derivative with respect to each variable that the value depends on.
+    """
+
+    __slots__ = ("partials", "value")
+
+    def __init__(self, value: Any, partials: dict[int, Any]) -> None:
+        self.value = value
+        self.partials = partials
+
+    def chain(self, value: Any, slope: Any) -> Jet:
+        """f(self) from f and f' at the value."""
+        return Jet(value, {i: slope * part for i, part in self.partials.items()})
+
+    def __add__(self, other: Any) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(self.value + other, self.partials)
+        parts = dict(self.partials)
+        for i, part in other.partials.items():
+            parts[i] = parts[i] + part if i in parts else part
+        return Jet(self.value + other.value, parts)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.value, {i: -part for i, part in self.partials.items()})
+
+    def __sub__(self, other: Any) -> Jet:
+        return self + (-other)
+
+    def __rsub__(self, other: Any) -> Jet:
+        return -self + other
+
+    def __mul__(self, other: Any) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(self.value * other, {i: part * other for i, part in self.partials.items()})
+        a, b = self.value, other.value
+        parts = {i: part * b for i, part in self.partials.items()}
+        for i, part in other.partials.items():
+            term = a * part
+            parts[i] = parts[i] + term if i in parts else term
+        return Jet(a * b, parts)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(self.value / other, {i: part / other for i, part in self.partials.items()})
+        return self * other.inverse()
+
+    def __rtruediv__(self, other: Any) -> Jet:
+        return self.inverse() * other
+
+    def inverse(self) -> Jet:
+        """1 / self."""
+        value = 1 / self.value
+        return self.chain(value, -value * value)
+
+
+def sin_cos(x: Any) -> tuple[Any, Any]:
+    """Sine and cosine of a ball or a jet."""
+    if not isinstance(x, Jet):
+        return x.sin_cos()
+    s, c = sin_cos(x.value)
+    return x.chain(s, c), x.chain(c, -s)
+
+
+def exp(x: Any) -> Any:
+    """Exponential function of a ball or a jet."""
+    if not isinstance(x, Jet):
+        return x.exp()
+    value = exp(x.value)
+    return x.chain(value, value)
+
+
+def sqrt(x: Any) -> Any:
+    """Square root of a ball or a jet."""
+    if not isinstance(x, Jet):
+        return x.sqrt()
+    value = sqrt(x.value)
+    return x.chain(value, 1 / (2 * value))
+
+
+def base(x: Any) -> Any:
+    """The ball at the bottom of a jet of any depth."""
+    while isinstance(x, Jet):
+        x = x.value
+    return x
+
+
+def variables(values: Any, first: int = 0) -> list[Jet]:
+    """Independent variables numbered from `first`, at the given values."""
+    return [Jet(value, {first + i: one(value)}) for i, value in enumerate(values)]
+
+
+def one(like: Any) -> Any:
+    """The number 1 of the same kind of balls."""
+    return type(base(like))(1)
+
+
+def partial(x: Any, index: int) -> Any:
+    """Derivative with respect to one variable; 0 where there is no dependence."""
+    return x.partials.get(index, 0) if isinstance(x, Jet) else 0

@@ -1,0 +1,59 @@
+"""Why a proof did not come about: the step, the place and what would help, as data; text last."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+
+class ProofError(ValueError):
+    """A proof that cannot be begun; the sentence says why and what would do."""
+
+
+class Step(Enum):
+    """A step of a proof, with its name."""
+
+    REFINEMENT = "Newton's method at high precision"
+    EXISTENCE = "existence"
+    ADMISSIBILITY = "admissibility"
+    STABILITY = "stability"
+    PIECE = "the piece of the branch"
+
+
+class Remedy(Enum):
+    """What would help."""
+
+    BITS = "more bits would help (bits=...)"
+    START = "nodes nearer to an orbit would help: solve for the orbit first"
+    DEGENERATE = "the point is degenerate for its kind: its defining system is singular here"
+    SMALLER = "smaller steps or parameter balls would help"
+    BORDER = "the orbit lies on a border, where neither sign can be proved"
+    CIRCLE = "a multiplier lies on the unit circle, or too near to it to tell"
+    SYMMETRIC = "an impact-free motion is proved where it is symmetric, on half its word"
+    OTHER_WORD = "the word of the branch on the other side of this border would help"
+
+
+@dataclass(eq=False)
+class Obstacle(Exception):
+    """The step that failed, where, and what would help."""
+
+    step: Step
+    remedy: Remedy
+    event: int | None = None
+    detail: str = ""
+
+    def __str__(self) -> str:
+        at = "" if self.event is None else f" at event {self.event}"
+        why = f" ({self.detail})" if self.detail else ""
+        return f"{self.step.value}{at} was not proved{why}; {self.remedy.value}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The obstacle for JSON."""
+        return {
+            "step": self.step.name.lower(),
+            "remedy": self.remedy.name.lower(),
+            "event": self.event,
+            "detail": self.detail,
+            "text": str(self),
+        }

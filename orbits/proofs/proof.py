@@ -1,0 +1,168 @@
+"""What a proof has found: data, for people and for files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from platform import python_version
+from typing import Any
+
+from orbits.proofs.balls import ball, library, precision, texts
+from orbits.proofs.enclosing import Box
+from orbits.proofs.equations import Motif
+from orbits.proofs.obstacles import Obstacle
+
+FORMAT = "contvines certificate 1"
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What is proved of one orbit or one special point.
+
+    Attributes
+    ----------
+    kind : str
+        "orbit", or the kind of the special point.
+    motif : Motif
+        The word, and whether half of a symmetric orbit stands for the whole.
+    parameters : dict
+        Exact decimals, or (middle, radius); without the parameter that a special point solves for.
+    parameter : str or None
+        At a special point the parameter that is enclosed.
+    box : Box or None
+        Holds exactly one solution of the equations; None where existence was not proved.
+    real : bool or None
+        All margins proved positive; one proved negative; neither.
+    stable : bool or None
+        All multipliers proved inside the unit circle; one proved outside; neither. Of special points only borders have it.
+    broken : (str, int) or None
+        The margin proved negative: name and event.
+    obstacles : tuple of Obstacle
+        What could not be proved, and what would help.
+    details : dict
+        What defines a special point, as JSON.
+    bits : int
+        Precision of the ball arithmetic.
+    """
+
+    kind: str
+    motif: Motif
+    parameters: Mapping[str, Any]
+    parameter: str | None = None
+    box: Box | None = None
+    real: bool | None = None
+    stable: bool | None = None
+    broken: tuple[str, int] | None = None
+    obstacles: tuple[Obstacle, ...] = ()
+    details: Mapping[str, Any] = field(default_factory=dict)
+    bits: int = 0
+
+    @property
+    def existence(self) -> bool:
+        """Whether exactly one solution is proved to lie in the box."""
+        return self.box is not None
+
+    @property
+    def transversal(self) -> bool | None:
+        """At a special point: a regular zero of the defining system, which is what was proved, is transversal."""
+        return None if self.parameter is None else self.existence
+
+    @property
+    def radius(self) -> float | None:
+        """The largest radius of a node's (and a special point's parameter's) ball."""
+        if self.box is None:
+            return None
+        n = self.motif.node
+        pairs = [pair for node in self.box.nodes for pair in node[:n]]
+        pairs += self.box.extras[:1] if self.parameter else []
+        return max((float(rad) for _, rad in pairs), default=0.0)
+
+    @property
+    def value(self) -> list[str] | None:
+        """At a special point middle and radius of the parameter's ball."""
+        return self.box.extras[0] if self.box is not None and self.parameter is not None else None
+
+    def nodes(self) -> list[list[list[str]]]:
+        """The nodes' balls over the whole word, in the order of an orbit's nodes."""
+        if self.box is None or not self.motif.events:
+            return []
+        n = self.motif.node
+        nodes = [node[:n] for node in self.box.nodes]
+        if not self.motif.half:
+            return nodes
+        with precision(self.bits):
+            shift = library().arb.pi() * self.motif.periods
+            digits = int(0.3 * self.bits)
+            image = [
+                [
+                    texts(ball((node[0][0], node[0][1])) + shift, digits),
+                    *(_negated(pair) for pair in node[1:]),
+                ]
+                for node in nodes
+            ]
+        return nodes + image
+
+    def to_dict(self) -> dict[str, Any]:
+        """The proof as JSON."""
+        result = {
+            "kind": self.kind,
+            "existence": self.existence,
+            "real": self.real,
+            "stable": self.stable,
+            "radius": self.radius,
+            "nodes": self.nodes(),
+            "parameters": {
+                name: value if isinstance(value, str) else list(value)
+                for name, value in self.parameters.items()
+            },
+            "obstacles": [obstacle.to_dict() for obstacle in self.obstacles],
+            "bits": self.bits,
+        }
+        if self.broken is not None:
+            result["broken"] = {"margin": self.broken[0], "event": self.broken[1]}
+        if self.parameter is not None:
+            result |= {"parameter": self.parameter, "value": self.value, "transversal": self.transversal}
+        return result
+
+    def certificate(self) -> dict[str, Any]:
+        """All that a checker needs: exact inputs, balls, claims, versions; JSON.
+
+        Raises
+        ------
+        ValueError
+            If existence was not proved.
+        """
+        if self.box is None:
+            raise ValueError(
+                "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
+            )
+        motif = self.motif
+        return {
+            "format": FORMAT,
+            "kind": self.kind,
+            "machine": motif.machine,
+            "parameters": self.to_dict()["parameters"],
+            "parameter": self.parameter,
+            "events": "".join(motif.events),
+            "modes": list(motif.modes),
+            "periods": motif.periods,
+            "half": motif.half,
+            "frictionless": motif.frictionless,
+            "nodes": self.box.nodes,
+            "extras": self.box.extras,
+            **self.details,
+            "claims": {"existence": True, "real": self.real, "stable": self.stable},
+            "broken": list(self.broken) if self.broken else None,
+            "bits": self.bits,
+            "versions": {"python-flint": library().__version__, "python": python_version()},
+        }
+
+    def __str__(self) -> str:
+        from orbits.proofs.wording import sentence
+
+        return sentence(self)
+
+
+def _negated(pair: list[str]) -> list[str]:
+    middle, radius = pair
+    return [middle[1:] if middle.startswith("-") else middle if middle == "0" else "-" + middle, radius]

@@ -1,0 +1,290 @@
+"""Proofs of orbits and of special points, from their floating-point versions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from orbits.proofs.admissible import NOTHING, Zero, examine
+from orbits.proofs.balls import Given, ball, decimal, precision
+from orbits.proofs.enclosing import enclose, refine
+from orbits.proofs.equations import Motif, System
+from orbits.proofs.flights import parameter_names
+from orbits.proofs.merging import merged
+from orbits.proofs.obstacles import Obstacle, ProofError, Remedy, Step
+from orbits.proofs.proof import Proof
+from orbits.proofs.resting import AtSlip
+from orbits.proofs.special import AtBorder, AtMultiplier, AtPair, Vanishing
+from orbits.proofs.stability import stable
+from orbits.proofs.starting import chain, eigenpair, eigenvector, touching_phase, vanishing_margin
+
+NEAR = 1e-6  # a proved orbit is the computed one when it is nearer than this
+MOST_BITS = 6144
+MULTIPLIERS = {"fold": 1, "symmetry-breaking": -1, "period-doubling": -1}
+
+
+def prove_orbit(
+    machine: str,
+    events: Sequence[str],
+    modes: Sequence[int],
+    periods: int,
+    nodes: np.ndarray,
+    parameters: Mapping[str, Given],
+    *,
+    half: bool = False,
+    frictionless: bool = False,
+    bits: int | None = None,
+) -> Proof:
+    """Prove existence, local uniqueness, reality and stability of an orbit.
+
+    Parameters
+    ----------
+    machine : str
+    events, modes, periods : the word over the whole period.
+    nodes : float array (L, n)
+        The computed nodes.
+    parameters : dict
+        Floats (the shortest decimal of each is meant), exact decimals as text, or balls (middle, radius).
+    half : bool
+        Solve on half the word: the orbit is symmetric.
+    frictionless : bool
+        Flights may reverse freely.
+    bits : int, optional
+        Precision to begin with; it is raised where that helps.
+
+    Returns
+    -------
+    Proof
+
+    Raises
+    ------
+    ProofError
+        If the machine has no flights in closed form, or parameters make no sense.
+    """
+    motif = motif_of(machine, events, modes, periods, half, frictionless)
+    given = {name: decimal(value) for name, value in parameters.items()}
+    start = nodes[: len(motif)]
+    proof = Proof("orbit", motif, given)
+
+    def attempt(at: int) -> Proof:
+        p = {name: ball(value) for name, value in given.items()}
+        check_parameters(motif, p)
+        system = System(motif, p)
+        z, _ = _refined(system, start, [], at)
+        box = enclose(system, z, [], at)
+        balls, _ = box.balls()
+        reality = examine(motif, p, balls)
+        steady, why = stable(system, balls)
+        broken = (reality.broken.name, reality.broken.event) if reality.broken else None
+        obstacles = (*reality.obstacles(), *([why] if why else []))
+        return replace(
+            proof, box=box, real=reality.real, stable=steady, broken=broken, obstacles=obstacles, bits=at
+        )
+
+    return _with_bits(attempt, proof, bits or 160 + 8 * len(motif), given)
+
+
+def prove_special(
+    kind: str,
+    motif: Motif,
+    nodes: np.ndarray,
+    parameters: Mapping[str, Given],
+    parameter: str,
+    value: float,
+    *,
+    margin: tuple[str, int] | None = None,
+    bits: int | None = None,
+) -> Proof:
+    """Prove a special point as a regular zero of its defining system, and whether the orbit there is real.
+
+    Parameters
+    ----------
+    kind : str
+        "fold", "symmetry-breaking", "period-doubling", "neimark-sacker" or the kind of a border.
+    motif : Motif
+    nodes : float array (l, n)
+        Nodes of the part that the motif stands for.
+    parameters : dict
+        All but `parameter`.
+    parameter, value : str, float
+        What is solved for, and where it was found.
+    margin : (str, int), optional
+        For a border the name of the margin that vanishes (`orbits.proofs.special.Vanishing`) and its event.
+    """
+    given = {name: decimal(number) for name, number in parameters.items() if name != parameter}
+    shorter = merged(motif, nodes) if margin else None
+    if shorter is not None:
+        motif, nodes, margin = shorter
+    proof = Proof(kind, motif, given, parameter)
+
+    def attempt(at: int) -> Proof:
+        p = {name: ball(number) for name, number in given.items()}
+        here = p | {parameter: ball(value)}
+        check_parameters(motif, here)
+        if not len(motif):
+            return _slip(proof, p, here, value, at)
+        x = [[ball(float(v)) for v in node] for node in nodes]
+        vanishing = vanishing_margin(motif, here, x, *margin) if margin else None
+        system, z, e, details = _defining(kind, motif, p, here, x, parameter, value, vanishing)
+        z, e = _refined(system, nodes, e, at, z)
+        box = enclose(system, z, e, at)
+        balls, extras = box.balls()
+        inside = [node[: motif.node] for node in balls]
+        zero = NOTHING
+        if vanishing is not None:
+            zero = Zero(
+                vanishing.name, vanishing.event, extras[1] if vanishing.inside else None, vanishing.side
+            )
+        reality = examine(motif, p | {parameter: extras[0]}, inside, zero)
+        broken = (reality.broken.name, reality.broken.event) if reality.broken else None
+        return replace(
+            proof,
+            box=box,
+            real=reality.real,
+            broken=broken,
+            obstacles=tuple(reality.obstacles()),
+            details=details,
+            bits=at,
+        )
+
+    return _with_bits(attempt, proof, bits or 192 + 8 * len(motif), given)
+
+
+def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: float, bits: int) -> Proof:
+    """Where the stuck absorber slips: the push just reaches friction."""
+    flights = proof.motif.flights(here)
+    one, other = (float(flights.resting(phase)[0].mid()) for phase in (ball(0), ball(float(np.pi / 2))))
+    bias = float(ball(0) + flights.bias)
+    side = -1 if bias < 0 else 1
+    phase = float(np.arctan2(other - bias, one - bias)) + (0.0 if side > 0 else float(np.pi))
+    assert proof.parameter is not None
+    system = AtSlip(proof.motif, p, proof.parameter, side)
+    z, e = refine(system, [[ball(phase)]], [ball(value)], bits)
+    if not abs(float(e[0]) - value) < NEAR:
+        raise Obstacle(Step.REFINEMENT, Remedy.START)
+    box = enclose(system, z, e, bits)
+    return replace(proof, box=box, real=True, details={"border": ["rest", 0, side]}, bits=bits)
+
+
+def motif_of(
+    machine: str, events: Sequence[str], modes: Sequence[int], periods: int, half: bool, frictionless: bool
+) -> Motif:
+    """The part of a word that is solved for.
+
+    Raises
+    ------
+    ProofError
+        If the machine has no flights in closed form, or the word is empty.
+    """
+    parameter_names(machine)
+    if not events:
+        raise ProofError("the absorber is stuck throughout: the empty word has no equations to prove")
+    length = len(events) // 2 if half else len(events)
+    return Motif(machine, tuple(events[:length]), tuple(modes[:length]), periods, half, frictionless)
+
+
+def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
+    """Refuse parameters outside their range, and friction where the word has none.
+
+    Raises
+    ------
+    ProofError
+        Naming the parameter.
+    """
+    for name, value in p.items():
+        if name.startswith("restitution"):
+            good = value > 0 and value.upper() <= 1
+        elif name in ("frequency",) or (name == "mass_ratio" and motif.machine == "coupled"):
+            good = value > 0
+        else:
+            good = name == "slope" or value.lower() >= 0
+        if not (good and value.is_finite()):
+            raise ProofError(f"{name} = {value.str(12)} is out of range for the machine {motif.machine!r}")
+    if motif.half and (motif.machine == "cavity" or motif.periods % 2 == 0):
+        raise ProofError(
+            "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
+        )
+    friction = motif.flights(p).friction
+    if motif.frictionless != bool(friction == 0):
+        raise ProofError(
+            "a word without friction's events needs friction exactly 0, and any other needs friction above 0"
+        )
+
+
+def _defining(
+    kind: str,
+    motif: Motif,
+    p: Mapping[str, Any],
+    here: Mapping[str, Any],
+    x: list[list[Any]],
+    parameter: str,
+    value: float,
+    vanishing: Vanishing | None,
+) -> tuple[System, list[list[Any]], list[Any], dict[str, Any]]:
+    """The defining system, where to start, and what a certificate must say of it."""
+    if vanishing is not None:
+        extras = [ball(value)]
+        if vanishing.inside:
+            extras.append(touching_phase(motif, here, x, vanishing))
+        details = {"border": [vanishing.name, vanishing.event, vanishing.side]}
+        return AtBorder(motif, p, parameter, vanishing), x, extras, details
+    factors = chain(motif, here, x)
+    if kind == "neimark-sacker":
+        phi, normal, angle = eigenpair(factors)
+        system: System = AtPair(motif, p, parameter, normal)
+        extras = [ball(value), ball(angle)]
+    else:
+        mu = MULTIPLIERS[kind]
+        phi, normal = eigenvector(factors, mu)
+        system, extras = AtMultiplier(motif, p, parameter, mu, normal), [ball(value)]
+    details: dict[str, Any] = {"normal": [normal.block, normal.component]}
+    if kind != "neimark-sacker":
+        details["multiplier"] = MULTIPLIERS[kind]
+    return system, [a + b for a, b in zip(x, phi)], extras, details
+
+
+def _refined(
+    system: System, nodes: np.ndarray, extras: Sequence[Any], bits: int, start: list[list[Any]] | None = None
+) -> tuple[Any, Any]:
+    """Newton's method; the result must be the computed orbit, not one somewhere else."""
+    z = start or [[ball(float(v)) for v in node] for node in nodes]
+    z, e = refine(system, z, extras, bits)
+    n = system.motif.node
+    away = max(
+        abs(float(found) - float(given)) / (1.0 + abs(float(given)))
+        for part, node in zip(z, nodes)
+        for found, given in zip(part[:n], node)
+    )
+    if extras:
+        away = max(away, abs(float(e[0] - extras[0])))
+    if not away < NEAR:
+        raise Obstacle(
+            Step.REFINEMENT, Remedy.START, detail=f"the nearest orbit is {away:.1g} away from these nodes"
+        )
+    return z, e
+
+
+def _with_bits(attempt: Any, proof: Proof, bits: int, given: Mapping[str, Any]) -> Proof:
+    """Attempts with more and more bits until all is decided, or more bits change nothing."""
+    best, tries = replace(proof, bits=bits), 0
+    wide = any(isinstance(value, tuple) for value in given.values())
+    while True:
+        try:
+            with precision(bits):
+                best = attempt(bits)
+                open_ = best.real is None or (best.stable is None and best.kind == "orbit")
+            if not open_ or wide:
+                return best
+            tries += 1
+        except Obstacle as obstacle:
+            best = replace(best, obstacles=(obstacle,), bits=bits) if best.box is None else best
+            if obstacle.remedy is Remedy.START:
+                return best
+            if obstacle.remedy is Remedy.DEGENERATE:
+                tries += 1
+        bits *= 2
+        if tries >= 2 or bits > MOST_BITS:
+            return best

@@ -1,0 +1,152 @@
+"""Numbers near a special point for Newton's method: eigenvectors along the orbit, the phase at which a margin vanishes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from orbits.proofs.balls import library
+from orbits.proofs.equations import Motif, System
+from orbits.proofs.flights import Flight
+from orbits.proofs.obstacles import Obstacle, Remedy, Step
+from orbits.proofs.special import Normal, Vanishing
+
+SAMPLES = 400
+SHORT = 1e-5  # a stick this short, in radians of the forcing, ends at once
+
+
+def chain(motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]]) -> list[Any]:
+    """The linearised maps at the middles, each a matrix of exact numbers."""
+    blocks = System(motif, p).linearise(nodes, [])
+    arb_mat = library().arb_mat
+    try:
+        return [(-(arb_mat(D).solve(arb_mat(A)))).mid() for A, D in zip(blocks.A, blocks.D)]
+    except ZeroDivisionError:
+        raise Obstacle(Step.REFINEMENT, Remedy.DEGENERATE) from None
+
+
+def eigenvector(factors: Sequence[Any], mu: int) -> tuple[list[list[Any]], Normal]:
+    """phi at every node for the real multiplier nearest to mu, its largest component 1, and where that is."""
+    arb, arb_mat = library().arb, library().arb_mat
+    size = factors[0].nrows()
+    product = _product(factors)
+    shifted = product - arb_mat(size, size, [arb(mu) * (i == j) for i in range(size) for j in range(size)])
+    # inverse iteration; the multiplier is known to about ten digits only
+    tilt = arb(2) ** (-60)
+    shifted = shifted + arb_mat(size, size, [tilt * (i == j) for i in range(size) for j in range(size)])
+    vector = arb_mat(size, 1, [arb(1) / (1 + i) for i in range(size)])
+    for _ in range(3):
+        try:
+            vector = shifted.mid().solve(vector).mid()
+        except ZeroDivisionError:
+            raise Obstacle(Step.REFINEMENT, Remedy.DEGENERATE) from None
+        largest = max((vector[i, 0] for i in range(size)), key=lambda v: float(abs(v)))
+        vector = (vector * (1 / largest)).mid()
+    return _scaled(_carried(factors, vector))
+
+
+def eigenpair(factors: Sequence[Any]) -> tuple[list[list[Any]], Normal, float]:
+    """Re phi and Im phi at every node for the complex multiplier nearest to the unit circle, and its angle."""
+    numbers = np.array([[float(value) for value in row] for row in _product(factors).tolist()])
+    values, vectors = np.linalg.eig(numbers)
+    upper = [j for j, value in enumerate(values) if value.imag > 0.0]
+    if not upper:
+        raise Obstacle(Step.REFINEMENT, Remedy.DEGENERATE, detail="no complex pair of multipliers")
+    best = min(upper, key=lambda j: abs(abs(values[j]) - 1.0))
+    vector = vectors[:, best] / vectors[np.argmax(np.abs(vectors[:, best])), best]
+    arb, arb_mat = library().arb, library().arb_mat
+    real = _carried(factors, arb_mat([[arb(float(v.real))] for v in vector]))
+    imaginary = _carried(factors, arb_mat([[arb(float(v.imag))] for v in vector]))
+    normal = Normal(0, int(np.argmax(np.abs(vector))))
+    return [a + b for a, b in zip(real, imaginary)], normal, float(np.angle(values[best]))
+
+
+def vanishing_margin(
+    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], name: str, event: int
+) -> Vanishing:
+    """The margin of this name, with the side on which it vanishes (of the two walls, or of the push's two directions)."""
+    flights = motif.flights(p)
+    flight = flights.launch(motif.events[event], motif.modes[event], nodes[event])
+    side = 1
+    if name in ("hold", "stick", "duration"):
+        span = float(motif.after(event, nodes)[0] - nodes[event][0])
+        if motif.modes[event] == 0 and not motif.frictionless and abs(span) < SHORT:
+            return Vanishing("stop", event, motif.arrival(event)[1])
+        if name == "duration":
+            raise Obstacle(Step.EXISTENCE, Remedy.OTHER_WORD, event, "a flight of no duration")
+    if name in ("hold", "reversal"):
+        both = [Vanishing(name, event, side) for side in (1, -1)]
+        least = [_least(motif, p, nodes, vanishing) for vanishing in both]
+        found = [(pair[0], vanishing) for pair, vanishing in zip(least, both) if pair is not None]
+        return min(found, key=lambda pair: pair[0])[1] if found else both[0]
+    if name in ("turn", "stick"):
+        side = 1 if flight(nodes[event][0]).push > 0 else -1
+    elif name == "wall":
+        side = 1 if nodes[event][1] > 0 else -1
+    return Vanishing(name, event, side)
+
+
+def touching_phase(
+    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], vanishing: Vanishing
+) -> Any:
+    """The phase inside the flight at which the margin is smallest, roughly."""
+    least = _least(motif, p, nodes, vanishing)
+    if least is None:
+        raise Obstacle(
+            Step.REFINEMENT, Remedy.START, vanishing.event, "the margin has no minimum inside this flight"
+        )
+    return least[1]
+
+
+def _least(
+    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], vanishing: Vanishing
+) -> tuple[float, Any] | None:
+    """The smallest value of a margin at a minimum inside its flight, and where."""
+    i = vanishing.event
+    flights = motif.flights(p)
+    flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
+    first, last = nodes[i][0].mid(), motif.after(i, nodes)[0].mid()
+    candidates = []
+    for j in range(1, SAMPLES):
+        phase = (first + (last - first) * j / SAMPLES).mid()
+        candidates.append((_size(flight, phase, motif.modes[i], vanishing, flights.friction), phase))
+    inner = [
+        candidates[j]
+        for j in range(1, len(candidates) - 1)
+        if candidates[j - 1][0] >= candidates[j][0] <= candidates[j + 1][0]
+    ]
+    return min(inner, key=lambda pair: pair[0]) if inner else None
+
+
+def _size(flight: Flight, phase: Any, mode: int, vanishing: Vanishing, friction: Any) -> float:
+    m = flight(phase)
+    if vanishing.name == "flight":
+        return float((mode * m.w1).mid())
+    if vanishing.name == "hold":
+        return float((friction - vanishing.side * m.push).mid())
+    return float((1 - vanishing.side * m.w).mid())
+
+
+def _product(factors: Sequence[Any]) -> Any:
+    product = factors[0]
+    for factor in factors[1:]:
+        product = (factor * product).mid()
+    return product
+
+
+def _carried(factors: Sequence[Any], vector: Any) -> list[list[Any]]:
+    result = []
+    for factor in factors:
+        result.append([vector[i, 0] for i in range(vector.nrows())])
+        vector = (factor * vector).mid()
+    return result
+
+
+def _scaled(phi: list[list[Any]]) -> tuple[list[list[Any]], Normal]:
+    """The vectors with their largest component made 1."""
+    places = [(i, j) for i in range(len(phi)) for j in range(len(phi[i]))]
+    i, j = max(places, key=lambda place: float(abs(phi[place[0]][place[1]])))
+    scale = phi[i][j]
+    return [[(value / scale).mid() for value in vector] for vector in phi], Normal(i, j)

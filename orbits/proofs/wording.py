@@ -1,0 +1,38 @@
+"""Proofs in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from orbits.proofs.proof import Proof
+
+SAYS = {
+    "real": {
+        True: "real",
+        False: "virtual (proved: no machine follows it)",
+        None: "neither proved real nor virtual",
+    },
+    "stable": {True: "stable", False: "unstable", None: "stability not proved"},
+}
+
+
+def sentence(proof: Proof) -> str:
+    """What is proved, and what was in the way."""
+    word = "".join(proof.motif.events) + (" and its mirror image" if proof.motif.half else "")
+    what = "the orbit" if proof.kind == "orbit" else f"the {proof.kind}"
+    if proof.box is None:
+        lines = [f"{what} of {word}: existence not proved"]
+    else:
+        facts = [f"exists, one and only one within {proof.radius:.2g}"]
+        if proof.value is not None:
+            facts.append(f"{proof.parameter} = {proof.value[0][:24]} within {float(proof.value[1]):.1g}")
+            facts.append("transversal")
+        facts.append(SAYS["real"][proof.real])
+        if proof.kind == "orbit":
+            facts.append(SAYS["stable"][proof.stable])
+        lines = [f"{what} of {word}: " + ", ".join(facts)]
+    if proof.broken is not None:
+        lines.append(f"  the margin {proof.broken[0]!r} of event {proof.broken[1]} is negative")
+    lines += [f"  {obstacle}" for obstacle in proof.obstacles]
+    return "\n".join(lines)

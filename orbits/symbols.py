@@ -1,0 +1,166 @@
+"""Elementary functions on numbers, arrays and symbols alike: what a page that declares a machine may use.
+
+A page is run once with symbols in place of numbers. The operators ``+ - * / **`` and the functions of this module are
+recorded; what cannot be recorded (a comparison, ``abs``, ``math.cos``) is refused with a sentence that says what would do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+
+class NotAnalytic(TypeError):
+    """A page asks of a symbol what has no single analytic formula."""
+
+
+def _refuse(what: str) -> Any:
+    raise NotAnalytic(
+        f"{what} of a symbol has no single formula, and a flight must be analytic; where a law changes at a surface, "
+        "declare a Switch with that surface and use its contact.<name>, which is +1 or -1"
+    )
+
+
+class Symbol:
+    """An expression in the states, the phase and the parameters of a machine.
+
+    Parameters
+    ----------
+    expression
+        The engine's own object.
+    functions : mapping of name to callable
+        The engine's elementary functions, on its own objects.
+    """
+
+    __slots__ = ("expression", "functions")
+    __hash__ = object.__hash__
+    __array_priority__ = 1000.0
+
+    def __init__(self, expression: Any, functions: Mapping[str, Callable]) -> None:
+        self.expression, self.functions = expression, functions
+
+    def _with(self, operate: Callable, other: Any, turned: bool = False) -> Any:
+        if isinstance(other, Symbol):
+            right = other.expression
+        elif isinstance(other, Real) or (isinstance(other, np.ndarray) and other.ndim == 0):
+            right = float(other)  # type: ignore[arg-type]
+        else:
+            return NotImplemented
+        left = self.expression
+        return Symbol(operate(right, left) if turned else operate(left, right), self.functions)
+
+    def __add__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a + b, other)
+
+    def __radd__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a + b, other, turned=True)
+
+    def __sub__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a - b, other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a - b, other, turned=True)
+
+    def __mul__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a * b, other)
+
+    def __rmul__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a * b, other, turned=True)
+
+    def __truediv__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a / b, other)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a / b, other, turned=True)
+
+    def __pow__(self, other: Any) -> Any:
+        return self._with(lambda a, b: a**b, other)
+
+    def __rpow__(self, other: Any) -> Any:
+        return self._with(lambda base, power: self.functions["exp"](power * float(np.log(base))), other, True)
+
+    def __neg__(self) -> Symbol:
+        return Symbol(-self.expression, self.functions)
+
+    def __pos__(self) -> Symbol:
+        return self
+
+    def __bool__(self) -> bool:
+        return _refuse("the truth value")
+
+    def __abs__(self) -> Any:
+        return _refuse("the absolute value")
+
+    def __float__(self) -> float:
+        raise NotAnalytic(
+            "a function that wants a number was given a symbol; take cos, sin, sqrt, exp ... from orbits.symbols"
+        )
+
+    def __eq__(self, other: object) -> Any:
+        return _refuse("a comparison (==)")
+
+    def __ne__(self, other: object) -> Any:
+        return _refuse("a comparison (!=)")
+
+    def __lt__(self, other: Any) -> Any:
+        return _refuse("a comparison (<)")
+
+    def __le__(self, other: Any) -> Any:
+        return _refuse("a comparison (<=)")
+
+    def __gt__(self, other: Any) -> Any:
+        return _refuse("a comparison (>)")
+
+    def __ge__(self, other: Any) -> Any:
+        return _refuse("a comparison (>=)")
+
+    def __mod__(self, other: Any) -> Any:
+        return _refuse("a remainder (%)")
+
+    def __floordiv__(self, other: Any) -> Any:
+        return _refuse("a whole quotient (//)")
+
+    def __repr__(self) -> str:
+        return str(self.expression)
+
+
+def _method(name: str) -> Callable:
+    return lambda self: Symbol(self.functions[name](self.expression), self.functions)
+
+
+for _name in ("cos", "sin", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh"):
+    setattr(Symbol, _name, _method(_name))  # numpy's functions look for these
+for _name in ("sin", "cos", "tan"):
+    setattr(Symbol, f"arc{_name}", _method(f"a{_name}"))
+
+
+def _elementary(name: str, numeric: Callable, says: str) -> Callable:
+    def function(x: Any) -> Any:
+        if isinstance(x, Symbol):
+            return Symbol(x.functions[name](x.expression), x.functions)
+        return numeric(x)
+
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = f"{says}, on a number, an array or a symbol."
+    return function
+
+
+cos = _elementary("cos", np.cos, "Cosine")
+sin = _elementary("sin", np.sin, "Sine")
+tan = _elementary("tan", np.tan, "Tangent")
+exp = _elementary("exp", np.exp, "Exponential function")
+log = _elementary("log", np.log, "Natural logarithm")
+sqrt = _elementary("sqrt", np.sqrt, "Square root")
+sinh = _elementary("sinh", np.sinh, "Hyperbolic sine")
+cosh = _elementary("cosh", np.cosh, "Hyperbolic cosine")
+tanh = _elementary("tanh", np.tanh, "Hyperbolic tangent")
+asin = _elementary("asin", np.arcsin, "Inverse sine")
+acos = _elementary("acos", np.arccos, "Inverse cosine")
+atan = _elementary("atan", np.arctan, "Inverse tangent")
+pi = float(np.pi)
+
+ELEMENTARY = ("cos", "sin", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "asin", "acos", "atan")
+__all__ = [*ELEMENTARY, "NotAnalytic", "Symbol", "pi"]

@@ -1,0 +1,70 @@
+"""Loci of the reduced absorber against closed forms and against diagrams in one parameter."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+
+MACHINE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
+
+
+@pytest.fixture(scope="module")
+def graph():
+    return cv.diagram(
+        Absorber(**MACHINE).symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 1.3)
+    )
+
+
+def closed_form(kind, **changed):
+    """Amplitude of the fold or symmetry breaking of the symmetric orbit with two impacts: MODEL section 4."""
+    m = {**MACHINE, **changed}
+    a = (1.0 + m["mass_ratio"]) * m["friction"] * m["gravity"]
+    R, H = (1.0 - m["restitution"]) / (1.0 + m["restitution"]), 0.5 * np.pi * a
+    below = np.pi**2 + 4.0 * R**2 if kind == "fold" else np.pi**2 - 4.0
+    beta = (2.0 * np.pi - 4.0 * R * H) / below
+    return np.hypot(1.0 - 0.5 * np.pi * beta, R * beta + H)
+
+
+@pytest.mark.parametrize("label, kind", [("LP1", "fold"), ("SB1", "symmetry-breaking")])
+@pytest.mark.parametrize(
+    "over, within", [("friction", (0.05, 0.9)), ("gravity", (0.05, 0.6)), ("restitution", (0.3, 0.95))]
+)
+def test_fold_and_symmetry_breaking_are_their_closed_forms(graph, label, kind, over, within):
+    locus = cv.locus(graph[label], over=over, within=within)
+    assert locus.kind == kind and locus.parameters == ("amplitude", over)
+    assert len(locus) > 10
+    for p, q in locus.values:
+        assert p == pytest.approx(closed_form(kind, **{over: q}), abs=1e-12)
+    assert locus.real.all()
+
+
+@pytest.mark.parametrize("label, index", [("VG1", 2), ("PD1", 2)])
+def test_velocity_graze_and_period_doubling_are_those_of_diagrams(graph, label, index):
+    locus = cv.locus(graph[label], over="friction", within=(0.35, 0.7))
+    for friction in np.linspace(0.36, 0.69, 4):
+        machine = Absorber(**{**MACHINE, "friction": float(friction)})
+        other = cv.diagram(
+            machine.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 1.3), depth=1
+        )
+        value = other[label].value
+        assert other[label].kind == locus.kind
+        assert locus.at(friction) == pytest.approx([value], abs=1e-10)
+
+
+def test_a_border_that_jumps_is_followed_by_its_smooth_margin(graph):
+    # a stick becomes a turn: the time to the slip jumps there, the duration of the stick passes zero
+    locus = cv.locus(graph["ST2"], over="friction", within=(0.3, 0.7))
+    assert locus.ended[0].startswith("reaches the end of the interval, friction = 0.3")
+    assert locus.ended[1].startswith("reaches the end of the interval, friction = 0.7")
+
+
+def test_a_bad_second_parameter_is_refused_in_a_sentence(graph):
+    with pytest.raises(ValueError, match="over = 'amplitude' is the parameter of the diagram itself"):
+        cv.locus(graph["LP1"], over="amplitude", within=(0.1, 0.9))
+    with pytest.raises(
+        ValueError, match="over = 'viscosity': the problem has no such parameter; it has amplitude"
+    ):
+        cv.locus(graph["LP1"], over="viscosity", within=(0.1, 0.9))
+    with pytest.raises(ValueError, match="was made at friction = 0.5, outside of within"):
+        cv.locus(graph["LP1"], over="friction", within=(0.6, 0.9))

@@ -1,0 +1,75 @@
+"""The data of a report are the graph's own numbers."""
+
+import base64
+import gzip
+import json
+import re
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.report.contents import contents
+from contvines.report.page import page, write_report
+from orbits import Absorber
+from tests.contvines import fakes
+
+
+@pytest.fixture(scope="module")
+def graph():
+    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.55)
+    return cv.diagram(seed, over="amplitude", within=(0.4, 0.8), depth=1)
+
+
+def test_curves_special_points_and_orbits_are_the_graphs(graph):
+    data = contents(graph, "x.vines")
+    one = data["branches"][0]
+    assert np.allclose(one["measures"]["amplitude"], graph["B1"].values, rtol=1e-8)
+    assert np.allclose(one["measures"]["B"], graph["B1"].measure("B"), rtol=1e-8)
+    assert [p["label"] for p in data["special"]] == list(graph.special)
+    sb = next(p for p in data["special"] if p["label"] == "SB1")
+    # closed form: C sin = 1 - pi beta/2, C cos = R beta + H at the symmetry breaking
+    R, H = 0.24 / 1.76, 0.5 * np.pi * 1.006 * 0.5 * 0.211
+    beta = (2 * np.pi - 4 * R * H) / (np.pi**2 - 4)
+    assert sb["value"]["amplitude"] == pytest.approx(np.hypot(1 - np.pi * beta / 2, R * beta + H), abs=1e-12)
+    scene = data["orbits"]["B1"][str(sb["index"])]
+    assert np.abs(scene["portrait"]["x"]).max() == pytest.approx(1.0, abs=1e-4)  # it touches both walls
+    assert [e["event"] for e in scene["events"]] == ["L", "R"]
+    box, body = (np.array(scene["animation"][name]) for name in ("box", "body"))
+    assert np.all(np.abs(box - body) <= 1.0 + 1e-3)  # the absorber stays in its cavity
+    # v = C sin(phase) moves the common centre: q1 = (v + eps w)/(1 + eps)
+    turns, cavity = (np.array(v) for v in (scene["history"]["x"], scene["history"]["curves"]["cavity"]))
+    v = sb["value"]["amplitude"] * np.sin(2 * np.pi * turns)
+    w = np.array(scene["portrait"]["x"])
+    assert np.abs(cavity - (v + 0.006 * w) / 1.006).max() < 5e-4  # five digits are kept
+
+
+def test_a_problem_without_motions_has_a_page_too():
+    circle = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
+    data = contents(cv.diagram(circle, within=(-2.0, 2.0)), "circle.vines")
+    assert data["orbits"] == {} and len(data["branches"]) == 1
+    assert contents(fakes.pitchfork_graph(), "g.vines")["branches"][2]["real"] is False
+
+
+def test_the_page_asks_for_nothing_and_stays_small(graph, tmp_path):
+    place = write_report(graph, tmp_path / "page.html", "x.vines")
+    text = place.read_text()
+    assert len(text) < 5_000_000
+    assert not re.search(r"""(?:src|href)\s*=\s*["'](?!data:)""", text)
+    packed = re.search(r'id="data" type="application/gzip">([^<]+)<', text)
+    assert packed is not None
+    assert json.loads(gzip.decompress(base64.b64decode(packed[1])))["source"] == "x.vines"
+
+
+def test_names_cannot_break_out_of_the_page():
+    data = contents(fakes.pitchfork_graph(), "</script><b>x.vines")
+    text = page(data)
+    assert "</script><b>" not in text
+
+
+@pytest.mark.parametrize(
+    ("name", "says"), [("a.png", "must end in .html"), ("none/a.html", "there is no folder")]
+)
+def test_a_page_that_cannot_be_written_is_refused(graph, tmp_path, name, says):
+    with pytest.raises(ValueError, match=says):
+        write_report(graph, tmp_path / name, "x.vines")

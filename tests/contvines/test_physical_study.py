@@ -1,0 +1,124 @@
+"""Studies in kilograms, millimetres and hertz: read, refused, continued and shown."""
+
+import json
+
+import numpy as np
+import pytest
+
+from contvines.command.cli import main
+from contvines.command.compose import machine
+from contvines.command.study import StudyError, check_study
+
+STUDY = """
+units = "si"
+[model]
+name = "coupled"
+oscillator_mass = "3.8 kg"
+natural_frequency = "8 Hz"
+absorber_mass = "32 g"
+half_width = "15 mm"
+damping_ratio = 0.007
+restitution = 0.6
+friction = 0.1
+base_amplitude = "0.3 mm"
+[start]
+word = "LR"
+frequency = "7.9 Hz"
+[continue]
+parameter = "frequency"
+within = ["7.5 Hz", "8200 mHz"]
+depth = 0
+[sweep]
+count = 3
+"""
+
+
+def nested(**changes):
+    """The study as dicts; `model__half_width="x"` changes one value, None takes it out."""
+    import tomllib
+
+    data = tomllib.loads(STUDY)
+    for key, value in changes.items():
+        section, _, field = key.partition("__")
+        place = data[section] if field else data
+        name = field or section
+        if value is None:
+            place.pop(name)
+        else:
+            place[name] = value
+    return data
+
+
+def test_a_study_is_read():
+    study = check_study(nested())
+    assert study.within == pytest.approx((7.5, 8.2), rel=1e-15)
+    assert study.parameters["half_width"] == 15.0 and study.parameters["frequency"] == 7.9
+    model = machine(study)
+    assert model.column(model.vector(), "frequency") == pytest.approx(7.9 / 8.0, rel=1e-14)
+    moved = check_study(nested(units=None, model__units="si"))
+    assert moved.describe() == study.describe() and moved.fingerprint() == study.fingerprint()
+
+
+def test_any_quantity_may_vary():
+    study = check_study(nested(continue__parameter="stiffness", continue__within=["9 kN/m", "10 kN/m"]))
+    assert machine(study).amount_names[3] == "stiffness" or "stiffness" in machine(study).amount_names
+    assert study.within == pytest.approx((9000.0, 10000.0))
+    assert study.parameters["stiffness"] == pytest.approx(3.8 * (16 * np.pi) ** 2, rel=1e-13)
+
+
+def test_start_replaces_what_the_model_says_of_the_same_thing():
+    study = check_study(nested(start__force_amplitude="3 N"))
+    assert "base_amplitude" not in study.parameters and study.parameters["force_amplitude"] == 3.0
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"units": "imperial"}, "units = 'imperial' is unknown; \"si\" would do"),
+        ({"model__half_width": "20 m"}, "[model] half_width = '20 m' is implausible"),
+        ({"model__half_width": "15 kg"}, "[model] half_width = '15 kg': 'kg' is the unit of a mass"),
+        ({"model__half_width": None}, "[model] half_width is missing: \"15 mm\" would do"),
+        ({"start__frequency": "7.9 mm"}, "[start] frequency = '7.9 mm': 'mm' is the unit of a length"),
+        ({"start__frequency": 7.9}, "[start] frequency = 7.9 has no unit"),
+        ({"start__frequency": "9 Hz"}, "[start] frequency = 9 Hz lies outside [continue] within = [7.5, 8.2] Hz"),
+        ({"continue__within": ["7 mm", "8 Hz"]}, "[continue] within[0] = '7 mm': 'mm' is the unit of a length"),
+        ({"continue__within": ["8 Hz", "7 Hz"]}, "is reversed"),
+        ({"continue__within": ["7 Hz"]}, "[continue] within = "),
+        ({"continue__parameter": "speed"}, "has no such quantity"),
+        ({"model__halfwidth": "3 mm"}, "there is no such quantity (did you mean 'half_width'?)"),
+        ({"model__stiffness": "9 kN/m"}, "natural_frequency and stiffness say the same thing twice"),
+        ({"model__name": "pendulum"}, "'pendulum'"),
+        ({"start__guess": [[0.1, 0.2]]}, "guess[0]"),
+    ],
+)  # fmt: skip
+def test_bad_studies_get_a_sentence(change, says):
+    with pytest.raises(StudyError) as caught:
+        check_study(nested(**change))
+    assert says in str(caught.value)
+
+
+def test_tables_json_and_csv_speak_the_study_s_units(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "case.toml").write_text(STUDY)
+
+    def run(*words):
+        with pytest.raises(SystemExit) as ended:
+            main(list(words))
+        assert ended.value.code == 0
+        return capsys.readouterr().out
+
+    assert "frequency [Hz]" in run("diagram", "case.toml")
+    about = json.loads(run("show", "case.vines", "--json"))
+    assert about["units"]["frequency"] == "Hz" and about["units"]["max_abs_q1"] == "mm"
+    assert about["within"] == pytest.approx([7.5, 8.2])
+    fold = next(p for p in about["special"] if p["kind"] == "fold")
+    assert 7.5 < fold["value"]["frequency"] < 8.2
+    shown = run("orbit", "case.vines", fold["label"])
+    assert "half_width = 15 mm" in shown and "B_pre [mm/s]" in shown
+    run("export", "case.vines", "--to", "csv")
+    head = (tmp_path / "case.csv").read_text().splitlines()[0].split(",")
+    assert "frequency [Hz]" in head and "max_abs_q1 [mm]" in head
+    run("sweep", "case.toml")
+    rows = (tmp_path / "case-sweep.csv").read_text().splitlines()
+    assert "value [Hz]" in rows[0] and "max_abs_q1 [mm]" in rows[0]
+    assert [float(row.split(",")[0]) for row in rows[1:]] == pytest.approx([7.5, 7.85, 8.2])

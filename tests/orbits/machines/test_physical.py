@@ -1,0 +1,209 @@
+"""Machines in kilograms, millimetres and hertz: their numbers by hand, what varies with what, and every bad quantity's sentence."""
+
+import pickle
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from orbits import Coupled
+from orbits.machines.base import ParameterError
+from orbits.machines.catalogue import build
+from orbits.machines.physical import QuantityError, physical
+
+FLAT = {
+    "oscillator_mass": "3.8 kg",
+    "natural_frequency": "8 Hz",
+    "absorber_mass": "32 g",
+    "half_width": "15 mm",
+    "damping_ratio": 0.007,
+    "restitution": 0.6,
+    "friction": 0.1,
+    "base_amplitude": "0.3 mm",
+}
+
+
+def hand(M, m, b, k, c, g, E, f):
+    """The model section's definitions, in 30 digits."""
+    M, m, b, k, c, g, E, f = (mp.mpf(value) for value in (M, m, b, k, c, g, E, f))
+    omega = mp.sqrt(k / M)
+    return {
+        "mass_ratio": m / M,
+        "damping": c / (m * omega),
+        "gravity": g / (b * omega**2),
+        "forcing": E * M / (b * m),
+        "frequency": 2 * mp.pi * f / omega,
+    }
+
+
+def case_by_stiffness():
+    given = {
+        "oscillator_mass": "3.8 kg", "stiffness": "9.6 kN/m", "absorber_mass": "32 g", "half_width": "1.5 cm",
+        "damping": "2.7 N s/m", "restitution": 0.6, "friction": 0.1, "base_amplitude": "300 um", "frequency": "480 rpm",
+    }  # fmt: skip
+    return given, hand("3.8", "0.032", "0.015", "9600", "2.7", "9.81", "0.0003", "8")
+
+
+def case_by_ratios():
+    k = mp.mpf(2) * (2 * mp.pi * 5) ** 2
+    c = 2 * mp.mpf("0.01") * 2 * (2 * mp.pi * 5)
+    given = {
+        "oscillator_mass": "2 kg", "natural_frequency": "5 Hz", "mass_ratio": 0.02, "half_width": "20 mm", "damping_ratio": "1 %",
+        "restitution": 0.8, "friction": 0.0, "gravity": "1.62 m/s^2", "base_amplitude": "1 mm", "frequency": "31 rad/s",
+    }  # fmt: skip
+    return given, hand("2", "0.04", "0.02", k, c, "1.62", "0.001", mp.mpf(31) / (2 * mp.pi))
+
+
+def case_by_force():
+    given = {
+        "oscillator_mass": "120 lb", "stiffness": "40 N/mm", "absorber_mass": "0.5 kg", "half_width": "1 inch",
+        "damping": "15 N s/m", "restitution": 0.7, "friction": 0.2, "force_amplitude": "12 N", "frequency": "4.2 Hz",
+    }  # fmt: skip
+    return given, hand(
+        mp.mpf("54.4310844"), "0.5", "0.0254", "40000", "15", "9.81", mp.mpf(12) / 40000, "4.2"
+    )
+
+
+@pytest.mark.parametrize("case", [case_by_stiffness, case_by_ratios, case_by_force])
+def test_numbers_by_hand(case):
+    given, wanted = case()
+    machine = physical("coupled", given)
+    numbers = dict(zip(machine.parameter_names, machine.vector({})))
+    for name, value in wanted.items():
+        assert numbers[name] == pytest.approx(float(value), rel=1e-12), name
+    assert numbers["excitation"] == (0.0 if "force_amplitude" in given else 1.0)
+
+
+def test_quantities_are_kept_as_they_were_said():
+    machine = physical("coupled", FLAT | {"half_width": "1.5 cm"})
+    assert machine.quantities["half_width"] == 1.5
+    assert machine.units["half_width"] == "cm"
+    again = build(machine.settings())
+    assert np.array_equal(again.vector({}), machine.vector({}))
+    assert np.array_equal(pickle.loads(pickle.dumps(machine)).vector({}), machine.vector({}))
+
+
+QUANTITIES = [
+    "half_width", "absorber_mass", "mass_ratio", "oscillator_mass", "natural_frequency", "stiffness", "damping_ratio", "damping",
+    "restitution", "friction", "gravity", "base_amplitude", "base_acceleration", "force_amplitude", "frequency",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_path_of_every_quantity(name):
+    """What varies moves the numbers as machines do that are described anew, and in the direction of their differences."""
+    machine = physical("coupled", FLAT | {"frequency": "7.7 Hz"}).told_by(name)
+    value, unit = machine.quantities[name], machine.units.get(name, "")
+    factors, powers = machine.path(name, machine.vector({}))
+    for share in (0.9, 1.0, 1.05):
+        told = machine.with_(**{name: f"{share * value!r} {unit}" if unit else share * value})
+        moved = np.where(powers != 0.0, factors * (share * value) ** powers, machine.vector({}))
+        np.testing.assert_allclose(moved, told.vector({}), rtol=1e-13)
+        np.testing.assert_allclose(machine.vector_at(name, share * value), moved, rtol=1e-15)
+    law = machine.law
+    np.testing.assert_allclose(
+        law[0] * np.prod(machine.counts[:, None] ** law[1:], axis=0), machine.vector({}), rtol=1e-13
+    )
+
+
+def test_what_is_zero_may_grow():
+    machine = physical(
+        "coupled", FLAT | {"friction": 0, "base_amplitude": "0 mm", "damping_ratio": 0, "frequency": "7 Hz"}
+    )
+    for name, number in (
+        ("friction", "friction"),
+        ("base_amplitude", "forcing"),
+        ("damping_ratio", "damping"),
+    ):
+        path = machine.path(name, machine.vector({}))
+        place = machine.parameter_names.index(number)
+        assert path[1, place] == 1.0 and path[0, place] > 0.0
+
+
+def test_responses_in_hertz_and_millimetres_are_the_dimensionless_ones():
+    machine = physical("coupled", FLAT)
+    numbers = dict(zip(machine.parameter_names, machine.vector({})))
+    plain = Coupled(**{name: numbers[name] for name in Coupled.parameter_names})
+    b, omega, m = 15.0, 2.0 * np.pi * 8.0, 32e-3  # mm, rad/s, kg
+    ours, theirs = machine.orbit("LR", frequency="7.9 Hz"), plain.orbit("LR", frequency=7.9 / 8.0)
+    found, known = ours.measures(), theirs.measures()
+    assert found["max_abs_q1"] == pytest.approx(b * known["max_abs_q1"], rel=1e-12)
+    assert found["B_post"] == pytest.approx(b * omega * known["B_post"], rel=1e-12)
+    assert found["C2"] == pytest.approx(b**2 * known["C2"], rel=1e-12)
+    joule = m * (1e-3 * b * omega) ** 2
+    assert found["impact_loss"] == pytest.approx(1e3 * joule * known["impact_loss"], rel=1e-12)
+    assert found["phase"] == known["phase"]
+    np.testing.assert_allclose(ours.multipliers, theirs.multipliers, atol=1e-12)
+    entry = ours.to_dict()
+    assert entry["parameters"]["frequency"] == pytest.approx(7.9, rel=1e-14)
+    assert entry["units"]["frequency"] == "Hz" and entry["units"]["max_abs_q1"] == "mm"
+    assert entry["nodes"][0]["w"] == pytest.approx(15.0)
+
+
+def test_the_shaken_cavity_has_units_too():
+    machine = physical(
+        "absorber",
+        {
+            "amplitude": "8 mm",
+            "half_width": "15 mm",
+            "frequency": "8 Hz",
+            "restitution": 0.6,
+            "friction": 0.1,
+        },
+    )
+    numbers = dict(zip(machine.parameter_names, machine.vector({})))
+    assert numbers["amplitude"] == pytest.approx(8 / 15, rel=1e-14)
+    assert numbers["gravity"] == pytest.approx(9.81 / (0.015 * (16 * np.pi) ** 2), rel=1e-14)
+    assert numbers["frequency"] == pytest.approx(1.0, rel=1e-15)
+    orbit = machine.orbit("LR")
+    assert orbit.measure("max_abs_w") == pytest.approx(15.0)
+    loss = orbit.measures("impact_loss")["impact_loss"]
+    assert loss > 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"half_width": "15 kg"}, "half_width = '15 kg': 'kg' is the unit of a mass, but half_width is a length; \"15 mm\" would do"),
+        ({"half_width": "15"}, "half_width = '15' has no unit"),
+        ({"half_width": 15}, "half_width = 15 has no unit"),
+        ({"half_width": "15 furlogs"}, "the unit 'furlogs' is not one of a length"),
+        ({"half_width": "3,5 mm"}, "half_width = '3,5 mm' is not a number with a unit"),
+        ({"half_width": "-3 mm"}, "is out of range; give a value above 0"),
+        ({"half_width": "nan mm"}, "is not a number with a unit"),
+        ({"half_width": "1e999 mm"}, "is not finite"),
+        ({"half_width": [1]}, "is no quantity"),
+        ({"half_width": "20 m"}, "half_width = '20 m' is implausible for the clearance to either side: 0.01 to 2000 mm would do"),
+        ({"absorber_mass": "32 kg"}, "absorber_mass is 8.42 times oscillator_mass"),
+        ({"natural_frequency": "8 kg"}, "natural_frequency is a frequency"),
+        ({"stiffness": "9600 N/m"}, "natural_frequency and stiffness say the same thing twice"),
+        ({"friction": "0.1 mm"}, "friction is a plain number"),
+        ({"damping": "2.7 N s/m"}, "damping_ratio and damping say the same thing twice"),
+        ({"restitution": 1.4}, "implausible for a coefficient of restitution"),
+        ({"colour": "blue"}, "the machine 'coupled' has no such quantity"),
+    ],
+)  # fmt: skip
+def test_bad_quantities_get_a_sentence(change, says):
+    with pytest.raises(QuantityError) as caught:
+        physical("coupled", FLAT | change)
+    assert says in str(caught.value)
+
+
+def test_missing_and_unusual():
+    for name in ("half_width", "absorber_mass", "restitution", "base_amplitude"):
+        with pytest.raises(QuantityError, match=f"{name} .*is missing|{name} is missing"):
+            physical("coupled", {key: value for key, value in FLAT.items() if key != name})
+    assert physical("coupled", FLAT | {"half_width": "20 m"}, unusual=True).quantities["half_width"] == 20.0
+    with pytest.raises(ParameterError):
+        physical("coupled", FLAT).orbit("LR", frequency="7.9 mm")
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(1e-3, 1e3), st.sampled_from(["mm", "cm", "m", "um", "inch"]))
+def test_units_of_one_length_agree(value, unit):
+    sizes = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "inch": 25.4}
+    there = physical("coupled", FLAT | {"half_width": f"{value!r} {unit}"}, unusual=True).vector({})
+    here = physical("coupled", FLAT | {"half_width": f"{value * sizes[unit]!r} mm"}, unusual=True).vector({})
+    np.testing.assert_allclose(there, here, rtol=1e-12)
