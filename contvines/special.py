@@ -109,6 +109,32 @@ class SpecialPoint:
             raise ValueError(without_problem(self.label))
         return self.problem.orbit(self.u, self.value)
 
+    def plot(self, **options: Any) -> Any:
+        """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
+        from .plots.portrait import plot_portrait
+
+        return plot_portrait(self.orbit, **options)
+
+    def _repr_html_(self) -> str:
+        from .graph.table import Table, number
+
+        sizes = ", ".join(
+            number(m.real, 8) + (f" {'+' if m.imag > 0 else '-'} {number(abs(m.imag), 8)}i" if m.imag else "")
+            for m in self.multipliers[:8]
+        )
+        rows = [
+            (
+                "kind",
+                " ".join(filter(None, (self.criticality or "", self.kind, "" if self.real else "(virtual)"))),
+            ),
+            ("on", self.branch),
+            (self.parameter, number(self.value, 14)),
+            ("located to", number(self.location_error, 2)),
+            ("multipliers", sizes or "-"),
+            *([("note", self.note)] if self.note else []),
+        ]
+        return Table((self.label, "special point"), rows).html()
+
     def prove(self, **options: Any) -> Any:
         """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.
 

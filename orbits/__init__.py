@@ -7,6 +7,7 @@ from typing import Any
 
 _PLACES = {
     "Absorber": "orbits.machines.absorber.machine",
+    "Cavity": "orbits.machines.cavity.machine",
     "Coupled": "orbits.machines.coupled.machine",
     "DryFriction": "orbits.contacts.dry_friction",
     "Machine": "orbits.machines.declared.machine",

@@ -47,7 +47,7 @@ def _section(name: str) -> type[Section]:
     machine = model_class(name)
     fields: dict[str, Any] = {"name": (Literal[name], ...)}  # type: ignore[valid-type]
     defaults = machine.defaults()
-    for entry in machine.table:
+    for entry in machine.settable:
         if entry.name in defaults:
             default = defaults[entry.name]
             optional = default is None
@@ -109,7 +109,7 @@ class StudyFile(StudySections):
 
 
 PARAMETERS: dict[str, dict[str, Any]] = {
-    name: {entry.name: kind(entry) for entry in model_class(name).table} for name in NAMES
+    name: {entry.name: kind(entry) for entry in model_class(name).settable} for name in NAMES
 }
 """Type of every parameter of every machine; those that are given with each orbit come from [start]."""
 EXCITATION: dict[str, str] = {name: model_class(name).driven_by for name in NAMES}

@@ -18,6 +18,9 @@ FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
+TIED = 1e-9  # margins that differ by less vanish together
+SURE = 1e-10  # tangents at a border whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
+FIRST = {"stick": 0, "velocity-graze": 1, "wall-graze": 2, "chatter": 3}  # of borders that are met at once
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -210,25 +213,46 @@ class Examiner:
         a, b = engine.margins(segment.a.row), engine.margins(segment.b.row)
         if not len(a):
             return []
-        events = []
         if real:
-            crossing_ones = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
-            if len(crossing_ones):
+            falling = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
+        else:
+            falling = np.arange(len(a)) if (a < MARGIN).any() and not (b < MARGIN).any() else np.zeros(0, int)
+        if not len(falling):
+            return []
 
-                def margin(point: Solved) -> float:
-                    return min(float(engine.margins(point.row)[crossing_ones].min()), 1.0)
+        def margin(point: Solved) -> float:
+            return min(float(engine.margins(point.row)[falling].min()), 1.0)
 
-                root = locate(segment, margin, fallback_zero=True)
-                if root is not None:
-                    j = int(crossing_ones[np.argmin(engine.margins(root.point.row)[crossing_ones])])
-                    events.append(self._located(root, engine.problem.margin_kind(j), j, "border"))
-        elif (a < MARGIN).any() and not (b < MARGIN).any():
-            j = int(np.argmin(a))
-            root = locate(segment, lambda point: min(float(engine.margins(point.row).min()), 1.0))
-            if root is not None:
-                j = int(np.argmin(engine.margins(root.point.row)))
-                events.append(self._located(root, engine.problem.margin_kind(j), j, "border"))
-        return events
+        root = locate(segment, margin, fallback_zero=real)
+        if root is None:
+            return []
+        j = self._which_border(engine.margins(root.point.row), falling)
+        tangent = self._tangent_before(segment, root)
+        root = root._replace(point=root.point._replace(tangent=tangent))
+        return [self._located(root, engine.problem.margin_kind(j), j, "border")]
+
+    def _which_border(self, margins: np.ndarray, falling: np.ndarray) -> int:
+        """The margin that vanishes. Several may, as when a stick disappears: which one is smallest is then a matter of
+
+        rounding, so those that are as small as the smallest one count as equal, and the order of kinds decides.
+        """
+        tied = falling[margins[falling] <= margins[falling].min() + TIED]
+        kinds = [self.engine.problem.margin_kind(int(j)) for j in tied]
+        return int(tied[min(range(len(tied)), key=lambda i: (FIRST.get(kinds[i], len(FIRST)), i))])
+
+    def _tangent_before(self, segment: Segment, root: Root) -> np.ndarray:
+        """The tangent at a border.
+
+        Where a flight or stick of length zero makes the equations singular, the tangent solved for there is rounding: it is
+        extrapolated from the points before.
+        """
+        engine, own = self.engine, root.point.tangent
+        reach = min(BESIDE, root.position / 3.0)
+        near, far = (segment.at(root.position - k * reach) for k in (1.0, 2.0))
+        if near is None or far is None or not reach > 0.0:
+            return own
+        ahead = engine.unit(2.0 * near.tangent - far.tangent)
+        return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""

@@ -16,6 +16,7 @@ from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, SHALLOW, Scan, S
 from .segment import Segment
 
 USER = 256  # beside the bits of a scan: a user function changes its sign
+AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
 BESIDE = 0.02  # part of the segment next to a branch point that is left out
 
 
@@ -149,7 +150,7 @@ class Watch(Examiner):
 
     def _apart(self, event: Located, stop: Located) -> bool:
         engine, a, b = self.engine, event.point, stop.point
-        return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > 1e-5
+        return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > AT_BORDER
 
 
 def before_stop(events: list[Located]) -> list[Located]:

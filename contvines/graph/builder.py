@@ -11,7 +11,7 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
 from ..events.scan import MARGIN
-from ..events.watch import Watch
+from ..events.watch import AT_BORDER, Watch
 from ..finish import filled, make_branch
 from ..follow import follow
 from ..half import Half
@@ -224,6 +224,13 @@ def both_ways(
     leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"
     if pending.kind == "rest":
         ahead = go(first, "ahead")
+        # where a stick or flight vanishes p is stationary, or another solution crosses: that is the border itself
+        ahead.events = [
+            (i, e)
+            for i, e in ahead.events
+            if e.kind not in ("fold", "branch-point")
+            or engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) > AT_BORDER
+        ]
         return ahead, (f"goes on from {pending.source} at {pending.point}", sentence(ahead)), False
     if pending.kind == "switch":
         assert pending.origin is not None

@@ -102,10 +102,21 @@ class Graph:
         return len(self.branches)
 
     def __str__(self) -> str:
-        from .table import table
+        from .table import table, terminal_width
 
-        cut = self.message.startswith("stopped") and self.settings.get("max_branches") != 1
-        return f"{table(self)}\n\n{self.message}" if cut else table(self)
+        text = table(self, terminal_width())
+        return f"{text}\n\n{self.message}" if self._cut else text
+
+    @property
+    def _cut(self) -> bool:
+        return self.message.startswith("stopped") and self.settings.get("max_branches") != 1
+
+    def _repr_html_(self) -> str:
+        from .table import branches_table, special_table, title
+
+        parts = [f"<p>{title(self)}</p>", branches_table(self).html()]
+        parts += [special_table(self).html()] if self.special else []
+        return "".join([*parts, f"<p>{self.message}</p>" if self._cut else ""])
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -191,6 +202,26 @@ class Graph:
                 note=switch.note,
             )
         return network
+
+    def to_pandas(self) -> Any:
+        """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
+        from ..export.frames import graph_frame
+
+        return graph_frame(self)
+
+    def export(self, path: str | Path, to: str | None = None) -> Path:
+        """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat") is read off the name by default.
+
+        Raises
+        ------
+        ValueError
+            If there is no such format, or the place cannot be written.
+        """
+        from pathlib import Path
+
+        from ..export import export
+
+        return export(self, to or Path(path).suffix.lstrip(".").lower(), path)
 
     def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""

@@ -217,6 +217,8 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             float(engine.weights * outward @ engine.join(point.u, point.value)),
             outward,
         )
+        if origin is not None:
+            origin = origin._replace(tangent=engine.unit(outward))  # solved for, it may be rounding
         run.queue.append(
             Pending(
                 point.problem,

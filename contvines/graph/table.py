@@ -1,83 +1,171 @@
-"""The graph as a readable table."""
+"""The graph as tables: text that fits a terminal, or everything; HTML for notebooks."""
 
 from __future__ import annotations
 
+import html
+import shutil
+import sys
+import textwrap
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .proving import mark
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
+    from ..branch import Branch
     from .graph import Graph
 
+GAP = "  "
+LEAST = 16  # characters for the last column, before its text goes on in further lines
 
-def table(graph: Graph) -> str:
-    """Branches, special points and switches, one line each."""
-    unit = graph.units.get(graph.parameter, "")
-    low, high = graph.within
-    lines = [
-        f"{_counted(len(graph.branches))} in {graph.parameter} within [{low:.6g}, {high:.6g}] {unit}".rstrip()
-    ]
-    name = with_unit(graph.parameter, unit)
-    if not graph.finished:
-        lines[0] += " (unfinished)"
-    rows = [("branch", "what", name, "stable", "points", "ended")]
-    for branch in graph.branches.values():
-        about = branch.description
-        what = " ".join(
-            str(part)
-            for part in (
-                short_word(about.get("word") or about.get("name", "")),
-                f"k={about['periods']}" if "periods" in about else "",
-                "symmetric" if about.get("symmetric") else "",
-                "" if branch.real else "virtual",
-            )
-            if part
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text.
+
+    Attributes
+    ----------
+    head : tuple of str
+    rows : list of tuple of str
+    spare : tuple of str
+        Columns that may be left out where room is short, the first one first.
+    """
+
+    head: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+    spare: tuple[str, ...] = ()
+
+    def lines(self, width: int | None = None) -> list[str]:
+        """The table in at most `width` characters: without spare columns, the last one on several lines; None: all of it."""
+        columns = list(range(len(self.head)))
+        columns = [c for c in columns if self.head[c] or any(row[c] for row in self.rows)]
+        everything = [self.head, *self.rows]
+
+        def widths() -> list[int]:
+            return [max(len(row[c]) for row in everything) for c in columns]
+
+        def needed() -> int:
+            sizes = widths()
+            return sum(sizes[:-1]) + len(GAP) * (len(sizes) - 1) + min(sizes[-1], LEAST)
+
+        if width is not None:
+            for name in self.spare:
+                if needed() <= width:
+                    break
+                columns = [c for c in columns if self.head[c] != name]
+        sizes = widths()
+        left = sum(sizes[:-1]) + len(GAP) * (len(sizes) - 1)
+        room = None if width is None else max(width - left, LEAST)
+        lines = []
+        for row in everything:
+            cells = [row[c].ljust(size) for c, size in zip(columns[:-1], sizes[:-1], strict=True)]
+            last = row[columns[-1]]
+            parts = [last] if room is None or len(last) <= room else textwrap.wrap(last, room) or [""]
+            lines.append(GAP.join([*cells, parts[0]]).rstrip())
+            lines += [" " * left + part for part in parts[1:]]
+        return lines
+
+    def html(self) -> str:
+        """The table as HTML."""
+        head = "".join(f"<th style='text-align:left'>{html.escape(cell)}</th>" for cell in self.head)
+        body = "".join(
+            "<tr>"
+            + "".join(f"<td style='text-align:left'>{html.escape(cell)}</td>" for cell in row)
+            + "</tr>"
+            for row in self.rows
         )
-        lo, hi = branch.range
-        stable = ", ".join(f"{a:.6g}..{b:.6g}" for a, b in branch.stable_intervals()) or "-"
-        ended = "; ".join(dict.fromkeys(branch.ended))
-        if branch.ended[0] == branch.ended[1] and branch.ended[0] and not branch.closed:
-            ended += " (both ends)"
-        rows.append((branch.label, what, f"{lo:.6g}..{hi:.6g}", stable, str(len(branch)), ended))
-    lines += ["", *_columns(rows)]
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def table(graph: Graph, width: int | None = None) -> str:
+    """Branches, special points and switches as text.
+
+    Parameters
+    ----------
+    graph : Graph
+    width : int, optional
+        Characters to a line; None: as many as it takes.
+    """
+    lines = [title(graph), "", *branches_table(graph).lines(width)]
     if graph.special:
-        rows = [("point", "kind", "on", name, "", "leads to")]
-        for point in graph.special.values():
-            remarks = [point.criticality or ""]
-            if not point.real:
-                remarks.append("virtual")
-            remarks.append(mark(graph, point.label))
-            targets = []
-            for switch in graph.switches:
-                if switch.point == point.label:
-                    arrow = f"{switch.source} -> {switch.target}"
-                    targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
-            rows.append(
-                (
-                    point.label,
-                    point.kind,
-                    point.branch,
-                    f"{point.value:.12g}",
-                    " ".join(filter(None, remarks)),
-                    "; ".join(targets),
-                )
-            )
-        lines += ["", *_columns(rows)]
+        lines += ["", *special_table(graph).lines(width)]
     return "\n".join(lines)
+
+
+def terminal_width() -> int | None:
+    """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
+    return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None
+
+
+def title(graph: Graph) -> str:
+    """What the tables are of, in one line."""
+    count = len(graph.branches)
+    low, high = graph.within
+    unit = graph.units.get(graph.parameter, "")
+    line = f"{count} branch{'' if count == 1 else 'es'} in {graph.parameter} within [{low:.6g}, {high:.6g}] {unit}"
+    return line.rstrip() + ("" if graph.finished else " (unfinished)")
+
+
+def branches_table(graph: Graph) -> Table:
+    """A row per branch: what it is, where it is and is stable, and the special points at its ends, or why it ends."""
+    name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    rows = []
+    for branch in graph.branches.values():
+        low, high = branch.range
+        stable = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in branch.stable_intervals()) or "-"
+        where = f"{number(low, 6)}..{number(high, 6)}"
+        rows.append((branch.label, describe(branch), where, stable, str(len(branch)), ends(branch)))
+    return Table(("branch", "what", name, "stable", "points", "from .. to"), rows, ("points", "from .. to"))
+
+
+def special_table(graph: Graph) -> Table:
+    """A row per special point: its kind, branch, value, what it leads to."""
+    name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    rows = []
+    for point in graph.special.values():
+        remarks = [point.criticality or "", "" if point.real else "virtual", mark(graph, point.label)]
+        targets = []
+        for switch in graph.switches:
+            if switch.point == point.label:
+                arrow = f"{switch.source} -> {switch.target}"
+                targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
+        about = " ".join(filter(None, remarks))
+        rows.append(
+            (point.label, point.kind, point.branch, number(point.value, 12), about, "; ".join(targets))
+        )
+    return Table(("point", "kind", "on", name, "", "leads to"), rows, ("",))
+
+
+def describe(branch: Branch) -> str:
+    """A branch in a few words: its motion's word, periods, symmetry, virtual or not."""
+    about = branch.description
+    parts = (
+        short_word(str(about.get("word") or about.get("name", ""))),
+        f"k={about['periods']}" if "periods" in about else "",
+        "symmetric" if about.get("symmetric") else "",
+        "" if branch.real else "virtual",
+    )
+    return " ".join(part for part in parts if part)
+
+
+def ends(branch: Branch) -> str:
+    """The labels at both ends of a branch; where there is none, why it ends there; "closed" for a circle."""
+    if branch.closed:
+        return "closed"
+    at = dict(reversed(branch.marks))
+    first, last = (at.get(i, "") for i in (0, len(branch) - 1))
+    told = [label or short_words(why) or "?" for label, why in zip((first, last), branch.ended, strict=True)]
+    if told[0] == told[1] and not first:
+        return f"{told[0]} (both ends)"
+    return " .. ".join(told)
+
+
+def number(value: float, digits: int) -> str:
+    """A number for people: what is only rounding is 0."""
+    return "0" if abs(value) < 1e-15 else f"{value:.{digits}g}"
 
 
 def with_unit(name: str, unit: str | None) -> str:
     """A name as the head of a column."""
     return f"{name} [{unit}]" if unit else name
-
-
-def _counted(branches: int) -> str:
-    return "1 branch" if branches == 1 else f"{branches} branches"
-
-
-def _columns(rows: list[tuple[str, ...]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-    ]

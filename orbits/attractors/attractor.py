@@ -141,7 +141,9 @@ class Attractor:
         own, target = centred(self.codes, self.nodes, eps), centred(other.codes, other.nodes, eps)
         image = -own
         image[:, 0] = own[:, 0] + np.pi
-        images = [(self.codes, self.modes, own), (mirror[self.codes], -self.modes, image)]
+        images = [(self.codes, self.modes, own)]
+        if self.model.has_mirror(self.params):
+            images.append((mirror[self.codes], -self.modes, image))
         best = np.inf
         for codes, modes, nodes in images:
             for k in range(len(codes)):

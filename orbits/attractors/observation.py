@@ -143,7 +143,8 @@ class _Tally:
         reach = np.append(run.states[:, 1], run.end[1])
         if found.model.frictionless(found.params):  # turns are no events there
             reach = np.append(reach, run.sample().w)
-        self.w = min(1.0, max(self.w, float(np.abs(reach).max())))
+        left, right = found.machine.walls(found.params)
+        self.w = min(max(left, -right), max(self.w, float(np.abs(reach).max())))
         if found.machine.state > V:
             self.q1 = max(self.q1, run.peak_cavity(per_period))
         self.moving = run.status in (TIME_REACHED, EVENTS_FULL) and self._time() > time

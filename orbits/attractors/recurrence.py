@@ -285,7 +285,7 @@ def _attractor(
         nodes=nodes,
         residual=residual,
         multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
-        symmetric=kind == "stuck" or is_symmetric(codes, modes, nodes, eps),
+        symmetric=model.has_mirror(params) and (kind == "stuck" or is_symmetric(codes, modes, nodes, eps)),
         state=state.copy(),
         impacts_per_period=0.0 if kind == "stuck" else float(rate),
         impact_speed=float(hits.max()) if hits.size and kind != "stuck" else 0.0,

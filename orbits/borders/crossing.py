@@ -208,7 +208,8 @@ def _simulated(
         state = state_of(
             engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
         )
-        state[1] = np.clip(state[1], -1.0, 1.0)
+        left, right = engine.walls(params)
+        state[1] = np.clip(state[1], right, left)
         attractor = settle(problem.model, engine, params, state, 60.0, max(2 * problem.periods, 4), 1e-6, 0)
         if attractor.word is None or not attractor.nodes.size:
             continue

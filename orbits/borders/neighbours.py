@@ -162,14 +162,11 @@ def _hold(
     else:
         sign = 1.0 if change.events[0] == "L" else -1.0
         cavity = float(other.orbit(u, q).events.v_rate[first])
-        border[first * n + 1] = sign
-        if n == 4:
-            border[first * n + 3] = -sign
-        else:
-            values = other.values(q)
-            border[first * n] = sign * values[0] * values[5] * np.sin(u[first * n])
-            change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
-            border[size] = -sign * change_with / NEAR
+        node = slice(first * n, (first + 1) * n)
+        border[node] = -sign * other.model.cavity_speed_slopes(u[node], other.values(q))
+        border[first * n + 1] += sign
+        change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
+        border[size] = -sign * change_with / NEAR
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if change.events[1:] == ("s",):  # it comes to rest the sooner the slower it is

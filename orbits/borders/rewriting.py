@@ -103,7 +103,7 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
         return _stick(orbit, place)
     if letter in "LR" and column == EVENT:
         soft = node.copy()
-        soft[1] = 1.0 if letter == "L" else -1.0
+        soft[1] = orbit.events.w[place]
         found = [Edit(place, place + 1, ("t",), (after,), soft[None], "margin", "an impact becomes a turn")]
         if place + 1 < n and word.events[place + 1] == "s":
             soft = soft.copy()
@@ -143,7 +143,7 @@ def _stick(orbit: Orbit, place: int) -> list[Edit]:
 def _wall(orbit: Orbit, place: int) -> list[Edit]:
     """A turn or stick that reaches a wall: an impact of vanishing speed takes its place."""
     word, node = orbit.word, orbit.nodes[place]
-    wall, side = ("L", 1) if node[1] > 0.0 else ("R", -1)
+    wall, side = _nearer(orbit, node[1])
     if word.modes[place - 1] != side:
         return []
     hit = node.copy()
@@ -158,6 +158,12 @@ def _wall(orbit: Orbit, place: int) -> list[Edit]:
             place, place + 1, (wall, "s"), (-side, 0), np.array([hit, late]), "speed", "a stick hits the wall"
         )
     ]
+
+
+def _nearer(orbit: Orbit, w: float) -> tuple[str, int]:
+    """The nearer wall and the direction in which it is reached."""
+    left, right = orbit.model.walls(orbit.params)
+    return ("L", 1) if left - w < w - right else ("R", -1)
 
 
 def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
@@ -175,8 +181,9 @@ def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
     inner = np.flatnonzero(np.diff(np.sign(path[:, 1])) != 0)
     if not inner.size:
         return []
-    touch = inner[np.argmax(np.abs(path[inner, 0]))]
-    wall, side = ("L", 1) if path[touch, 0] > 0.0 else ("R", -1)
+    left, right = orbit.model.walls(orbit.params)
+    touch = inner[np.argmin(np.minimum(left - path[inner, 0], path[inner, 0] - right))]
+    wall, side = _nearer(orbit, path[touch, 0])
     node = np.array([orbit.nodes[place, 0] + ahead[touch], path[touch, 3] + side * FIRST, *path[touch, 2:]])
     node = node[None, : orbit.nodes.shape[1]]
     return [Edit(place + 1, place + 1, (wall,), (-side,), node, "speed", "a flight touches the wall")]

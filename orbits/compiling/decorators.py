@@ -6,6 +6,10 @@ them in and out of every call costs more than the mathematics of a short word. T
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from numba import njit
@@ -20,3 +24,23 @@ stored_kernel = njit(cache=True, **OPTIONS)
 
 inlined_kernel = njit(cache=True, forceinline=True, **OPTIONS)
 """Decorator of functions that other compiled functions call, and that are kept on disk by themselves."""
+
+
+def digest_of(*modules: ModuleType, size: int = 6) -> str:
+    """A digest of the sources of some modules: what is kept on disk is good for these only."""
+    files = [str(module.__file__) for module in modules]
+    return hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=size).hexdigest()
+
+
+def stored_with(*modules: ModuleType, **options: Any) -> Callable[[Callable], Any]:
+    """Decorator of functions that are kept on disk and call compiled functions of other files.
+
+    numba looks at the file of the function alone; here the sources of `modules` are part of the name under which it is kept.
+    """
+    digest = digest_of(*modules)
+
+    def decorate(function: Callable) -> Any:
+        function.__qualname__ = f"{function.__name__}_{digest}"
+        return njit(cache=True, error_model="numpy", **options)(function)
+
+    return decorate

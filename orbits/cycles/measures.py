@@ -32,7 +32,14 @@ COMMON = (
 )
 
 ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
-ENERGIES = ("impact_loss", "friction_loss", "input_work", "damping_loss")  # per period of the orbit
+ENERGIES = (  # per period of the orbit
+    "impact_loss",
+    "friction_loss",
+    "input_work",
+    "damping_loss",
+    "force_work",
+    "grounded_damping_loss",
+)
 MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
 
 
@@ -166,10 +173,8 @@ def dimensionless(
         elif name == "max_abs_w":
             result[name] = np.abs(table.w).max(axis=1)
         elif name == "friction_loss":
-            path = np.abs(np.diff(np.concatenate([table.w, table.w[:, :1]], axis=1), axis=1)).sum(axis=1)
-            result[name] = (parameter(model, params, "friction") * parameter(model, params, "gravity"))[
-                :, 0
-            ] * path
+            steps = np.diff(np.concatenate([table.w, table.w[:, :1]], axis=1), axis=1)
+            result[name] = model.friction_loss(steps, params)
         elif name == "impact_loss":
             r = contacts(model, word, params)[2]
             loss = np.where(hits, (1.0 - r**2) * table.rate_pre**2 / (2.0 * (1.0 + eps)), 0.0)

@@ -54,6 +54,9 @@ class Model:
     """How often a start that is looked for by simulation may be simulated four times longer."""
     rest: ClassVar[Rest]
 
+    settable: ClassVar[tuple[Parameter, ...]]
+    """What may be given: the table, and names that stand for several of its numbers."""
+
     # derived from the table
     node: ClassVar[int]
     parameter_names: ClassVar[tuple[str, ...]]
@@ -62,13 +65,15 @@ class Model:
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         if "table" in vars(cls):
+            if "settable" not in vars(cls):
+                cls.settable = cls.table
             cls.parameter_names = tuple(entry.name for entry in cls.table)
             cls.limits = {entry.name: entry.limits for entry in cls.table}
         if "node_names" in vars(cls):
             cls.node = len(cls.node_names)
 
     def __post_init__(self) -> None:
-        for entry in self.table:
+        for entry in self.settable:
             value = getattr(self, entry.name, None)
             if value is not None:
                 object.__setattr__(self, entry.name, entry.named(value))
@@ -96,7 +101,7 @@ class Model:
         ParameterError
             If there is none.
         """
-        for entry in cls.table:
+        for entry in cls.settable:
             if entry.name == name:
                 return entry
         raise ParameterError(
@@ -161,6 +166,11 @@ class Model:
         raise TypeError(f"{cls.__name__} has no cavity")
 
     @classmethod
+    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Derivatives of v' at a node with respect to its unknowns, shape (n,)."""
+        raise TypeError(f"{cls.__name__} has no cavity")
+
+    @classmethod
     def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """w at the left and at the right wall; shapes follow `params` (..., P)."""
         one = np.ones(params.shape[:-1])
@@ -171,6 +181,11 @@ class Model:
         """Newton's coefficients of the left and of the right wall."""
         r = cls.column(params, "restitution")
         return r, r
+
+    @classmethod
+    def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """mu g times the path slid, from the displacements w between events (m, L); shape (m,)."""
+        return cls.column(params, "friction") * cls.column(params, "gravity") * np.abs(steps).sum(axis=1)
 
     # ------------------------------------------------------------------ starts and measures
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:

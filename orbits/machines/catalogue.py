@@ -11,6 +11,7 @@ from orbits.machines.parameters import ParameterError
 
 PLACES = {
     "absorber": ("orbits.machines.absorber.machine", "Absorber"),
+    "cavity": ("orbits.machines.cavity.machine", "Cavity"),
     "coupled": ("orbits.machines.coupled.machine", "Coupled"),
 }
 """Module and class of each machine."""

@@ -45,6 +45,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 HOLD = 5
 """Event code of the simulator alone: complete chatter has ended in persistent contact."""
@@ -72,6 +75,7 @@ class Machine:
     sample: Callable
     works: Callable
     energies: Callable
+    walls: Callable[[np.ndarray], tuple[Any, Any]]
 
     def __reduce__(self):
         from orbits.simulation.driver import machine

@@ -64,7 +64,8 @@ def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
 
     def error(place: int, events: int) -> float:
         start = state_of(engine, orbit.params, int(codes[place]), int(modes[place]), orbit.nodes[place])
-        start[1] = min(max(start[1], -1.0), 1.0)
+        left, right = engine.walls(orbit.params)
+        start[1] = min(max(start[1], right), left)
         phases, positions, passed = [], [], 0.0
         for segment in np.arange(place, place + events) % len(codes):
             count = max(2, round(points * durations[segment] / (2.0 * np.pi * orbit.periods)))

@@ -27,7 +27,8 @@ class SimulationError(ValueError):
 @cache
 def machine(name: str) -> Machine:
     """The compiled stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
-    kernels = model_class(name).stepper()
+    chosen = model_class(name)
+    kernels = chosen.stepper()
     return Machine(
         name,
         kernels.STATE,
@@ -37,6 +38,7 @@ def machine(name: str) -> Machine:
         kernels.sample,
         kernels.works,
         kernels.energies,
+        chosen.walls,
     )
 
 
@@ -106,7 +108,7 @@ def first_state(
                 f"the start has shape {start.shape}: a state of {model.name!r} has {state.shape}"
             )
         state[:] = start
-        _check(state)
+        _check(state, engine.walls(params))
         return state
     given = dict(start or {})
     allowed = [key for key, place in _KEYS.items() if place < engine.state]
@@ -123,16 +125,17 @@ def first_state(
         if key not in allowed:
             raise SimulationError(f"start has no entry {key!r}; it may have " + ", ".join(allowed))
         state[_KEYS[key]] = float(value)
-    _check(state)
+    _check(state, engine.walls(params))
     engine.launch(state, params)
     return state
 
 
-def _check(state: np.ndarray) -> None:
+def _check(state: np.ndarray, walls: tuple[float, float]) -> None:
     if not np.all(np.isfinite(state)):
         raise SimulationError("the start is not finite: give numbers for phase, w and w_rate")
-    if abs(state[W]) > 1.0:
-        raise SimulationError(f"w = {state[W]:g} lies outside the cavity: give -1 <= w <= 1")
+    left, right = walls
+    if not right <= state[W] <= left:
+        raise SimulationError(f"w = {state[W]:g} lies outside the cavity: give {right:g} <= w <= {left:g}")
 
 
 def collect(

@@ -146,7 +146,8 @@ def _motion(
     periods: int,
 ) -> float:
     begin = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
-    if abs(begin[1]) > 1.0:
+    left, right = engine.walls(params)
+    if not right <= begin[1] <= left:
         return np.inf
     state = begin.copy()
     until = begin[4] + begin[0] / TWO_PI + periods
@@ -157,7 +158,7 @@ def _motion(
         return np.inf
     if nodes[:, 0].min() < nodes[0, 0] or nodes[:, 0].max() > nodes[0, 0] + TWO_PI * periods:
         return np.inf  # time does not run forward through these nodes
-    places = np.where(codes == 0, 1.0, np.where(codes == 1, -1.0, nodes[:, 1]))
+    places = np.where(codes == 0, left, np.where(codes == 1, right, nodes[:, 1]))
     seen = run.sample(np.append(nodes[:, 0], nodes[0, 0] + TWO_PI * periods))
     return float(np.abs(seen.w - np.append(places, places[0])).max())
 

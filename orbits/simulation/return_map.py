@@ -52,7 +52,7 @@ def state_of(engine: Machine, params: np.ndarray, code: int, mode: int, node: np
     if engine.state > V:
         state[V], state[V_RATE] = node[2], node[3]
     if code < 2:
-        state[W] = 1.0 if code == 0 else -1.0
+        state[W] = engine.walls(params)[code]
         state[RATE] = _cavity_speed(engine, params, state[None, :])[0] - node[1]
     else:
         state[W] = node[1]
@@ -102,7 +102,8 @@ def go_round(
     """
     n = len(codes)
     state = state_of(engine, params, int(codes[0]), int(modes[0]), node)
-    if abs(state[W]) > 1.0:
+    left, right = engine.walls(params)
+    if not right <= state[W] <= left:
         return Round(np.empty((0, len(node))), f"the first node lies outside the cavity (w = {state[W]:g})")
     base = state[TURNS]
     state[TURNS] = 0.0

@@ -138,3 +138,54 @@ def test_start_beyond_a_border_is_refused():
 def test_trace_stops_at_a_border_if_asked():
     points = list(cv.trace(Line("a", 0.0, 1.0, [-1.0], [0.5]), (0.0, 1.0), stop_at_border=True))
     assert "border" in points[-1].status and points[-2].margin > 0.0 > points[-1].margin
+
+
+class Vanishing(ProblemDefaults):
+    """x = p, and a length t with t (t - 3 x) = 0: it vanishes at p = 0, where t = 0 is a solution, too, and F_u singular.
+
+    As a stick or flight of length zero: the tangent solved for at the border is rounding. Two margins vanish there.
+    """
+
+    dimension, n_margins, p0 = 2, 2, -0.5
+
+    def __init__(self, turn):
+        c, s = np.cos(turn), np.sin(turn)
+        self.rotation = np.array([[c, -s], [s, c]])  # unknowns and equations in general position
+        self.u0 = self.rotation @ [0.5, 1.5]
+        self.data, self.kernels = self, Kernels(KERNELS.linearise, KERNELS.bordered, self.inspect)
+
+    def workspace(self):
+        return dense_workspace(2)
+
+    def equations(self, u, p):
+        x, t = self.rotation.T @ u
+        jacobian = np.array([[1.0, 0.0], [-3.0 * t, 2.0 * t - 3.0 * x]]) @ self.rotation.T
+        return (
+            self.rotation @ [x + p, t * (t - 3.0 * x)],
+            self.rotation @ jacobian,
+            self.rotation @ [1.0, 0.0],
+        )
+
+    @staticmethod
+    def inspect(data, u, p, work, row):
+        t = float(data.rotation[:, 1] @ u)
+        row[:] = t, t * 1.1
+
+    def margin_kind(self, j):
+        return ("velocity-graze", "stick")[j]
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.0, 2.0])
+@pytest.mark.parametrize("max_step", [0.03, 0.011, 0.004])
+def test_a_border_at_which_the_equations_are_singular(turn, max_step):
+    """The border is at p = 0, its tangent that of x = -p, t = -3 p; the rest of the branch goes on along it."""
+    problem = Vanishing(turn)
+    graph = cv.diagram(problem, within=(-1.0, 1.0), virtual=True, settings={"max_step": max_step})
+    assert [(p.kind, p.label) for p in graph.special.values() if p.kind != "end"] == [("stick", "ST1")]
+    border = graph["ST1"]
+    assert border.value == pytest.approx(0.0, abs=1e-11)
+    x, t = problem.rotation.T @ border.tangent[:-1]
+    assert [x / border.tangent[-1], t / border.tangent[-1]] == pytest.approx([-1.0, -3.0], abs=1e-4)
+    assert graph["B1"].range[0] == -1.0 and not graph["B2"].real
+    x, t = problem.rotation.T @ graph["B2"].points.T
+    assert graph["B2"].range[1] == pytest.approx(1.0) and np.allclose(t, -3.0 * graph["B2"].values, atol=1e-9)

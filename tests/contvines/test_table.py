@@ -1,10 +1,12 @@
 """The table that people read: names, short words."""
 
+import dataclasses
 import itertools
 
 import pytest
 
 from contvines.graph.shortening import short_word, short_words
+from contvines.graph.table import table
 from tests.contvines import fakes
 
 
@@ -52,3 +54,27 @@ def test_the_table_names_the_stuck_motion_and_stays_narrow():
 def test_short_words_of_different_powers_differ():
     names = [short_word("LttR" * n) for n in range(1, 40)]
     assert all(a != b for a, b in itertools.combinations(names, 2))
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 140])
+def test_a_table_fits_its_terminal_and_keeps_the_labels(width):
+    graph = fakes.pitchfork_graph()
+    graph.switches[0] = dataclasses.replace(graph.switches[0], note="a long remark " * 20)
+    text = table(graph, width)
+    assert max(map(len, text.splitlines())) <= width
+    for label in (*graph.branches, *graph.special):
+        assert any(line.startswith(label) for line in text.splitlines())
+
+
+def test_a_pipe_gets_everything():
+    graph = fakes.pitchfork_graph()
+    graph.switches[0] = dataclasses.replace(graph.switches[0], note="a long remark " * 20)
+    assert ("a long remark " * 20).strip() in table(graph)
+
+
+def test_ends_are_labels_and_zero_is_zero():
+    graph = fakes.pitchfork_graph()
+    rows = {line.split()[0]: line for line in table(graph).splitlines() if line}
+    assert rows["B2"].endswith("BP1 .. EP1")
+    graph.special["BP1"].value = 3.2e-19
+    assert " 0 " in next(line for line in table(graph).splitlines() if line.startswith("BP1"))

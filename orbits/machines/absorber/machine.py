@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, ClassVar
@@ -11,7 +11,7 @@ import numpy as np
 
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import ShakenRest
-from orbits.machines.base import Model
+from orbits.machines.cavity.shaken import Shaken
 from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, Parameter, ParameterError
 from orbits.machines.rest import Rest
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Absorber(Model):
+class Absorber(Shaken):
     """A vibro-impact absorber whose cavity moves as v = C sin(Omega tau).
 
     w'' = -C Omega^2 sin(Psi) - (1 + eps) mu g sign(w'),   |w| <= 1,   w'+ = -r w'- at the walls.
@@ -52,9 +52,6 @@ class Absorber(Model):
     frequency: float = 1.0
 
     name: ClassVar[str] = "absorber"
-    node_names: ClassVar[tuple[str, ...]] = ("phase", "B or w")
-    default_parameter: ClassVar[str] = "amplitude"
-    driven_by: ClassVar[str] = "amplitude"
     rest: ClassVar[Rest] = ShakenRest()
     table: ClassVar[tuple[Parameter, ...]] = (
         Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),
@@ -79,17 +76,6 @@ class Absorber(Model):
 
         return stepper
 
-    @classmethod
-    def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        amplitude, omega = cls.column(params, "amplitude")[:, None], cls.column(params, "frequency")[:, None]
-        phase = nodes[:, :, 0]
-        return amplitude * np.sin(phase), amplitude * omega * np.cos(phase)
-
-    def measure_own(
-        self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
-    ) -> dict[str, np.ndarray]:
-        return {name: self.column(params, "amplitude") ** 2 for name in wanted}
-
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         if periods != 1:
             return
@@ -105,18 +91,6 @@ class Absorber(Model):
                 yield stick_slip_nodes(params, word.modes[1])
         except ParameterError:
             return
-
-    def random_nodes(
-        self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
-    ) -> np.ndarray | None:
-        amplitude, omega = float(self.column(params, "amplitude")), float(self.column(params, "frequency"))
-        phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
-        second = generator.uniform(-0.9, 0.9, len(word))
-        for i, letter in enumerate(word.events):
-            if letter in "LR":
-                sign = 1.0 if letter == "L" else -1.0
-                second[i] = sign * generator.uniform(0.0, 1.5) * (1.0 + amplitude) * omega
-        return np.column_stack([phases, second])
 
     def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Orbit:
         """The symmetric orbit `LR` with two impacts per period, in closed form.

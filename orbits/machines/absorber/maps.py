@@ -11,13 +11,14 @@ from orbits.machines import pinning as _pinning
 from orbits.machines.absorber import law as _law
 from orbits.machines.absorber.law import law, rate
 from orbits.machines.cavity import equations as _equations
+from orbits.machines.cavity import law as _general
 from orbits.machines.cavity import margins as _margins
 from orbits.machines.cavity.equations import cycle
 from orbits.machines.cavity.equations import unpin as unpin
 from orbits.machines.cavity.margins import watch
 from orbits.machines.path import place
 
-SOURCES = (_law.__file__, _equations.__file__, _pinning.__file__, _margins.__file__)
+SOURCES = (_law.__file__, _general.__file__, _equations.__file__, _pinning.__file__, _margins.__file__)
 
 
 @kernel

@@ -35,7 +35,7 @@ _TWO_PI = 2.0 * math.pi
 _TINY = 1e-30
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def fall(lo, hi, p0, q0, C, A, k0, m0):
     """The zero of p on (lo, hi], where p falls from p(lo) >= 0 to p(hi) <= 0: Newton kept inside the bracket."""
     x = hi

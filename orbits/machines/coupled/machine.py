@@ -109,6 +109,8 @@ class Coupled(Model):
         "v_phase",
         "input_work",
         "damping_loss",
+        "force_work",
+        "grounded_damping_loss",
     )
 
     def _check_together(self) -> None:
@@ -129,6 +131,10 @@ class Coupled(Model):
     @classmethod
     def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return nodes[:, :, 2], nodes[:, :, 3]
+
+    @classmethod
+    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
+        return np.array([0.0, 0.0, 0.0, 1.0])
 
     def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
         start = super().random_start(params, generator)

@@ -1,19 +1,18 @@
 """A graph as files that other programs read: csv, json, graphml, mat."""
 
 import csv
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .endings import refuse_ending
-from .graph.table import with_unit
+from ..endings import refuse_ending
+from .columns import graph_columns, measures_of
+from .standard_json import json_text
 
 if TYPE_CHECKING:
-    from .branch import Branch
-    from .graph.graph import Graph
+    from ..graph.graph import Graph
 
 FORMATS = ("csv", "json", "graphml", "mat")
 
@@ -80,70 +79,22 @@ def _is_database(path: Path) -> bool:
         return False
 
 
-def json_text(data: Any, *, indent: int | None = 2) -> str:
-    """Standard JSON at full precision; numbers that JSON lacks (nan, infinities) become null."""
-    return json.dumps(_finite(data), indent=indent, allow_nan=False, ensure_ascii=False)
-
-
-def _finite(data: Any) -> Any:
-    if isinstance(data, dict):
-        return {str(k): _finite(v) for k, v in data.items()}
-    if isinstance(data, np.ndarray):
-        return _finite(data.tolist())
-    if isinstance(data, list | tuple):
-        return [_finite(v) for v in data]
-    if isinstance(data, complex | np.complexfloating):
-        return _finite([data.real, data.imag])
-    if isinstance(data, np.generic):
-        data = data.item()
-    return None if isinstance(data, float) and not math.isfinite(data) else data
-
-
 def _csv(graph: "Graph", path: Path) -> None:
-    unknowns = max((b.points.shape[1] for b in graph.branches.values()), default=0)
-    multipliers = max((b.multipliers.shape[1] for b in graph.branches.values()), default=0)
-    units = graph.units
-    head = ["branch", "index", graph.parameter, "stable", "real", "margin", "special"]
-    head += [f"u{i}" for i in range(unknowns)]
-    head += [f"multiplier{j}_{part}" for j in range(multipliers) for part in ("re", "im")]
-    measures = {b.label: _measures(b) for b in graph.branches.values()}
-    head += ["word", "periods"]
-    more = [n for n in dict.fromkeys(n for found in measures.values() for n in found) if n not in head]
-    head += more
+    columns = graph_columns(graph)
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow([with_unit(name, units.get(name)) for name in head])
-        for branch in graph.branches.values():
-            marks = dict(branch.marks)
-            about = [branch.description.get("word", ""), branch.description.get("periods", "")]
-            nothing = np.full(len(branch), np.nan)
-            columns = [measures[branch.label].get(name, nothing) for name in more]
-            for i in range(len(branch)):
-                row = [
-                    branch.label,
-                    i,
-                    repr(float(branch.values[i])),
-                    int(branch.stable[i]),
-                    int(branch.real),
-                ]
-                row += [repr(float(branch.margin[i])), marks.get(i, "")]
-                point = [repr(float(v)) for v in branch.points[i]]
-                spectrum = [repr(float(v)) for m in branch.multipliers[i] for v in (m.real, m.imag)]
-                pad = [""] * (unknowns - len(point))
-                spectrum += [""] * (2 * multipliers - len(spectrum))
-                measured = ["" if np.isnan(c[i]) else repr(float(c[i])) for c in columns]
-                writer.writerow(row + point + pad + spectrum + about + measured)
+        writer.writerow(columns)
+        for row in zip(*columns.values(), strict=True):
+            writer.writerow([_written(value) for value in row])
 
 
-def _measures(branch: "Branch") -> dict[str, np.ndarray]:
-    """All measures of a branch that can be evaluated, each of shape (n,)."""
-    found = {}
-    for name in branch.measure_names:
-        try:
-            found[name] = np.asarray(branch.measure(name), dtype=float)
-        except (KeyError, ValueError):
-            continue
-    return found
+def _written(value: Any) -> Any:
+    """A number at full precision, nothing where there is none."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    if isinstance(value, bool | np.bool_):
+        return int(value)
+    return repr(float(value)) if isinstance(value, float) else value
 
 
 def _json(graph: "Graph", path: Path) -> None:
@@ -186,7 +137,7 @@ def _mat(graph: "Graph", path: Path) -> None:
             "ended": list(b.ended),
             "word": str(b.description.get("word", "")),
             "periods": float(b.description.get("periods", np.nan)),
-            "measures": _measures(b),
+            "measures": measures_of(b),
             "about": json_text(b.to_dict(), indent=None),
         }
         for b in graph.branches.values()

@@ -1,0 +1,96 @@
+"""Branches as columns of numbers: the one source of csv files, data frames and data sets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..graph.table import with_unit
+
+if TYPE_CHECKING:
+    from ..branch import Branch
+    from ..graph.graph import Graph
+
+
+def graph_columns(graph: Graph) -> dict[str, list[Any]]:
+    """A row per point of every branch.
+
+    Returns
+    -------
+    dict of lists
+        branch, index, the parameter, stable, real, margin, special (a label or nothing), unknowns u0 ..., multipliers, word,
+        periods, and every measure that a branch has; nan where something is not defined.
+    """
+    branches = list(graph.branches.values())
+    parts = [branch_columns(branch, graph.units) for branch in branches]
+    heads: list[dict[str, None]] = [
+        {},
+        {},
+        {},
+        {},
+    ]  # facts, unknowns, multipliers, word and measures: kept together
+    for columns in parts:
+        for name in columns:
+            group = 1 if _numbered(name, "u") else 2 if name.startswith("multiplier") else 3
+            heads[group if name not in FACTS and name != parameter_head(graph) else 0].setdefault(name, None)
+    order = [*heads[0], *sorted(heads[1], key=_number), *heads[2], *heads[3]]
+    result: dict[str, list[Any]] = {name: [] for name in order}
+    for branch, columns in zip(branches, parts, strict=True):
+        nothing = [float("nan")] * len(branch)
+        for name in order:
+            result[name] += columns.get(name, nothing)
+    return result
+
+
+FACTS = ("branch", "index", "stable", "real", "margin", "special")
+
+
+def parameter_head(graph: Graph) -> str:
+    """The parameter as the head of a column, with its unit."""
+    return with_unit(graph.parameter, graph.units.get(graph.parameter))
+
+
+def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[str, list[Any]]:
+    """The columns of one branch, a row per point; see :func:`graph_columns`."""
+    units = units or {}
+    marks = dict(branch.marks)
+    n = len(branch)
+    columns: dict[str, list[Any]] = {
+        "branch": [branch.label] * n,
+        "index": list(range(n)),
+        with_unit(branch.parameter, units.get(branch.parameter)): [float(v) for v in branch.values],
+        "stable": [bool(v) for v in branch.stable],
+        "real": [bool(branch.real)] * n,
+        "margin": [float(v) for v in branch.margin],
+        "special": [marks.get(i, "") for i in range(n)],
+    }
+    for j in range(branch.points.shape[1]):
+        columns[f"u{j}"] = [float(v) for v in branch.points[:, j]]
+    for j in range(branch.multipliers.shape[1]):
+        columns[f"multiplier{j}_re"] = [float(v) for v in np.real(branch.multipliers[:, j])]
+        columns[f"multiplier{j}_im"] = [float(v) for v in np.imag(branch.multipliers[:, j])]
+    columns["word"] = [branch.description.get("word", "")] * n
+    columns["periods"] = [branch.description.get("periods", "")] * n
+    for name, values in measures_of(branch).items():
+        columns.setdefault(with_unit(name, units.get(name)), [float(v) for v in values])
+    return columns
+
+
+def measures_of(branch: Branch) -> dict[str, np.ndarray]:
+    """All measures of a branch that can be evaluated, each of shape (n,)."""
+    found = {}
+    for name in branch.measure_names:
+        try:
+            found[name] = np.asarray(branch.measure(name), dtype=float)
+        except (KeyError, ValueError):
+            continue
+    return found
+
+
+def _numbered(name: str, prefix: str) -> bool:
+    return name.startswith(prefix) and name[len(prefix) :].isdigit()
+
+
+def _number(name: str) -> int:
+    return int(name.lstrip("u"))

@@ -1,0 +1,75 @@
+"""Branches as pandas data frames and xarray data sets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .columns import branch_columns, graph_columns, measures_of
+
+if TYPE_CHECKING:
+    from ..branch import Branch
+    from ..graph.graph import Graph
+
+MISSING = "this needs {0}: pip install 'contvines[tables]'"
+
+
+def graph_frame(graph: Graph) -> Any:
+    """All points of all branches, indexed by branch and point; the columns of the csv file.
+
+    Raises
+    ------
+    ValueError
+        If pandas is not installed.
+    """
+    return _pandas().DataFrame(graph_columns(graph)).set_index(["branch", "index"])
+
+
+def branch_frame(branch: Branch) -> Any:
+    """The points of one branch, indexed by their number."""
+    units = dict(branch.description.get("units") or {})
+    return _pandas().DataFrame(branch_columns(branch, units)).set_index("index").drop(columns="branch")
+
+
+def branch_dataset(branch: Branch) -> Any:
+    """One branch as a data set: points, multipliers and measures over the dimension ``point``.
+
+    Raises
+    ------
+    ValueError
+        If xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise ValueError(MISSING.format("xarray")) from None
+    units = dict(branch.description.get("units") or {})
+    variables: dict[str, Any] = {
+        "unknowns": (("point", "unknown"), branch.points),
+        "multipliers": (("point", "multiplier"), branch.multipliers),
+        "stable": ("point", branch.stable),
+        "margin": ("point", branch.margin),
+    }
+    for name, values in measures_of(branch).items():
+        if name not in variables and name != branch.parameter:
+            variables[name] = ("point", values, {"units": units[name]} if name in units else {})
+    about = {"label": branch.label, "word": str(branch.description.get("word", "")), "real": int(branch.real)}
+    special = np.full(len(branch), "", dtype="U16")
+    for i, label in branch.marks:
+        special[i] = label
+    attributes = {"units": units[branch.parameter]} if branch.parameter in units else {}
+    coordinates = {
+        "point": np.arange(len(branch)),
+        branch.parameter: ("point", branch.values, attributes),
+        "special": ("point", special),
+    }
+    return xarray.Dataset(variables, coordinates, about)
+
+
+def _pandas() -> Any:
+    try:
+        import pandas
+    except ImportError:
+        raise ValueError(MISSING.format("pandas")) from None
+    return pandas

@@ -1,0 +1,60 @@
+"""Data frames and data sets hold the branches' own numbers."""
+
+import csv
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+pytest.importorskip("pandas")
+
+
+@pytest.fixture(scope="module")
+def graph():
+    """x' = p x - x^3: branches x = 0 and x = +-sqrt(p), eigenvalues p and -2 p."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: p * u - u**3, [0.0], -0.5, spectrum="flow", mirror=lambda u: -u
+    )
+    return cv.diagram(problem, within=(-1.0, 1.0), depth=1)
+
+
+def test_a_graph_as_a_frame(graph):
+    frame = graph.to_pandas()
+    assert list(frame.index.names) == ["branch", "index"]
+    side = frame.loc["B2"]
+    assert np.allclose(side["u0"] ** 2, side["p"], atol=1e-9)
+    assert np.allclose(side["multiplier0_re"], -2 * side["p"], atol=1e-8)
+    assert frame["stable"].dtype == bool
+    assert set(frame["special"]) - {""} >= {p.label for p in graph.of_kind("symmetry-breaking")}
+
+
+def test_a_branch_as_frame_and_data_set(graph):
+    frame = graph["B2"].to_pandas()
+    assert np.allclose(frame["u0"] ** 2, frame["p"], atol=1e-9)
+    data = graph["B2"].to_xarray()
+    assert np.allclose(data["unknowns"][:, 0] ** 2, data["p"], atol=1e-9)
+    assert data.attrs["label"] == "B2"
+
+
+def test_the_frame_and_the_csv_file_agree(graph, tmp_path):
+    graph.export(tmp_path / "g.csv")
+    with (tmp_path / "g.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    frame = graph.to_pandas().reset_index()
+    assert len(rows) == len(frame)
+    for name in ("p", "u0", "multiplier0_re"):
+        assert [float(row[name]) for row in rows] == frame[name].tolist()
+
+
+def test_the_name_chooses_the_format(graph, tmp_path):
+    assert graph.export(tmp_path / "g.json").read_text().startswith("{")
+    with pytest.raises(ValueError, match="no such format"):
+        graph.export(tmp_path / "g.doc")
+
+
+def test_notebooks_show_tables(graph):
+    assert "<table>" in graph._repr_html_() and "B2" in graph._repr_html_()
+    assert "B2" in graph["B2"]._repr_html_()
+    point = graph.of_kind("symmetry-breaking")[0]
+    assert point.label in point._repr_html_() and "symmetry-breaking" in point._repr_html_()

@@ -1,0 +1,251 @@
+"""The cavity: an absorber in one limit, a ball on a shaken table in the other, and independent integration in between."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+import contvines as cv
+from orbits import Absorber, Cavity, ParameterError
+from orbits.attractors import find_attractor
+from orbits.problem import OrbitProblem
+from orbits.simulation import simulate
+from orbits.words import Word
+
+LEVEL = {"gravity": 0.211, "mass_ratio": 0.006}
+
+
+# ---------------------------------------------------------------------------------------------- the absorber
+@settings(max_examples=25, deadline=None)
+@given(
+    restitution=st.floats(0.2, 1.0),
+    friction=st.floats(0.0, 1.0),
+    frequency=st.floats(0.5, 2.0),
+    amplitude=st.floats(0.1, 2.0),
+    phase=st.floats(0.0, 6.0),
+)
+def test_level_and_symmetric_it_is_the_absorber_bit_for_bit(
+    restitution, friction, frequency, amplitude, phase
+):
+    common = {"restitution": restitution, "friction": friction, "frequency": frequency, **LEVEL}
+    runs = [
+        simulate(machine(**common), {"phase": phase, "w": 0.1}, events=40, periods=40, amplitude=amplitude)
+        for machine in (Absorber, Cavity)
+    ]
+    assert runs[0].letters == runs[1].letters
+    assert np.array_equal(runs[0].rows, runs[1].rows)
+
+
+def test_level_and_symmetric_it_has_the_absorbers_special_points():
+    points = []
+    for machine in (Absorber, Cavity):
+        orbit = machine(restitution=0.76, friction=0.5, **LEVEL).orbit("LR", amplitude=0.55)
+        graph = cv.diagram(orbit, over="amplitude", within=(0.2, 1.0), depth=2)
+        points.append([(s.kind, s.value) for s in graph.special.values()])
+    assert [kind for kind, _ in points[0]] == [kind for kind, _ in points[1]]
+    assert np.abs(np.array([v for _, v in points[0]]) - np.array([v for _, v in points[1]])).max() < 1e-12
+
+
+# ---------------------------------------------------------------------------------------------- a ball on a table
+@pytest.mark.parametrize("restitution", [0.3, 0.8])
+@pytest.mark.parametrize("periods", [1, 2])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_ball_on_a_sinusoidal_table_folds_and_doubles_at_closed_form_values(restitution, periods, side):
+    """One bounce every k periods of the table, table acceleration A Omega^2 over gravity b, T = 2 pi k/Omega.
+
+    Flight: the ball leaves with B+ = -b T/2 and comes back with +b T/2; Newton's law at the table gives
+    A Omega^2 cos Psi = -(1 - r)/(1 + r) pi k b, so the motion begins (fold) where the cosine is -1. Linearised once round, with
+    x = (1 + r)^2 A Omega^2 sin(Psi)/b, the trace is 1 + r^2 + x and the determinant r^2: +1 at x = 0, -1 at x = -2 (1 + r^2).
+    """
+    machine = Cavity(
+        restitution=restitution,
+        friction=0.0,
+        gravity=0.7,
+        mass_ratio=0.05,
+        frequency=1.3,
+        slope=side * 0.5 * math.pi,
+        **{"distance_left" if side > 0 else "distance_right": 1e4},
+    )
+    b = 1.05 * 0.7 / 1.3**2
+    cosine = (1 - restitution) / (1 + restitution) * math.pi * periods * b
+    fold, flip = cosine, math.hypot(cosine, 2 * b * (1 + restitution**2) / (1 + restitution) ** 2)
+    orbit = machine.orbit("R" if side > 0 else "L", periods, amplitude=0.5 * (fold + flip))
+    assert orbit.real and orbit.stable and not orbit.symmetric and orbit.replay() < 1e-11
+    sine = math.sin(orbit.nodes[0, 0])
+    x = side * (1 + restitution) ** 2 * orbit.parameters["amplitude"] * sine / b
+    roots = np.roots([1.0, -(1 + restitution**2 + x), restitution**2])
+    assert np.abs(np.sort_complex(orbit.multipliers) - np.sort_complex(roots)).max() < 1e-10
+    graph = cv.diagram(orbit, over="amplitude", within=(0.9 * fold, 1.1 * flip), depth=0)
+    found = {s.kind: s.value for s in graph.special.values()}
+    assert abs(found["fold"] - fold) < 1e-12 * fold
+    assert abs(found["period-doubling"] - flip) < 1e-12 * flip
+
+
+# ---------------------------------------------------------------------------------------------- everything at once
+UNLIKE = Cavity(
+    restitution_left=0.7,
+    restitution_right=0.85,
+    friction_left=0.3,
+    friction_right=0.15,
+    gravity=0.4,
+    slope=0.12,
+    distance_left=0.9,
+    distance_right=1.2,
+    mass_ratio=0.01,
+    frequency=1.1,
+)
+
+
+def integrated(machine, amplitude, orbit):
+    """One period from the first node by Runge-Kutta, written from the equations of motion; the events' letters and the last node."""
+    g, omega = machine.gravity * (1 + machine.mass_ratio), machine.frequency
+    normal, along = g * math.cos(machine.slope), g * math.sin(machine.slope)
+    left, right = machine.distance_left, -machine.distance_right
+    psi, second = orbit.nodes[0]
+    letter = orbit.word.events[0]
+    assert letter in "LR"
+    state = np.array([left if letter == "L" else right, amplitude * omega * math.cos(psi) - second])
+    sign, time, end = (-1 if letter == "L" else 1), psi / omega, (psi + 2 * math.pi * orbit.periods) / omega
+    letters = []
+    while time < end - 1e-9:
+        mu = machine.friction_left if sign > 0 else machine.friction_right
+
+        def motion(t, y, sign=sign, mu=mu):
+            return [y[1], -amplitude * omega**2 * math.sin(omega * t) - along - sign * mu * normal]
+
+        def hit(t, y, sign=sign):
+            return (left - y[0]) if sign > 0 else (y[0] - right)
+
+        def turn(t, y, sign=sign, begin=time):
+            return sign * y[1] if t > begin + 1e-6 else 1.0
+
+        hit.terminal = turn.terminal = True
+        hit.direction = turn.direction = -1
+        run = solve_ivp(
+            motion, (time, end + 1.0), state, "DOP853", events=[hit, turn], rtol=1e-12, atol=1e-13
+        )
+        time, state = run.t[-1], run.y[:, -1].copy()
+        if len(run.t_events[0]):
+            letters.append("L" if sign > 0 else "R")
+            state[1] *= -(machine.restitution_left if sign > 0 else machine.restitution_right)
+        else:
+            letters.append("t")
+            state[1] = 0.0
+        sign = -sign
+    return "".join(letters), time * omega - psi, state
+
+
+@pytest.mark.parametrize("amplitude", [0.6, 0.9, 1.2])
+def test_an_attractor_of_the_unlike_cavity_is_what_runge_kutta_finds(amplitude):
+    found = find_attractor(UNLIKE, amplitude=amplitude)
+    orbit = found.orbit
+    place = next(i for i, letter in enumerate(orbit.word.events) if letter in "LR")
+    orbit = orbit.rotate(place)
+    assert set(orbit.word.events) <= set("LRt")
+    assert orbit.real and orbit.residual < 1e-12 and orbit.replay() < 1e-10 and not found.symmetric
+    assert np.abs(np.sort(np.abs(orbit.multipliers)) - np.sort(np.abs(found.multipliers))).max() < 1e-6
+    letters, turned, state = integrated(UNLIKE, amplitude, orbit)
+    n = len(orbit.word)
+    assert letters[:n] == "".join(orbit.word.events[1:] + orbit.word.events[:1])
+    assert abs(turned - 2 * math.pi * orbit.periods) < 1e-8
+    assert abs(state[1] - orbit.events.rate_post[0]) < 1e-8
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    slope=st.floats(-1.5, 1.5),
+    gravity=st.floats(0.05, 1.0),
+    left=st.floats(0.0, 0.6),
+    right=st.floats(0.0, 0.6),
+    amplitude=st.floats(0.1, 2.0),
+)
+def test_energy_is_balanced_and_the_walls_hold(slope, gravity, left, right, amplitude):
+    machine = Cavity(
+        restitution_left=0.8, restitution_right=0.6, friction_left=left, friction_right=right, gravity=gravity,
+        slope=slope, distance_left=1.4, distance_right=0.7,
+    )  # fmt: skip
+    run = simulate(machine, {"phase": 0.3, "w": 0.2, "w_rate": 0.1}, periods=40, amplitude=amplitude)
+    assert run.balance().error < 1e-11
+    seen = run.sample()
+    assert seen.w.max() <= 1.4 + 1e-13 and seen.w.min() >= -0.7 - 1e-13
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    slope=st.floats(0.01, 0.3),
+    amplitude=st.floats(0.4, 1.5),
+    friction=st.floats(0.05, 0.5),
+    r=st.floats(0.4, 0.9),
+)
+def test_the_mirror_image_belongs_to_the_opposite_slope(slope, amplitude, friction, r):
+    runs = []
+    for side in (1.0, -1.0):
+        machine = Cavity(restitution=r, friction=friction, gravity=0.3, slope=side * slope)
+        start = {"phase": 0.4 + (0.0 if side > 0 else math.pi), "w": 0.2 * side, "w_rate": 0.3 * side}
+        runs.append(simulate(machine, start, events=6, periods=20, amplitude=amplitude))
+    n = min(len(run) for run in runs)
+    assert runs[0].letters[:n].translate(str.maketrans("LR", "RL")) == runs[1].letters[:n]
+    assert np.abs(runs[0].rows[:n, 2] + runs[1].rows[:n, 2]).max(initial=0.0) < 1e-9
+
+
+def test_derivatives_with_respect_to_every_parameter_are_those_of_differences():
+    orbit = find_attractor(UNLIKE, amplitude=0.9).orbit
+    for name in UNLIKE.amount_names:
+        problem = OrbitProblem(UNLIKE, orbit.word, orbit.periods, name, orbit.params)
+        u, p, work = problem.reduce(orbit.nodes) + 0.01, problem.value(orbit.params), problem.workspace()
+        values = []
+        for step in (1e-6, -1e-6):
+            problem.kernels.linearise.py_func(problem.data, u, p + step, work)
+            values.append(work[0].copy())
+        problem.kernels.linearise.py_func(problem.data, u, p, work)
+        assert np.abs(work[3] - (values[0] - values[1]) / 2e-6).max() < 1e-8, name
+
+
+# ---------------------------------------------------------------------------------------------- symmetry is declared
+def test_no_mirror_no_half_words():
+    machine = Cavity(restitution=0.76, friction=0.5, slope=0.02, **LEVEL)
+    orbit = machine.orbit("LR", amplitude=0.55)
+    assert not orbit.symmetric and not orbit.problem("amplitude").symmetries
+    with pytest.raises(ValueError, match="no mirror"):
+        orbit.mirror()
+    with pytest.raises(ValueError, match="no symmetric orbits"):
+        OrbitProblem(machine, Word.parse("LR"), 1, "amplitude", orbit.params, symmetric=True)
+    level = machine.changed(slope=0.0).orbit("LR", amplitude=0.55)
+    assert level.symmetric and level.problem("amplitude").symmetric and level.problem("friction").symmetric
+    assert not level.problem("slope").symmetric and not level.problem("slope").symmetries
+
+
+def test_an_inclined_cavity_has_no_symmetry_breaking():
+    machine = Cavity(restitution=0.76, friction=0.5, slope=0.02, **LEVEL)
+    graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 0.85), depth=1)
+    kinds = {s.kind for s in graph.special.values()}
+    assert "symmetry-breaking" not in kinds and "branch-point" not in kinds and "fold" in kinds
+
+
+def test_both_walls_vary_together_where_they_were_given_together():
+    machine = Cavity(restitution=0.7, friction_left=0.4, friction_right=0.5, **LEVEL)
+    assert "restitution" in machine.amount_names and "restitution_left" not in machine.amount_names
+    orbit = machine.orbit("LR", amplitude=0.6)
+    graph = cv.diagram(orbit, over="restitution", within=(0.6, 0.8), depth=0)
+    branch = next(iter(graph.branches.values()))
+    last = branch.orbit(-1)
+    assert last.parameters["restitution_left"] == last.parameters["restitution_right"] != 0.7
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"restitution": None}, ["restitution is missing", "restitution_left and restitution_right"]),
+        ({"restitution_left": 0.5}, ["restitution = 0.76", "restitution_left = 0.5", "both given"]),
+        ({"friction": None, "friction_left": 0.1}, ["friction_right is missing"]),
+        ({"slope": 2.0}, ["slope = 2", "from -1.5708 to 1.5708"]),
+        ({"distance_left": 0.0}, ["distance_left = 0", "above 0"]),
+    ],
+)
+def test_refusals(wrong, words):
+    with pytest.raises(ParameterError) as refusal:
+        Cavity(**{"restitution": 0.76, "friction": 0.5, **LEVEL, **wrong})
+    assert all(word in str(refusal.value) for word in words)
