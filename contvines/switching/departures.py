@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .continuation.engine import Engine, Solved
+from ..continuation.engine import Engine, Solved
 
 KERNEL = 4  # null vectors that are followed at most
 EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
