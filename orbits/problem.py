@@ -326,6 +326,11 @@ class OrbitProblem:
 
         return of_point(self, kind, u, p, margin, bits)
 
+    @property
+    def spelling(self) -> str:
+        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        return self.word.spelled(self.model.has_mirror(self.params, self.parameter))
+
     def prove_branch(
         self,
         points: np.ndarray,
@@ -344,7 +349,7 @@ class OrbitProblem:
             "factory": "orbits.problem:rebuild",
             "name": f"P_{self.word.impacts}^{self.periods}",
             "model": self.model.settings(),
-            "word": self.word.text,
+            "word": self.spelling,
             "events": "".join(self.word.events),
             "modes": list(self.word.modes),
             "frictionless": self.word.frictionless,
