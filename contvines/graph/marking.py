@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ..branch import Branch
 from ..continuation.engine import Engine
 from ..events.examine import Located
+from ..finish import a_sliver
 from ..half import Half
 from ..interrupts import OPEN
 from ..normal_forms import fold_coefficient
@@ -79,8 +82,20 @@ def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending)
         if index in (0, last) and (meets or event.note == "border"):
             ends[0 if index == 0 else 1] = _sentence(run, label, kind, branch, meets)
     branch.marks = tuple(sorted(marks))
+    _tell_slivers(run, branch)
     branch.ended = (ends.get(0, branch.ended[0]), ends.get(1, branch.ended[1]))
     return fresh
+
+
+def _tell_slivers(run: Run, branch: Branch) -> None:
+    """Say where two changes of stability lie so close together that no solution between them could be looked at."""
+    for (i, one), (j, other) in pairwise(branch.marks):
+        kinds = [run.graph.special[label].kind for label in (one, other)]
+        if j - i == 1 and a_sliver(kinds[:1], kinds[1:]):
+            for label, neighbour in ((one, other), (other, one)):
+                run.remark(
+                    label, f"next to {neighbour}; stable solutions between the two would not be resolved"
+                )
 
 
 def origin_index(half: Half, pending: Pending) -> int | None:
