@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.compare import CompareOption, check_compared
 from contvines.command.options import TrustOption
 
 StudyArgument = Annotated[
@@ -46,9 +47,10 @@ def diagram(
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
+    compare: CompareOption = None,
 ) -> None:
     """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
-    _run("diagram", study, output, plot, quiet, x, y)
+    _run("diagram", study, output, plot, quiet, x, y, compare)
 
 
 def trace(
@@ -114,6 +116,7 @@ def _run(
     quiet: bool,
     x: str | None,
     y: str | None,
+    compare: list[str] | None = None,
 ) -> None:
     from contvines.command.compose import beside, check_place, checked_study, first_orbit, run_diagram, say
     from contvines.command.measures import check_axes
@@ -121,6 +124,7 @@ def _run(
 
     study = checked_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
+    check_compared(compare, plot is not None)
     target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)
     if target.resolve() == path.resolve():
@@ -144,7 +148,7 @@ def _run(
     if not quiet:
         typer.echo(str(graph))
     if plot is not None:
-        _draw(graph, x, y, plot)
+        _draw(graph, x, y, plot, compare)
         say(f"drawn in {plot}", quiet)
 
 
@@ -183,8 +187,8 @@ def _check_picture(path: Path) -> None:
     check_picture(path)
 
 
-def _draw(graph: Any, x: str | None, y: str | None, path: Path) -> None:
-    from contvines.plots.diagram import plot_diagram
+def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:
+    from contvines.command.compare import compared
     from contvines.plots.figures import save_figure
 
-    save_figure(plot_diagram(graph, x, y), path)
+    save_figure(compared(graph, compare, x, y), path)

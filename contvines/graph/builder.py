@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.assembly import filled, make_branch
+from ..branches.branch import Branch
+from ..branches.half_branch import HalfBranch
+from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
+from ..events.kinds import BORDERS
 from ..events.scan import MARGIN
 from ..events.watch import AT_BORDER, Watch
-from ..finish import filled, make_branch
-from ..follow import follow
-from ..half import Half
 from ..interrupts import listening, take
-from ..special import BORDERS
 from .leaving import leave
-from .marking import mark, origin_index
+from .marking import mark, may_be_one, origin_index
 from .pending import Pending
 from .run import Run
 
@@ -173,12 +173,14 @@ def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
 def same_border(run: Run, label: str, known: Branch) -> str:
     """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
     graph = run.graph
+    here = graph.special[label]
     for _, other in known.marks:
         point = graph.special[other]
         if (
             other != label
             and point.kind in BORDERS
-            and abs(point.value - graph[label].value) <= 1e-9 * run.unit(point.value)
+            and abs(point.value - here.value) <= 1e-9 * run.unit(point.value)
+            and may_be_one(here.problem, here.u, here.value, point)
         ):
             run.merge(label, other)
             return other
@@ -207,18 +209,18 @@ def tie_borders(run: Run) -> None:
 
 def both_ways(
     run: Run, engine: Engine, watch: Watch, pending: Pending, first: Solved, real: bool, label: str
-) -> tuple[Half, tuple[str, str], bool]:
+) -> tuple[HalfBranch, tuple[str, str], bool]:
     """The whole branch in order, why it ends at either side, and whether it is closed."""
     name, key = pending.problem.parameter, str(run.serial)
 
     def notice(points: int, value: float) -> None:
         run.tell(f"{label}: {points} points", value)
 
-    def go(start: Solved, side: str, origin: Solved | None = None) -> Half:
+    def go(start: Solved, side: str, origin: Solved | None = None) -> HalfBranch:
         place = f"{key}/{side}"
-        return follow(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
+        return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
-    def sentence(half: Half) -> str:
+    def sentence(half: HalfBranch) -> str:
         return half.status.sentence(name, half.end)
 
     leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.assembly import a_sliver
+from ..branches.branch import Branch
+from ..branches.half_branch import HalfBranch
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..events.examine import Located
-from ..finish import a_sliver
-from ..half import Half
+from ..events.kinds import BORDERS, kind_of
 from ..interrupts import OPEN
-from ..normal_forms import fold_coefficient
-from ..special import BORDERS, PREFIXES, SpecialPoint
-from ..switching import null_vectors
+from ..switching.departures import null_vectors
+from ..switching.normal_forms import fold_coefficient
 from .identity import same_form
 from .pending import Pending
 from .run import Run
@@ -26,7 +28,7 @@ SIDE = "comes back to more symmetric solutions at"
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
-def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending) -> list[SpecialPoint]:
+def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pending) -> list[SpecialPoint]:
     """Label the events and interval ends of a branch in order along it; returns what is new on it."""
     marks: list[tuple[int, str]] = []
     fresh: list[SpecialPoint] = []
@@ -47,7 +49,7 @@ def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending)
         kind = engine.problem.symmetries[event.index].kind if meets else _kind(run, engine, event)
         label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
         if label is None:
-            label = run.new_label(PREFIXES.get(kind, "US"))
+            label = run.new_label(kind_of(kind).label)
             point = _special(run, label, kind, engine, branch, event, index)
             run.graph.special[label] = point
             fresh.append(point)
@@ -98,7 +100,7 @@ def _tell_slivers(run: Run, branch: Branch) -> None:
                 )
 
 
-def origin_index(half: Half, pending: Pending) -> int | None:
+def origin_index(half: HalfBranch, pending: Pending) -> int | None:
     """Index of the special point from which the branch was reached, if it is one of its points."""
     if pending.origin is None:
         return None
@@ -109,7 +111,7 @@ def origin_index(half: Half, pending: Pending) -> int | None:
     return None
 
 
-def _end(run: Run, engine: Engine, half: Half, index: int) -> Located:
+def _end(run: Run, engine: Engine, half: HalfBranch, index: int) -> Located:
     u, p, tangent = half.at(index)
     bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
     point = engine.polish(u, p, engine.at_parameter, p, tangent)
@@ -147,13 +149,18 @@ def _known(
         return None
     if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
         source = run.graph.special[pending.point]
-        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p):
+        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p) and may_be_one(
+            problem, point.u, point.p, source
+        ):
             return source.label
     if kind in BORDERS and at_end:
         for other in run.queue:
             if other.kind != "border" or other.point is None:
                 continue
-            if abs(run.graph.special[other.point].value - point.p) > BACK_AT_BORDER * run.unit(point.p):
+            source = run.graph.special[other.point]
+            if abs(source.value - point.p) > BACK_AT_BORDER * run.unit(point.p):
+                continue
+            if not may_be_one(problem, point.u, point.p, source):
                 continue
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
@@ -174,6 +181,17 @@ def _known(
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree
     return None
+
+
+def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
+    """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
+
+    Only problems of one kind that can compare motions tell.
+    """
+    alike = getattr(problem, "same_motion", None)
+    if alike is None or type(point.problem) is not type(problem):
+        return True
+    return bool(alike(u, p, point.problem, point.u))
 
 
 def _special(
