@@ -14,6 +14,7 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..events.examine import Located
 from ..events.kinds import BORDERS, kind_of
+from ..forms.coefficients import pair_form
 from ..interrupts import OPEN
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
@@ -227,6 +228,10 @@ def _special(
         special.note = f"met from {branch.label}"
     if kind == "fold":
         special.coefficient = fold_coefficient(engine, point)
+    if kind in ("neimark-sacker", "hopf"):
+        form = pair_form(engine.problem, special.u, special.value, engine.spectrum(point.row))
+        special.coefficient, special.criticality = form.coefficient, form.criticality
+        special.note = special.note or form.note
     run.events[label] = event
     return special
 
