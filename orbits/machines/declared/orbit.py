@@ -216,6 +216,7 @@ class DeclaredOrbit:
         ]
         return {
             "word": self.word.text,
+            **({} if len(self.word) else {"rest": "no events"}),
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,
