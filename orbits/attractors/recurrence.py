@@ -139,9 +139,8 @@ def _comes_to_rest(engine: Machine, params: np.ndarray, state: np.ndarray) -> bo
 
 def _will_slip(model: Any, params: np.ndarray) -> bool:
     """Whether friction cannot hold the absorber once the oscillator has settled."""
-    from orbits.cycles.stuck import StuckOrbit
-
-    return not StuckOrbit.of(model, params).real
+    reserve = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params)))
+    return bool(reserve <= -1e-9)
 
 
 class _Window:
