@@ -14,6 +14,7 @@ PLACES = {
     "OrbitProblem": "orbits.problem",
     "cross": "orbits.borders.crossing",
     "find": "orbits.starts.find",
+    "of_branch": "orbits.proofs.subjects",
     "of_orbit": "orbits.proofs.subjects",
     "of_point": "orbits.proofs.subjects",
     "portrait": "orbits.plots.portrait",

@@ -11,7 +11,7 @@ from orbits.cycles.solution import Solution
 from orbits.doors import above
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit(Solution):
     """A periodic orbit P_l^k as users hold it; the attributes are those of `orbits.cycles.cycle.Cycle`."""
 
@@ -67,7 +67,8 @@ class Orbit(Solution):
                 entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
             nodes.append(entry)
         return {
-            "word": self.word.text,
+            "word": self.spelling,
+            "events": "".join(self.word.events),
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,

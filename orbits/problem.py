@@ -286,13 +286,28 @@ class OrbitProblem:
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
         return above("of_point")(self, kind, u, p, margin, bits)
 
+    @property
+    def spelling(self) -> str:
+        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        return self.word.spelled(self.model.has_mirror(self.params, self.parameter))
+
+    def prove_branch(
+        self,
+        points: np.ndarray,
+        values: np.ndarray,
+        marks: Sequence[int] = (),
+        within: tuple[float, float] | None = None,
+    ) -> Any:
+        """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
+        return above("of_branch")(self, points, values, marks, within)
+
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {
             "factory": "orbits.problem:rebuild",
             "name": f"P_{self.word.impacts}^{self.periods}" if len(self.word) else "stuck",
             "model": self.model.settings(),
-            "word": self.word.text,
+            "word": self.spelling,
             "events": "".join(self.word.events),
             "modes": list(self.word.modes),
             "frictionless": self.word.frictionless,

@@ -26,6 +26,9 @@ class CycleProblem(Protocol):
     n_margins: int
     data: Any
 
+    @property
+    def spelling(self) -> str: ...
+
     def workspace(self) -> Any: ...
 
     def values(self, p: Any) -> np.ndarray: ...

@@ -15,7 +15,14 @@ from pydantic import TypeAdapter, ValidationError
 from contvines.command.page_study import check as check_page
 from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
-from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, StudySections, SweepSection
+from contvines.command.schema import (
+    EXCITATION,
+    PARAMETERS,
+    StudyFile,
+    StudySections,
+    SurveySection,
+    SweepSection,
+)
 from contvines.command.sentences import (
     refusal_of,
     sentence_of,
@@ -49,6 +56,7 @@ class Study:
     loose : parameters to hand to the ready machine with each orbit.
     state : where the simulation starts that looks for a first orbit, if no word is given.
     quantities : of a study in physical units, the machine's settings; its parameters are then counted in their units.
+    survey : the many machines of a survey.
     """
 
     path: Path
@@ -67,6 +75,7 @@ class Study:
     loose: dict[str, float] = field(default_factory=dict)
     state: dict[str, float] | None = None
     quantities: dict[str, Any] | None = None
+    survey: SurveySection = field(default_factory=SurveySection)
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -270,6 +279,7 @@ def _study(
         ),
         sweep=file.sweep,
         quantities=quantities,
+        survey=file.survey,
     )
 
 

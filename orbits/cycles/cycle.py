@@ -14,7 +14,7 @@ from orbits.machines.events import EventTable, event_table
 from orbits.words import Word
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cycle:
     """Word, nodes and parameters of a periodic motion P_l^k; whether it solves anything is not asked here.
 
@@ -48,7 +48,16 @@ class Cycle:
         """The same data seen as another kind of cycle."""
         return cls(cycle.model, cycle.word, cycle.periods, cycle.nodes, cycle.params)
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value:.10g}" for name, value in self.parameters.items())
+        return f"{type(self).__name__}({self.model.name}, word={self.spelling!r}, periods={self.periods}, {values})"
+
     # ------------------------------------------------------------------ facts
+    @property
+    def spelling(self) -> str:
+        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        return self.word.spelled(self.model.has_mirror(self.params))
+
     @property
     def parameters(self) -> dict[str, float]:
         """All parameters by name."""

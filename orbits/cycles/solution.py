@@ -19,7 +19,7 @@ REAL = -1e-9  # margins down to this count as positive: a border orbit itself is
 TOLERANCE = 1e-12  # of Newton's method, in the unknowns
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution(Cycle):
     """A cycle that is claimed to solve its equations: how well, how stable, and whether a machine can follow it."""
 
