@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .coefficients import Forms
+from ..forms.coefficients import Forms
 from .linear import Linearisation
 from .plane_point import PlanePoint
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .coefficients import Forms
+from ..forms.coefficients import Forms
 from .kernels import BRANCH, FLIP, FOLD, PAIR
 from .kinds import Look
 from .linear import Null

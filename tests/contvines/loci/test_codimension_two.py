@@ -165,7 +165,7 @@ def test_lorenz_84_zero_hopf():
 
 
 def test_first_lyapunov_coefficients_against_closed_forms():
-    from contvines.loci.coefficients import Forms
+    from contvines.forms.coefficients import Forms
 
     # delayed logistic map at r = 2: Kuznetsov's textbook example 4.? has theta0 = pi/3 and a negative coefficient;
     # the value follows from the same formula with B((x, y), (u, v)) = (-2 (x v + y u), 0), C = 0, in exact arithmetic

@@ -241,3 +241,66 @@ class Forms:
         twice = 2.0 * multiplier if self.flow else multiplier**2
         h20 = np.linalg.solve(self.closed_by(twice), -((a.second + 1j * b.second) @ one))
         return Pair(one, w, a, b, h20, complex(w @ self.K @ q))
+
+
+class Pitch(NamedTuple):
+    """What a pair on the stability boundary does: first Lyapunov coefficient, and how it is to be read.
+
+    Attributes
+    ----------
+    coefficient : float or None
+        d of a cycle, l1 of an equilibrium; None where it cannot be had.
+    criticality : {"supercritical", "subcritical"} or None
+        Supercritical: a stable circle (cycle) is born where the motion has lost its stability.
+    note : str
+        A nearby strong resonance, or that the error is as large as the coefficient.
+    """
+
+    coefficient: float | None
+    criticality: str | None
+    note: str
+
+
+RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coefficient no longer decides
+STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
+
+
+def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
+    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
+
+    Parameters
+    ----------
+    problem : Problem
+    u, p
+        The point.
+    spectrum : ndarray of complex
+        Raw multipliers there, or eigenvalues.
+    """
+    values: Any = np.asarray(spectrum, dtype=complex)
+    flow = problem.spectrum == "flow"
+    upper = values[values.imag > 0.0]
+    if not len(upper) or getattr(problem.kernels, "matrix", None) is None:
+        return Pitch(None, None, "")
+    critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
+    try:
+        found, _ = Forms(problem, u, p).lyapunov(critical)
+    except (ValueError, IndexError, np.linalg.LinAlgError):
+        return Pitch(None, None, "")
+    value = float(found.value)
+    if not np.isfinite(value):
+        return Pitch(None, None, "")
+    note = ""
+    if not flow:
+        full = complex(np.asarray(problem.to_multipliers(np.array([critical])))[0])
+        angle = abs(float(np.angle(full)))
+        note = next(
+            (
+                f"near the strong resonance {n}"
+                for n, place in STRONG.items()
+                if abs(angle - place) < RESONANT
+            ),
+            "",
+        )
+    if found.error > 0.5 * abs(value):
+        return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
+    return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
