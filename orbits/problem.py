@@ -326,6 +326,11 @@ class OrbitProblem:
 
         return of_point(self, kind, u, p, margin, bits)
 
+    def population(self, over: str | None = None) -> Any:
+        """Starts of this machine and what they settle on; see `orbits.attractors.population.Population`."""
+        over = over or self.parameter
+        return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
+
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {

@@ -204,7 +204,7 @@ class Store:
         """
         from contvines.graph.persistence import graph_from_entries
 
-        kinds = ("graph", "branch", "special", "switch", "proof")
+        kinds = ("graph", "branch", "special", "switch", "proof", "attractor", "missing")
         entries = {kind: dict(self.entries(kind)) for kind in kinds}
         try:
             return graph_from_entries(entries, problems=problems, trust=trust)
