@@ -8,7 +8,7 @@ import pytest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCRIPTS = {"pitchfork", "henon", "absorber"}
-STUDIES = {"friction", "friction_low", "frequency"}
+STUDIES = {"friction", "friction_low", "frequency", "bouncing_ball"}
 
 
 def example(name):
@@ -104,6 +104,35 @@ def test_studies(name, machine, tmp_path, monkeypatch):
     asymmetric = [s.target for s in graph.switches if s.kind == "symmetry-breaking"]
     assert len(asymmetric) == 1
     assert graph.special[next(s.point for s in graph.switches if s.kind == "symmetry-breaking")].mirror
+
+
+def test_a_ball_on_a_sinusoidal_table(tmp_path, monkeypatch, capsys):
+    import csv
+    import json
+    from math import hypot, pi
+
+    from contvines.command.cli import main
+
+    monkeypatch.chdir(tmp_path)
+    for command in (
+        ["diagram", str(EXAMPLES / "bouncing_ball.toml"), "--quiet", "--plot", "a.png"],
+        ["sweep", str(EXAMPLES / "bouncing_ball.toml"), "--quiet"],
+        ["orbit", "bouncing_ball.vines", "PD1", "--json"],
+    ):
+        with pytest.raises(SystemExit) as end:
+            main(command)
+        assert not end.value.code
+    shown = json.loads(capsys.readouterr().out)
+    # table acceleration over gravity, one bounce a period: begins at pi (1 - r)/(1 + r), doubles where the ball's
+    # linearised return has -1 (derived in tests/orbits/machines/test_cavity.py)
+    r = 0.8
+    fold = pi * (1 - r) / (1 + r)
+    flip = hypot(fold, 2 * (1 + r * r) / (1 + r) ** 2)
+    assert shown["parameters"]["amplitude"] == pytest.approx(flip, abs=1e-12)
+    with open("bouncing_ball-sweep.csv") as file:
+        rows = list(csv.DictReader(file))
+    # from rest the ball lies on the table until the table falls faster than the ball
+    assert all((row["attractor"] == "stuck") == (float(row["value"]) < 1.0) for row in rows)
 
 
 def test_frequency_response_of_the_coupled_machine(tmp_path, monkeypatch):

@@ -7,8 +7,9 @@ Confirms: friction narrows the frequency range, raises the activation threshold,
 larger the amplitude; the machine without friction does better above resonance, the one with friction
 below it; friction drains faster while both are engaged. Refines: the rate alpha_c itself does not depend
 on friction (larger friction does not give a "steeper" exponential); friction acts through the offset and
-through beta_c, and its extra share of the damping ratio fades like 1/C^2. And it lets go earlier: after
-that the machine with friction is the slower one, so at low amplitude it ends up behind.
+through beta_c, which falls with it. Its extra share of the damping ratio falls about like 1/C^2 up to C = 1 (far
+beyond, as a small negative number over C). And it lets go earlier: after that the machine with friction is the
+slower one, so at low amplitude it ends up behind.
 """
 
 import numpy as np

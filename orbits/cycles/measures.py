@@ -32,7 +32,14 @@ COMMON = (
 )
 
 ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
-ENERGIES = ("impact_loss", "friction_loss", "input_work", "damping_loss")  # per period of the orbit
+ENERGIES = (  # per period of the orbit
+    "impact_loss",
+    "friction_loss",
+    "input_work",
+    "damping_loss",
+    "force_work",
+    "grounded_damping_loss",
+)
 MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
 
 

@@ -189,12 +189,19 @@ class Design:
 
     @property
     def sliding_bounds(self) -> tuple[Any, Any]:
-        """Displacements [m] of the oscillator between which the absorber slides, without sticking or impacts.
+        """`sliding_bounds_at` the natural frequency."""
+        return self.sliding_bounds_at()
 
-        ``b/(1 + eps)`` times the bounds of ``C``; the paper's lower value ``b h/(1 + eps)`` is too low,
-        there the absorber still sticks at every turn.
+    def sliding_bounds_at(self, frequency: ArrayLike | None = None) -> tuple[Any, Any]:
+        """Displacements [m] of the oscillator between which the absorber slides, without sticking or impacts, at an
+        excitation frequency [Hz] (default ``f_0``).
+
+        ``b/(1 + eps)`` times the bounds of ``C``, in which friction counts as ``h/Omega^2``: what it has to beat grows with the
+        square of the frequency. The paper's lower value ``b h/(1 + eps)`` is too low, there the absorber still sticks at
+        every turn.
         """
-        low, high = manifolds.sliding_bounds(self.level)
+        ratio = 1.0 if frequency is None else np.asarray(frequency, dtype=float) / self.natural_frequency
+        low, high = manifolds.sliding_bounds(self.level / ratio**2)
         scale = self.cavity / (1.0 + np.asarray(self.mass_ratio))
         return scale * low, scale * high
 
@@ -237,8 +244,8 @@ class Design:
             Figure("upper bound", "q1_max", self.upper_bound, "m", "end of symmetric impacts"),
             Figure("operating ratio", "xi", self.operating_ratio, "1", "q1_max/q1_min"),
             Figure("sticking limit, f_0", "q1_cr", self.sticking_limit(), "m", "below: stuck"),
-            Figure("pure sliding from", "q1_sl_min", low, "m", "below: stick at each turn"),
-            Figure("pure sliding to", "q1_sl_max", high, "m", "above: impacts"),
+            Figure("pure sliding from, f_0", "q1_sl_min", low, "m", "below: stick at each turn"),
+            Figure("pure sliding to, f_0", "q1_sl_max", high, "m", "above: impacts"),
             Figure("damping by impacts", "D_NES", self.absorber_damping, "1", "ratio, large amplitude"),
             Figure("oscillator's damping", "D", 0.5 * self.mass_ratio * self.damping, "1", "ratio, no absorber"),
             Figure("friction level", "h", self.level, "1", "(1+eps)(pi/2) mu g~"),

@@ -111,6 +111,9 @@ def test_measures_against_quadrature_and_the_balance_of_energy(word):
     found = orbit.measures()
     lost = found["damping_loss"] + found["impact_loss"] + found["friction_loss"]
     assert found["input_work"] == pytest.approx(lost, rel=1e-10)
+    assert found["force_work"] - found["input_work"] == pytest.approx(
+        found["grounded_damping_loss"] - found["damping_loss"], rel=1e-9
+    )
     doubled = orbit.repeat(2).measures("input_work", "input_work_mean", "damping_loss_mean")
     assert doubled["input_work"] == pytest.approx(2 * found["input_work"], rel=1e-9)
     assert doubled["input_work_mean"] == pytest.approx(found["input_work"], rel=1e-9)
@@ -176,7 +179,43 @@ def test_work_of_the_base_is_that_of_the_force():
 
     start = points["phase"][0]
     whole = quad(power, start, start + 2 * np.pi, limit=400)[0]
-    assert orbit.measure("input_work") == pytest.approx(whole, rel=1e-5)
+    assert orbit.measure("force_work") == pytest.approx(whole, rel=1e-5)
+
+
+@pytest.mark.parametrize("word", ["LR", "tt", "susu"])
+@pytest.mark.parametrize("excitation", ["exact", "truncated"])
+def test_the_damper_loses_by_the_motion_between_base_and_oscillator(word, excitation):
+    """By quadrature of lambda (q1' - e')^2 over sampled motion, and of the base's force times its speed."""
+    frequency = {"LR": 0.985, "tt": 0.975, "susu": 0.95}[word]
+    orbit = MACHINE.changed(frequency=frequency, damping=1.3, excitation=excitation).orbit(word)
+    G, Omega, lam, eps = orbit.params[:4]
+    points = orbit.sample(40000)
+    q1, rate = points["cavity"], (points["v_rate"] + eps * points["w_rate"]) / (1.0 + eps)
+    e, e_rate = eps * G * np.sin(points["phase"]), eps * G * Omega * np.cos(points["phase"])
+    found = orbit.measures("damping_loss", "input_work", "grounded_damping_loss")
+    loss = lam * np.trapezoid((rate - e_rate) ** 2, points["tau"])
+    ground = lam * np.trapezoid(rate**2, points["tau"])
+    work = np.trapezoid(e_rate * (e - q1 + eps * lam * (e_rate - rate)), points["tau"]) / eps
+    assert found["grounded_damping_loss"] == pytest.approx(ground, rel=1e-5)
+    if excitation == "exact":
+        assert found["damping_loss"] == pytest.approx(loss, rel=1e-5)
+        assert found["input_work"] == pytest.approx(work, rel=1e-5)
+    else:  # its equation is that of a machine on solid ground, driven by a force
+        assert found["damping_loss"] == pytest.approx(ground, rel=1e-5)
+
+
+def test_the_damper_of_a_stuck_absorber():
+    """The joined masses as a linear oscillator on a moving base, by quadrature of their closed form."""
+    orbit = MACHINE.changed(forcing=0.2, frequency=0.97, damping=1.3).orbit("")
+    eps, lam, G, Omega = 0.006, 1.3, 0.2, 0.97
+    phase = np.linspace(0.0, 2.0 * np.pi, 4001)
+    drag = 1j * eps * lam * Omega
+    response = eps * G * (1.0 + drag) / (1.0 - (1.0 + eps) * Omega**2 + drag)  # of e = eps G Im exp(i Psi)
+    rate = np.imag(1j * Omega * response * np.exp(1j * phase))
+    base = eps * G * Omega * np.cos(phase)
+    loss = lam / Omega * np.trapezoid((rate - base) ** 2, phase)
+    assert orbit.measure("damping_loss") == pytest.approx(loss, rel=1e-9)
+    assert orbit.measure("input_work") == pytest.approx(loss, rel=1e-9)
 
 
 def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():

@@ -8,6 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from orbits import Absorber
+from orbits.attractors import find_attractor
 from orbits.design import Design
 
 
@@ -79,6 +81,28 @@ def test_stuck_is_below_stick_slip_is_below_sliding():
     machine = Design(friction=np.linspace(0.05, 1, 20))
     low, high = machine.sliding_bounds
     assert np.all(machine.sticking_limit() < low) and np.all(low < high)
+
+
+@pytest.mark.parametrize("ratio", [0.963, 1.0, 1.04])
+def test_sliding_bounds_by_simulation_at_other_frequencies(ratio):
+    """Just inside the bounds the simulated absorber slides and turns; just below it sticks at each turn, just above it hits."""
+    design = Design()
+    low, high = design.sliding_bounds_at(ratio * design.natural_frequency)
+    machine = Absorber(
+        restitution=design.restitution,
+        friction=design.friction,
+        gravity=design.gravity,
+        mass_ratio=0.006,
+        frequency=ratio,
+    )
+    for displacement, letters in ((0.999 * low, "su"), (1.001 * low, "t")):
+        seen = find_attractor(machine, amplitude=displacement * 1.006 / design.cavity)
+        assert set(seen.letters) == set(letters)
+    for displacement, stroke in ((0.9999 * high, "below"), (1.0001 * high, "above")):
+        orbit = machine.orbit("tt", amplitude=displacement * 1.006 / design.cavity)
+        widest = np.abs(orbit.sample(2000)["w"]).max()
+        assert widest == pytest.approx(1.0, abs=1e-3)
+        assert (widest < 1.0) == (stroke == "below")
 
 
 def test_scales_follow_from_dimensionless_gravity():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -306,3 +307,29 @@ def test_eigenvalues_cross_the_axis_at_one_velocity_on_the_repelling_part(G, mu,
         assert np.all(total[attracting] < 0)
         repelling = usual & (curve.position < flow.activation.velocity)
         assert np.array_equal(total[repelling] > 0, curve.position[repelling] > b_hopf)
+
+
+@pytest.mark.parametrize(("restitution", "turns"), [(0.76, (50.0, 100.0)), (0.5, (5.0, 10.0))])
+def test_friction_lends_little_damping_at_large_amplitudes(restitution, turns):
+    """The right-hand side of the slow flow on the manifold, in 50 digits: the share of friction times C has a limit."""
+    with mpmath.workdps(50):
+        R = (1 - mpmath.mpf(restitution)) / (1 + mpmath.mpf(restitution))
+        eps, damping, mu_g = mpmath.mpf("0.006"), mpmath.mpf("0.9"), mpmath.mpf("0.5") * mpmath.mpf("0.211")
+
+        def ratio(C, h):
+            a, b, c = mpmath.pi**2 / 4 + R**2, 2 * R * h - mpmath.pi, 1 + h**2 - C**2
+            B = (-b + mpmath.sqrt(b * b - 4 * a * c)) / (2 * a)
+            kappa = 8 / mpmath.pi**2
+            rate = -damping * C**2 - 4 / mpmath.pi * B * (R * B + h) - kappa * h * (1 - mpmath.pi * B / 2)
+            return -eps * rate / (2 * C**2)
+
+        h = mpmath.pi / 2 * mu_g
+        limit = -4 / mpmath.pi * eps * R**2 * h / (mpmath.pi**2 / 4 + R**2) ** mpmath.mpf("1.5")
+        far = mpmath.mpf(10) ** 7
+        assert float((ratio(far, h) - ratio(far, 0)) * far) == pytest.approx(float(limit), rel=1e-4)
+        shares = [float(ratio(C, h) - ratio(C, 0)) for C in turns]
+        assert shares[0] > 0.0 > shares[1]
+        flows = [ms.SlowFlow(restitution=restitution, friction=mu) for mu in (0.5, 0.0)]
+        for C, share in zip(turns, shares):
+            ours = [float(ms.damping_ratio(flow, C)) for flow in flows]
+            assert ours[0] - ours[1] == pytest.approx(share, abs=1e-9)

@@ -122,6 +122,12 @@ def check_sweeps(n):
     assert n["up: motions met"]["tt"] > 20
 
 
+def check_inclined_cavity(n):
+    # closed form of the level cavity (MODEL: C^2 = 0.5282903); an imperfection h moves the fold like h^(2/3)
+    assert n["symmetry breaking of the level cavity"] ** 2 == pytest.approx(0.5282903, abs=1e-7)
+    assert n["power of the slope with which it moves"] == pytest.approx((2 / 3, 2 / 3), abs=0.01)
+
+
 def check_closure(n):
     assert n["closure exact: order in B between the two smallest mass ratios"] == pytest.approx(1.0, abs=5e-3)
     assert n["closure exact: order in C^2 between the two smallest mass ratios"] == pytest.approx(

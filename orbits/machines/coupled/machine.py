@@ -109,6 +109,8 @@ class Coupled(Model):
         "v_phase",
         "input_work",
         "damping_loss",
+        "force_work",
+        "grounded_damping_loss",
     )
 
     def _check_together(self) -> None:

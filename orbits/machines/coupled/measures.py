@@ -10,15 +10,17 @@ from numba import njit
 
 from orbits.cycles.measures import event_table
 from orbits.machines.base import Model
+from orbits.machines.coupled.damper import share_of_the_base
 from orbits.machines.coupled.flow import ahead, derivative, first_zero, leg, oscillation
 from orbits.words import Word
 
+POWERS = ("input_work", "damping_loss", "force_work", "grounded_damping_loss")
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @njit(cache=True, error_model="numpy")
 def _along(states, params, length, out):
-    """Per segment: largest |q1|, and the integrals of v sin Psi and v cos Psi over the phase, into `out` (m, 3).
+    """Per segment: largest |q1|, and the integrals of v sin Psi, v cos Psi and q1 sin Psi over the phase, into `out` (m, 4).
 
     The extrema of q1 are the zeros of the wave q1', none of which `first_zero` misses; the integrals are Gauss sums
     of 16 points on at most a quarter turn, exact to roundoff.
@@ -46,6 +48,7 @@ def _along(states, params, length, out):
         half = 0.5 * span / pieces
         sine = 0.0
         cosine = 0.0
+        own = 0.0
         for piece in range(pieces):
             for j in range(_NODES.size):
                 tau = (2 * piece + 1 + _NODES[j]) * half
@@ -56,8 +59,10 @@ def _along(states, params, length, out):
                 Psi = states[i, 0] + omega * tau
                 sine += _WEIGHTS[j] * v * math.sin(Psi)
                 cosine += _WEIGHTS[j] * v * math.cos(Psi)
+                own += _WEIGHTS[j] * (q1 + way) * math.sin(Psi)
         out[i, 1] = sine * half * omega
         out[i, 2] = cosine * half * omega
+        out[i, 3] = own * half * omega
 
 
 def own_measures(
@@ -66,10 +71,12 @@ def own_measures(
     """The measures `wanted` of many orbits with one word; nodes (m, L, 4), params (m, 8), results (m,).
 
     ``max_abs_q1`` is the largest displacement of the oscillator in units of b (exact, at an extremum), ``amplitude`` and
-    ``v_phase`` those of the first harmonic C sin(Psi + phase) of v, ``C2`` the squared amplitude. ``input_work`` is the
-    work of e + eps lambda e' on q1 over the orbit's period and ``damping_loss`` that of eps lambda q1' (so the damper's
-    share of the moving base counts as excitation), in units of m b^2 omega_0^2 like ``impact_loss`` and
-    ``friction_loss``; the four balance.
+    ``v_phase`` those of the first harmonic C sin(Psi + phase) of v, ``C2`` the squared amplitude. Over the orbit's
+    period, in units of m b^2 omega_0^2 like ``impact_loss`` and ``friction_loss``: ``damping_loss`` is what the damper between
+    base and oscillator takes, the integral of eps lambda (q1' - e')^2, and ``input_work`` what the moving base gives through
+    spring and damper; the four balance. For the same motion driven by the force e + eps lambda e', its damper held to the
+    ground, ``force_work`` is the work of that force on q1 and ``grounded_damping_loss`` the integral of eps lambda q1'^2;
+    they balance with the other two as well. With the truncated excitation the machine is that one, and both pairs are one.
     """
     from orbits.machines.coupled.segments import works
 
@@ -86,25 +93,28 @@ def own_measures(
     states[:, :, 6] = table.v
     states[:, :, 7] = table.v_rate
     result = {name: np.empty(count) for name in wanted}
-    shape = np.empty((length, 3))
+    shape = np.empty((length, 4))
     work = np.empty((length, 3))
-    power = "input_work" in wanted or "damping_loss" in wanted
-    form = any(name not in ("input_work", "damping_loss") for name in wanted)
+    power = any(name in POWERS for name in wanted)
     for i in range(count):
-        values: dict[str, float] = {}
-        if form:
-            _along(states[i], params[i], spans[i], shape)
-            sine, cosine = 2.0 / turn * shape[:, 1].sum(), 2.0 / turn * shape[:, 2].sum()
-            values |= {
-                "max_abs_q1": shape[:, 0].max(),
-                "amplitude": math.hypot(sine, cosine),
-                "v_phase": math.atan2(cosine, sine),
-                "C2": sine**2 + cosine**2,
-            }
+        _along(states[i], params[i], spans[i], shape)
+        sine, cosine = 2.0 / turn * shape[:, 1].sum(), 2.0 / turn * shape[:, 2].sum()
+        values: dict[str, float] = {
+            "max_abs_q1": shape[:, 0].max(),
+            "amplitude": math.hypot(sine, cosine),
+            "v_phase": math.atan2(cosine, sine),
+            "C2": sine**2 + cosine**2,
+        }
         if power:
             works(states[i], params[i], spans[i], work)
-            eps = params[i, 3]
-            values |= {"input_work": work[:, 0].sum() / eps, "damping_loss": work[:, 1].sum() / eps}
+            force, ground = work[:, 0].sum() / params[i, 3], work[:, 1].sum() / params[i, 3]
+            more = share_of_the_base(params[i], periods, shape[:, 3].sum())
+            values |= {
+                "force_work": force,
+                "grounded_damping_loss": ground,
+                "input_work": force + more,
+                "damping_loss": ground + more,
+            }
         for name in wanted:
             result[name][i] = values[name]
     return result

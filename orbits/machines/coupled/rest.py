@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from orbits.machines.coupled.damper import share_of_the_base
+
 FORCING, FREQUENCY, DAMPING, MASS_RATIO, FRICTION, GRAVITY, EXCITATION = 0, 1, 2, 3, 5, 6, 7
 
 
@@ -40,12 +42,15 @@ class DrivenRest:
 
     def measure(self, name: str, params: np.ndarray, u: np.ndarray) -> float:
         eps, size = float(params[MASS_RATIO]), float(np.hypot(u[0], u[1]))
-        dissipated = float(params[DAMPING]) * np.pi * float(params[FREQUENCY]) * size**2
+        ground = float(params[DAMPING]) * np.pi * float(params[FREQUENCY]) * size**2
+        true = ground + share_of_the_base(params, 1, np.pi * float(u[0]))
         return {
             "max_abs_q1": size,
             "amplitude": (1.0 + eps) * size,
             "C2": ((1.0 + eps) * size) ** 2,
             "v_phase": float(np.arctan2(u[1], u[0])),
-            "input_work": dissipated,  # lambda times the integral of q1'^2
-            "damping_loss": dissipated,
+            "input_work": true,
+            "damping_loss": true,
+            "force_work": ground,  # lambda times the integral of q1'^2
+            "grounded_damping_loss": ground,
         }.get(name, np.nan)

@@ -109,7 +109,8 @@ def damping_ratio(flow: SlowFlow, amplitude: ArrayLike | None = None) -> NDArray
     """Damping ratio that would drain the oscillator as fast as absorber and dashpot do together.
 
     ``zeta = -eps (C^2)'/(2 C^2)``; without an amplitude its limit at large amplitude ``eps alpha_c/2``,
-    in which the absorber's share is ``2 eps R/(pi (pi^2/4 + R^2))`` and friction has none.
+    in which the absorber's share is ``2 eps R/(pi (pi^2/4 + R^2))`` and friction has none: what friction adds tends to
+    ``-(4/pi) eps R^2 h/(pi^2/4 + R^2)^(3/2)/C``, by way of ``beta_c``.
     """
     c = coefficients(flow)
     if amplitude is None:
