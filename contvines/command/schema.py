@@ -96,12 +96,21 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
+class AtlasSection(Section):
+    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed."""
+
+    values: Annotated[int, Field(ge=1, le=10_000)] | list[float] = 16
+    starts: Annotated[int, Field(ge=1, le=10_000_000)] = 256
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
 class StudySections(Section):
     """What every study has beside its machine."""
 
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+    atlas: AtlasSection = AtlasSection()
 
 
 class StudyFile(StudySections):

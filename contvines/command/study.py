@@ -15,7 +15,14 @@ from pydantic import TypeAdapter, ValidationError
 from contvines.command.page_study import check as check_page
 from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
-from contvines.command.schema import EXCITATION, PARAMETERS, StudyFile, StudySections, SweepSection
+from contvines.command.schema import (
+    EXCITATION,
+    PARAMETERS,
+    AtlasSection,
+    StudyFile,
+    StudySections,
+    SweepSection,
+)
 from contvines.command.sentences import (
     refusal_of,
     sentence_of,
@@ -44,7 +51,7 @@ class Study:
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
-    sweep : settings of the brute-force sweep.
+    sweep, atlas : settings of the brute-force sweep and of the atlas.
     machine : a ready machine, where the study describes one that the catalogue does not have (a page).
     loose : parameters to hand to the ready machine with each orbit.
     state : where the simulation starts that looks for a first orbit, if no word is given.
@@ -63,6 +70,7 @@ class Study:
     virtual: bool
     settings: dict[str, Any]
     sweep: SweepSection
+    atlas: AtlasSection = field(default_factory=AtlasSection)
     machine: Any = None
     loose: dict[str, float] = field(default_factory=dict)
     state: dict[str, float] | None = None
@@ -95,7 +103,8 @@ class Study:
 
     def fingerprint(self, command: str = "diagram") -> str:
         """Digest of `describe()` and the command: two runs that must give the same graph share it."""
-        text = json.dumps({"command": command, **self.describe()}, sort_keys=True)
+        more = {"atlas": self.atlas.model_dump()} if command == "atlas" else {}
+        text = json.dumps({"command": command, **more, **self.describe()}, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -269,6 +278,7 @@ def _study(
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         sweep=file.sweep,
+        atlas=file.atlas,
         quantities=quantities,
     )
 

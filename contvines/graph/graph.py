@@ -209,8 +209,8 @@ class Graph:
         return network
 
     def merge(self, other: Graph) -> dict[str, str]:
-        """Add what another graph of the same problem has beside it; see :func:`contvines.atlas.merging.merge`."""
-        from ..atlas.merging import merge
+        """Add what another graph of the same problem has beside it; see :func:`contvines.coexistence.merging.merge`."""
+        from ..coexistence.merging import merge
 
         return merge(self, other)
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..atlas.basins import Basins
+    from ..coexistence.basins import Basins
 
 COLORS = ("#2a6f97", "#e9a23b", "#7b3f8c", "#3f8f4f", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
 IMAGE = 0.45  # how much lighter the basin of a mirror image is

@@ -179,7 +179,8 @@ class MapProblem(ProblemDefaults):
         assert self.mirror is not None
         return np.concatenate([self.mirror(x) for x in np.asarray(u, dtype=float).reshape(-1, self.node)])
 
-    def _sibling(self, u: np.ndarray, p: float, cycle: int) -> MapProblem:
+    def sibling(self, u: np.ndarray, p: float, cycle: int) -> MapProblem:
+        """The problem of cycles of another length of the same map, with its start at (u, p)."""
         return MapProblem(
             self.functions.f,
             u,
@@ -195,7 +196,7 @@ class MapProblem(ProblemDefaults):
 
     def _root(self, u: np.ndarray) -> tuple[MapProblem, np.ndarray]:
         half = 0.5 * (u[: self.dimension // 2] + u[self.dimension // 2 :])
-        return self._sibling(half, self.p0, self.cycle // 2), half
+        return self.sibling(half, self.p0, self.cycle // 2), half
 
     def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, float]:
         """The points of the shortest cycle of which u is a repetition, and the difference at which points are one."""
@@ -211,7 +212,7 @@ class MapProblem(ProblemDefaults):
     def root(self, u: np.ndarray, p: float) -> tuple[MapProblem, np.ndarray] | None:
         """The problem of the shortest cycle of which u is a repetition, and its points; None if u is no repetition."""
         nodes, _ = self._shortest(u)
-        return None if len(nodes) == self.cycle else (self._sibling(nodes, p, len(nodes)), nodes.reshape(-1))
+        return None if len(nodes) == self.cycle else (self.sibling(nodes, p, len(nodes)), nodes.reshape(-1))
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
@@ -221,7 +222,7 @@ class MapProblem(ProblemDefaults):
             return []
         doubled = np.tile(u, 2)
         direction = np.append(np.tile(tangent[:-1], 2), tangent[-1])
-        return [Embedding(self._sibling(doubled, p, 2 * self.cycle), doubled, direction, kind)]
+        return [Embedding(self.sibling(doubled, p, 2 * self.cycle), doubled, direction, kind)]
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
         """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
@@ -261,6 +262,12 @@ class MapProblem(ProblemDefaults):
         if name not in {f"x{j}" for j in range(self.node)}:
             return None
         return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+
+    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
+        """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
+        from ..coexistence.maps import MapPopulation
+
+        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""

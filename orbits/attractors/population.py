@@ -96,6 +96,11 @@ class Population:
         self.engine = machine(model.name)
 
     @property
+    def about(self) -> dict[str, Any]:
+        """The machine's name and settings."""
+        return self.model.settings()
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the coordinates in which starts are given: phase, w, w_rate, and v, v_rate of the coupled machine."""
         return ("phase", "w", "w_rate", "v", "v_rate")[: 3 if self.engine.state <= V else 5]
@@ -117,7 +122,7 @@ class Population:
         from scipy.stats import qmc
 
         box = self.box(p)
-        draw = qmc.Sobol(len(box), scramble=True, seed=np.random.default_rng(seed))
+        draw = qmc.Sobol(len(box), scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
         points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
         return box[:, 0] + points * (box[:, 1] - box[:, 0])
 

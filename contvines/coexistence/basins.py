@@ -152,7 +152,9 @@ def basins(
     if at is None:
         raise ValueError(f"at = None: give the value of {population.parameter}, for example at=1.1")
     names = population.names
-    across, up = plane or (names[1:3] if len(names) > 2 else names[:2])
+    if plane is not None and len(plane) != 2:
+        raise ValueError(f"plane = {plane!r}: give two names of {', '.join(names)}")
+    across, up = (str(n) for n in (plane or (names[1:3] if len(names) > 2 else names[:2])))
     given = dict(fixed or {})
     ranges = dict(within or {})
     for name in (across, up, *given, *ranges):

@@ -8,7 +8,7 @@ The contract, in words:
    start reaches; and whether it is the mirror image that it reaches. The result depends on the starts alone.
 3. A motion has ``kind``, ``word``, ``periods``, ``exponent`` and ``error`` (the largest Lyapunov exponent per period and its
    standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None.
-4. ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
+4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
 """
 
 from __future__ import annotations
@@ -44,6 +44,8 @@ class Population(Protocol):
     @property
     def parameter(self) -> str: ...
     @property
+    def about(self) -> dict[str, Any]: ...
+    @property
     def names(self) -> tuple[str, ...]: ...
 
     def box(self, p: float) -> np.ndarray: ...
@@ -53,17 +55,22 @@ class Population(Protocol):
     def settle(self, starts: np.ndarray, p: float) -> tuple[Sequence[Motion], np.ndarray, np.ndarray]: ...
 
 
-def population_of(thing: Any, over: str | None = None) -> Population:
-    """The population of a machine, an orbit or a problem.
+def population_of(thing: Any, over: str | None = None, **parameters: float) -> Population:
+    """The population of a machine, an orbit or a problem; a population is returned as it is.
 
     Raises
     ------
     ValueError
         If it has none, or no such parameter.
     """
+    if hasattr(thing, "settle") and hasattr(thing, "starts"):
+        return thing
     make = getattr(thing, "population", None)
+    if make is None:
+        problem = getattr(thing, "problem", None)  # an orbit
+        make = getattr(problem(over), "population", None) if callable(problem) else None
     if make is None:
         raise ValueError(
             f"{type(thing).__name__} cannot be simulated from many starts: give a machine, one of its orbits, or a map"
         )
-    return make(over) if over is not None else make()
+    return make(over, **parameters)

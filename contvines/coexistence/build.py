@@ -42,7 +42,7 @@ def atlas(
     Parameters
     ----------
     machine : machine, orbit or problem
-        With a ``population``; see :mod:`contvines.atlas.population`.
+        With a ``population``; see :mod:`contvines.coexistence.population`.
     over : str, optional
         Name of the parameter.
     within : (float, float)
@@ -76,10 +76,16 @@ def atlas(
         raise ValueError(f"starts = {starts!r} must be a whole number, 1 or more")
     if not (isinstance(seed, int) and seed >= 0):
         raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more")
-    about = getattr(machine, "settings", None)
-    name = dict(about()) if callable(about) else {"name": type(machine).__name__}
     run = new_run(
-        population.parameter, name, within, depth, virtual, user_functions, journal, progress, settings
+        population.parameter,
+        dict(population.about),
+        within,
+        depth,
+        virtual,
+        user_functions,
+        journal,
+        progress,
+        settings,
     )
     run.graph.settings |= {"values": len(where), "starts": starts, "seed": seed}
     everything: list[Counted] = []
@@ -109,7 +115,7 @@ def check_values(values: int | Sequence[float], within: tuple[float, float]) -> 
             raise ValueError(f"values = {values}: give how many, 1 or more, or a list of values")
         inner = (np.arange(values) + 0.5) / values
         return [float(low + (high - low) * t) for t in inner]
-    numbers = sorted({float(v) for v in values})
+    numbers = sorted({float(v) for v in list(values)})
     if not numbers:
         raise ValueError("values = []: give at least one, or how many")
     for v in numbers:
