@@ -16,7 +16,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "AlgebraicProblem": ".problems.algebraic",
-    "Branch": ".branch",
+    "Branch": ".branches.branch",
     "Embedding": ".problems.protocol",
     "Graph": ".graph.graph",
     "Kernels": ".problems.protocol",
@@ -25,7 +25,7 @@ _HOME = {
     "NullJournal": ".journal",
     "Seed": ".problems.protocol",
     "Settings": ".continuation.settings",
-    "SpecialPoint": ".special",
+    "SpecialPoint": ".branches.special_point",
     "Switch": ".graph.graph",
     "Symmetry": ".problems.protocol",
     "Attractor": ".graph.attractor",
@@ -81,7 +81,8 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
-    from .branch import Branch
+    from .branches.branch import Branch
+    from .branches.special_point import SpecialPoint
     from .continuation.settings import Settings
     from .continuation.trace import trace
     from .graph.automatic import diagram, switch
@@ -92,5 +93,4 @@ if TYPE_CHECKING:
     from .problems.maps import MapProblem
     from .problems.protocol import Embedding, Kernels, Seed, Symmetry
     from .problems.registry import register
-    from .special import SpecialPoint
     from .store import load, resume, save

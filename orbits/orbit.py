@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit:
     """A periodic orbit P_l^k.
 
@@ -46,7 +46,16 @@ class Orbit:
     nodes: np.ndarray = field(repr=False)
     params: np.ndarray = field(repr=False)
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value:.10g}" for name, value in self.parameters.items())
+        return f"Orbit({self.model.name}, word={self.spelling!r}, periods={self.periods}, {values})"
+
     # ------------------------------------------------------------------ facts
+    @property
+    def spelling(self) -> str:
+        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        return self.word.spelled(self.model.has_mirror(self.params))
+
     @property
     def parameters(self) -> dict[str, float]:
         """All parameters by name."""
@@ -263,7 +272,8 @@ class Orbit:
                 entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
             nodes.append(entry)
         return {
-            "word": self.word.text,
+            "word": self.spelling,
+            "events": "".join(self.word.events),
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,

@@ -331,13 +331,30 @@ class OrbitProblem:
         over = over or self.parameter
         return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
 
+    @property
+    def spelling(self) -> str:
+        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        return self.word.spelled(self.model.has_mirror(self.params, self.parameter))
+
+    def prove_branch(
+        self,
+        points: np.ndarray,
+        values: np.ndarray,
+        marks: Sequence[int] = (),
+        within: tuple[float, float] | None = None,
+    ) -> Any:
+        """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
+        from orbits.proofs.subjects import of_branch
+
+        return of_branch(self, points, values, marks, within)
+
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {
             "factory": "orbits.problem:rebuild",
             "name": f"P_{self.word.impacts}^{self.periods}",
             "model": self.model.settings(),
-            "word": self.word.text,
+            "word": self.spelling,
             "events": "".join(self.word.events),
             "modes": list(self.word.modes),
             "frictionless": self.word.frictionless,

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+LARGEST_PRODUCT = 64  # whole powers up to this are written as products
+
 
 class NotAnalytic(TypeError):
     """A page asks of a symbol what has no single analytic formula."""
@@ -77,6 +79,12 @@ class Symbol:
         return self._with(lambda a, b: a / b, other, turned=True)
 
     def __pow__(self, other: Any) -> Any:
+        # products: the Taylor recursion of a general power divides by its base, which may be zero
+        if isinstance(other, Real) and float(other).is_integer() and 1 <= float(other) <= LARGEST_PRODUCT:  # type: ignore[arg-type]
+            half, odd = divmod(int(other), 2)  # type: ignore[call-overload]
+            root = self**half if half else None
+            square = self if root is None else root * root
+            return square * self if odd and root is not None else square
         return self._with(lambda a, b: a**b, other)
 
     def __rpow__(self, other: Any) -> Any:

@@ -63,7 +63,7 @@ def test_links_lead_somewhere(target):
 
 
 def test_labels_in_the_table_are_the_ones_in_use():
-    from contvines.special import PREFIXES
+    from contvines.events.kinds import PREFIXES
 
     named = set(re.findall(r"\| `([A-Z]{2})` ", README))
     assert named <= set(PREFIXES.values())

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import basins, design, look, prove, report, run, sweep
+from contvines.command import basins, design, look, prove, report, run, survey, sweep
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -59,6 +59,7 @@ app.command()(look.plot)
 app.command()(look.export)
 app.command()(report.report)
 app.command()(sweep.sweep)
+app.command()(survey.survey)
 app.command()(design.design)
 
 

@@ -121,7 +121,7 @@ def beside(path: Path, ending: str) -> Path:
 
 def check_place(path: Path) -> None:
     """Refuse, before any work, a graph that could not be written at the end, or not under this name."""
-    from contvines.endings import refuse_ending
+    from contvines.file_names import refuse_ending
 
     if path.is_dir():
         raise ValueError(f"{path}: this is a folder; give the name of a file with -o.")

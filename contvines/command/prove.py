@@ -34,6 +34,12 @@ def prove(
         int | None,
         typer.Option("--bits", min=64, max=4096, help="Precision to begin with; raised where that helps."),
     ] = None,
+    within: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            "--within", metavar="LOW HIGH", help="Of branches, prove just this interval of the parameter."
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE.json", help="Also write the certificates to a file."),
@@ -52,7 +58,9 @@ def prove(
     if check:
         _check(file, names, json)
         return
-    proofs = _of_study(file, names, bits) if file.suffix == ".toml" else _of_file(file, names, bits, trust)
+    proofs = (
+        _of_study(file, names, bits) if file.suffix == ".toml" else _of_file(file, names, bits, trust, within)
+    )
     if json:
         about = {label: {"label": label, **proof.to_dict()} for label, proof in proofs.items()}
         alone = len(names) == 1 or file.suffix == ".toml"
@@ -75,14 +83,23 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
     return {"start": first_orbit(checked_study(file)).prove(bits=bits)}
 
 
-def _of_file(file: Path, labels: list[str], bits: int | None, trust: bool) -> dict[str, Any]:
+def _of_file(
+    file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[float, float] | None
+) -> dict[str, Any]:
     from contvines.graph.proving import prove as prove_labels
     from contvines.store import Store, load
 
     graph = load(file, trust=trust)
     if not (labels or graph.special):
         raise ValueError(f"{file} has no special points to prove; give branches or orbits, B1 or B1:12.")
-    proofs = prove_labels(graph, labels, bits=bits)
+    if within is not None and not (labels and all(label in graph.branches for label in labels)):
+        raise ValueError(
+            f"--within {within[0]:g} {within[1]:g} is for branches; name them, {next(iter(graph.branches))} for one."
+        )
+    if within is not None and not within[0] < within[1]:
+        raise ValueError(f"--within {within[0]:g} {within[1]:g} is empty; LOW < HIGH would do.")
+    options = {} if within is None else {"within": within}
+    proofs = prove_labels(graph, labels, bits=bits, **options)
     with Store.open(file, write=True) as store:
         with store.transaction():
             for label in proofs:

@@ -104,6 +104,19 @@ class AtlasSection(Section):
     seed: Annotated[int, Field(ge=0)] = 0
 
 
+class SurveySection(Section):
+    """`[survey]`, optional: the many machines of `contvines survey`."""
+
+    vary: dict[str, Any] = {}
+    outcomes: Annotated[list[str], Field(min_length=1)] = ["peak"]
+    sampling: Literal["latin", "sobol", "random"] = "latin"
+    samples: Annotated[int, Field(ge=1, le=1_000_000)] = 32
+    seed: Annotated[int, Field(ge=0)] = 1
+    gaps: Annotated[int, Field(ge=0, le=1000)] = 5
+    values: Annotated[int, Field(ge=0, le=1000)] = 0
+    starts: Annotated[int, Field(ge=1, le=1000)] = 1
+
+
 class StudySections(Section):
     """What every study has beside its machine."""
 
@@ -111,6 +124,7 @@ class StudySections(Section):
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
     atlas: AtlasSection = AtlasSection()
+    survey: SurveySection = SurveySection()
 
 
 class StudyFile(StudySections):

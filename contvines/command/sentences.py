@@ -11,6 +11,7 @@ from contvines.command.schema import (
     PARAMETERS,
     ContinueSection,
     StartSection,
+    SurveySection,
     SweepSection,
 )
 from contvines.hints import did_you_mean
@@ -33,6 +34,14 @@ WOULD_DO = {
     "max_branches": "a whole number >= 1, for example 200",
     "count": "a whole number >= 2 and <= 1000000, for example 400",
     "transient": "a whole number of forcing periods from 0 to 1000000, for example 200",
+    "vary": 'names and their values, for example half_width = ["10 mm", "15 mm"]',
+    "outcomes": "a list of names, for example ['peak', 'activation']",
+    "sampling": "'latin', 'sobol' or 'random'",
+    "samples": "a whole number >= 1 and <= 1000000, for example 32",
+    "seed": "a whole number >= 0",
+    "gaps": "a whole number of values from 0 to 1000, for example 5",
+    "values": "a whole number of values from 0 to 1000, for example 9",
+    "starts": "a whole number of starts from 1 to 1000, for example 4",
     "max_period": "a whole number of forcing periods from 1 to 256, for example 16",
 }
 MOST = 20  # sentences in one refusal
@@ -78,8 +87,8 @@ def sentence_of(error: Any, data: dict[str, Any]) -> str:
         if kind == "missing":
             return f"the section [{section}] is missing; it holds {SECTIONS[section]}."
         if kind == "extra_forbidden":
-            hint = did_you_mean(section, [*SECTIONS, "sweep"])
-            known = ", ".join(f"[{s}]" for s in [*SECTIONS, "sweep"])
+            hint = did_you_mean(section, [*SECTIONS, "sweep", "survey"])
+            known = ", ".join(f"[{s}]" for s in [*SECTIONS, "sweep", "survey"])
             return f"{section} = {_show(value)}: no such section{hint}; a study has {known}."
         return f"{section} = {_show(value)} is not a section; write [{section}] on a line of its own, its keys below."
     key = _cut(str(loc[1]))
@@ -113,6 +122,7 @@ def _fields(section: str, data: dict[str, Any]) -> list[str]:
         "start": StartSection,
         "continue": ContinueSection,
         "sweep": SweepSection,
+        "survey": SurveySection,
     }
     if section == "model":
         name = data.get("model", {}).get("name")

@@ -21,6 +21,7 @@ from contvines.command.schema import (
     AtlasSection,
     StudyFile,
     StudySections,
+    SurveySection,
     SweepSection,
 )
 from contvines.command.sentences import (
@@ -56,6 +57,7 @@ class Study:
     loose : parameters to hand to the ready machine with each orbit.
     state : where the simulation starts that looks for a first orbit, if no word is given.
     quantities : of a study in physical units, the machine's settings; its parameters are then counted in their units.
+    survey : the many machines of a survey.
     """
 
     path: Path
@@ -75,6 +77,7 @@ class Study:
     loose: dict[str, float] = field(default_factory=dict)
     state: dict[str, float] | None = None
     quantities: dict[str, Any] | None = None
+    survey: SurveySection = field(default_factory=SurveySection)
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -280,6 +283,7 @@ def _study(
         sweep=file.sweep,
         atlas=file.atlas,
         quantities=quantities,
+        survey=file.survey,
     )
 
 

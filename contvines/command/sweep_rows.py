@@ -64,18 +64,28 @@ def kept(row: Any, direction: str, names: list[str]) -> Kept:
 
 
 def _nodes(found: Any) -> str:
-    """The nodes as a study's `guess` takes them; empty where no word describes the motion."""
-    from orbits.words import Word
-
+    """The nodes as a study's `guess` takes them, read as the word is spelled; empty where no word describes the motion."""
     if found.word is None:
         return ""
     if not len(found.word):
         return "[]"  # stuck
-    orbit, read = found.orbit, Word.parse(found.text, found.word.frictionless)
-    turns = [k for k in range(len(read)) if orbit.word.rotate(k) == read]  # "tt" says no direction
-    if turns and turns[0]:
-        orbit = orbit.rotate(turns[0])
+    orbit, place = found.orbit, _first_place(found)
+    if orbit.word.rotate(place) != _read(found):
+        orbit = orbit.mirror()
+    orbit = orbit.rotate(place) if place else orbit
     return json.dumps([[float(x) for x in node] for node in orbit.nodes])
+
+
+def _read(found: Any) -> Any:
+    from orbits.words import Word
+
+    return Word.parse(found.text, found.word.frictionless)
+
+
+def _first_place(found: Any) -> int:
+    """Which of an attractor's events is the first one of its word as it is spelled."""
+    read, images = _read(found), (found.word, found.word.mirror())
+    return next(k for image in images for k in range(len(image)) if image.rotate(k) == read)
 
 
 def _impacts(found: Any) -> list[float]:
@@ -92,7 +102,8 @@ def _impacts(found: Any) -> list[float]:
     away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
     jumps = 0.5 * away * (run.rows[hits, 3] - run.rows[hits, 4])
     if found.periods and len(found.nodes):
-        since = run.phases[hits] - found.nodes[0, 0] + 1e-4
+        first = _first_place(found) if found.word is not None else 0
+        since = run.phases[hits] - found.nodes[first, 0] + 1e-4
         jumps = jumps[np.argsort(since % (2.0 * np.pi * found.periods))]
     return [float(b * found.model.gauge("velocity", found.params)) for b in jumps]
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved, parameter_unit
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
+from .kinds import BORDERS
 from .locate import Root, locate, locate_singular
 from .scan import FLAT, MARGIN
 from .segment import Segment
@@ -19,7 +20,7 @@ STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 TIED = 1e-9  # margins that differ by less vanish together
 SURE = 1e-10  # tangents at a border whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
-FIRST = {"stick": 0, "velocity-graze": 1, "wall-graze": 2, "chatter": 3}  # of borders that are met at once
+ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -222,7 +223,7 @@ class Examiner:
         """
         tied = falling[margins[falling] <= margins[falling].min() + TIED]
         kinds = [self.engine.problem.margin_kind(int(j)) for j in tied]
-        return int(tied[min(range(len(tied)), key=lambda i: (FIRST.get(kinds[i], len(FIRST)), i))])
+        return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])
 
     def _tangent_before(self, segment: Segment, root: Root) -> np.ndarray:
         """The tangent at a border.

@@ -5,7 +5,7 @@ opposite signs. Steps longer than the gap between two branches pass the rule of 
 the gap they agree. So a changed sign that no branch point accounts for is a leap, and so is a special point that cannot
 be located, because the test function jumps with the branch.
 
-The branch is then traced again from the point before the gap, with shorter steps: see :mod:`contvines.follow`.
+The branch is then traced again from the point before the gap, with shorter steps: see :mod:`contvines.branches.tracing`.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ import numpy as np
 from ..graph.table import with_unit
 
 if TYPE_CHECKING:
-    from ..branch import Branch
+    from ..branches.branch import Branch
     from ..graph.graph import Graph
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..endings import refuse_ending
+from ..file_names import refuse_ending
 from .columns import graph_columns, measures_of
 from .standard_json import json_text
 

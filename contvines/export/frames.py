@@ -9,7 +9,7 @@ import numpy as np
 from .columns import branch_columns, graph_columns, measures_of
 
 if TYPE_CHECKING:
-    from ..branch import Branch
+    from ..branches.branch import Branch
     from ..graph.graph import Graph
 
 MISSING = "this needs {0}: pip install 'contvines[tables]'"

@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.assembly import filled, make_branch
+from ..branches.branch import Branch
+from ..branches.half_branch import HalfBranch
+from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
+from ..events.kinds import BORDERS
 from ..events.scan import MARGIN
 from ..events.watch import AT_BORDER, Watch
-from ..finish import filled, make_branch
-from ..follow import follow
-from ..half import Half
 from ..interrupts import listening, take
-from ..special import BORDERS
 from .leaving import leave
 from .marking import mark, origin_index
 from .pending import Pending
@@ -207,18 +207,18 @@ def tie_borders(run: Run) -> None:
 
 def both_ways(
     run: Run, engine: Engine, watch: Watch, pending: Pending, first: Solved, real: bool, label: str
-) -> tuple[Half, tuple[str, str], bool]:
+) -> tuple[HalfBranch, tuple[str, str], bool]:
     """The whole branch in order, why it ends at either side, and whether it is closed."""
     name, key = pending.problem.parameter, str(run.serial)
 
     def notice(points: int, value: float) -> None:
         run.tell(f"{label}: {points} points", value)
 
-    def go(start: Solved, side: str, origin: Solved | None = None) -> Half:
+    def go(start: Solved, side: str, origin: Solved | None = None) -> HalfBranch:
         place = f"{key}/{side}"
-        return follow(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
+        return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
-    def sentence(half: Half) -> str:
+    def sentence(half: HalfBranch) -> str:
         return half.status.sentence(name, half.end)
 
     leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..events.kinds import PREFIXES
 from ..hints import did_you_mean
-from ..special import PREFIXES
 from .attractor import Attractor
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..branch import Branch
-    from ..special import SpecialPoint
+    from ..branches.branch import Branch
+    from ..branches.special_point import SpecialPoint
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.branch import Branch
 from ..continuation.engine import Engine
 
 SAME = 1e-6

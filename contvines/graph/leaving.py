@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.branch import Branch
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
+from ..events.kinds import BORDERS
 from ..interrupts import OPEN
-from ..normal_forms import criticality, crossing_speed
 from ..problems.registry import UnknownFactory, rebuild
-from ..special import BORDERS, SpecialPoint
-from ..switching import departures
+from ..switching.departures import departures
+from ..switching.normal_forms import criticality, crossing_speed
 from .pending import Pending
 from .run import Run
 

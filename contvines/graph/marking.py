@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.branch import Branch
+from ..branches.half_branch import HalfBranch
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..events.examine import Located
-from ..half import Half
+from ..events.kinds import BORDERS, kind_of
 from ..interrupts import OPEN
-from ..normal_forms import fold_coefficient
-from ..special import BORDERS, PREFIXES, SpecialPoint
-from ..switching import null_vectors
+from ..switching.departures import null_vectors
+from ..switching.normal_forms import fold_coefficient
 from .identity import same_form
 from .pending import Pending
 from .run import Run
@@ -23,7 +24,7 @@ SIDE = "comes back to more symmetric solutions at"
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
-def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending) -> list[SpecialPoint]:
+def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pending) -> list[SpecialPoint]:
     """Label the events and interval ends of a branch in order along it; returns what is new on it."""
     marks: list[tuple[int, str]] = []
     fresh: list[SpecialPoint] = []
@@ -44,7 +45,7 @@ def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending)
         kind = engine.problem.symmetries[event.index].kind if meets else _kind(run, engine, event)
         label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
         if label is None:
-            label = run.new_label(PREFIXES.get(kind, "US"))
+            label = run.new_label(kind_of(kind).label)
             point = _special(run, label, kind, engine, branch, event, index)
             run.graph.special[label] = point
             fresh.append(point)
@@ -83,7 +84,7 @@ def mark(run: Run, engine: Engine, branch: Branch, half: Half, pending: Pending)
     return fresh
 
 
-def origin_index(half: Half, pending: Pending) -> int | None:
+def origin_index(half: HalfBranch, pending: Pending) -> int | None:
     """Index of the special point from which the branch was reached, if it is one of its points."""
     if pending.origin is None:
         return None
@@ -94,7 +95,7 @@ def origin_index(half: Half, pending: Pending) -> int | None:
     return None
 
 
-def _end(run: Run, engine: Engine, half: Half, index: int) -> Located:
+def _end(run: Run, engine: Engine, half: HalfBranch, index: int) -> Located:
     u, p, tangent = half.at(index)
     bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
     point = engine.polish(u, p, engine.at_parameter, p, tangent)

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.branch import Branch
+from ..branches.special_point import SpecialPoint
 from ..problems.registry import UnknownFactory, rebuild
-from ..special import SpecialPoint
 from .attractor import Attractor
 from .graph import Graph, Switch
 

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, parameter_unit
 from ..continuation.settings import Settings
 from ..events.examine import Located
 from ..events.watch import Watch
-from ..special import SpecialPoint
 from .graph import Graph, Switch
 from .identity import Register
 from .pending import Pending

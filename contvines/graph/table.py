@@ -13,7 +13,7 @@ from .proving import mark
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
-    from ..branch import Branch
+    from ..branches.branch import Branch
     from .graph import Graph
 
 GAP = "  "

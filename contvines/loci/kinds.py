@@ -4,35 +4,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ..events.kinds import CODIMENSION_TWO
 from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
 
 #: kind of a point of codimension two -> prefix of its label
-PREFIXES = {
-    "cusp": "CP",
-    "generalized-period-doubling": "GPD",
-    "degenerate-symmetry-breaking": "GSB",
-    "chenciner": "CH",
-    "resonance-1-1": "R1",
-    "resonance-1-2": "R2",
-    "resonance-1-3": "R3",
-    "resonance-1-4": "R4",
-    "fold-flip": "LPPD",
-    "fold-symmetry-breaking": "LPSB",
-    "fold-neimark-sacker": "LPNS",
-    "flip-neimark-sacker": "PDNS",
-    "symmetry-breaking-neimark-sacker": "SBNS",
-    "double-neimark-sacker": "NSNS",
-    "bogdanov-takens": "BT",
-    "generalized-hopf": "GH",
-    "zero-hopf": "ZH",
-    "double-hopf": "HH",
-    "border-fold": "BLP",
-    "border-flip": "BPD",
-    "border-symmetry-breaking": "BSB",
-    "border-neimark-sacker": "BNS",
-    "double-border": "BB",
-    "degenerate-border": "DB",
-}
+PREFIXES = {kind.name: kind.label for kind in CODIMENSION_TWO.values()}
 
 
 class Look(NamedTuple):

@@ -8,18 +8,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.assembly import make_branch
+from ..branches.branch import Branch
+from ..branches.half_branch import HalfBranch
+from ..branches.special_point import SpecialPoint
+from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..continuation.status import Status
 from ..events.examine import Located
 from ..events.watch import Watch
-from ..finish import make_branch
-from ..follow import follow
-from ..half import Half
 from ..journal import NullJournal
-from ..special import SpecialPoint
 from .kernels import BRANCH, MARGIN
 from .problem import LocusProblem
 from .starts import begin, first_point
@@ -261,11 +261,13 @@ def trace_locus(
         if progress is not None:
             progress(label, points, value)
 
-    def go(first: Solved, side: str) -> tuple[Half, np.ndarray, str]:
+    def go(first: Solved, side: str) -> tuple[HalfBranch, np.ndarray, str]:
         now, half = real, None
         flags = np.zeros(0, dtype=bool)
         for part in range(20):
-            more = follow(engine, first, watch, journal, f"locus/{label}/{side}/{part}", now, None, notice)
+            more = trace_half(
+                engine, first, watch, journal, f"locus/{label}/{side}/{part}", now, None, notice
+            )
             flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))
             half = more if half is None else half.extended(more, skip=1)
             border = _border(more)
@@ -302,14 +304,14 @@ def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
     return bool((np.abs(points[:, problem.size + 1]) > UNFOLDED * sizes).any())
 
 
-def _border(half: Half) -> Located | None:
+def _border(half: HalfBranch) -> Located | None:
     if half.status != Status.BORDER or not half.events:
         return None
     last = half.events[-1][1]
     return last if last.note == "border" else None
 
 
-def _sentence(problem: LocusProblem, half: Half) -> str:
+def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
     """Why this side of the locus ends."""
     border = _border(half)
     if border is None:

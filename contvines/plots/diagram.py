@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..events.kinds import KINDS
 from ..graph.shortening import short_word
 from .curves import Curve
 from .figures import freeze, new_axes, scale, settle, styled
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 LOW = 2.6  # inches: lower axes have the symbol of a measure alone at their side
 COLORS = ("branch", "word", "stability")
 TEXT = 0.85  # size of labels in units of font.size
-#: kinds whose labels are named first where many lie at one place
-FIRST = ("fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "hopf", "branch-point")
 
 
 def plot_diagram(
@@ -232,9 +231,9 @@ class _Picture:
         figure = self.axes.get_figure(root=True)
         assert figure is not None
         size = TEXT * self.rc["font.size"] * (1.0 if self.rc["font.size"] < 9.0 else scale(figure))
-        places = {kind: i for i, kind in enumerate(FIRST)}
+        places = {kind: i for i, kind in enumerate(KINDS)}  # whose labels are named first
         wanted = [
-            Label(self._named(label), px, py, "black", places.get(kind, len(FIRST)), chosen is not None)
+            Label(self._named(label), px, py, "black", places.get(kind, len(places)), chosen is not None)
             for label, kind, px, py in self.spots
             if chosen is None or label in chosen
         ]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..branch import Branch
+    from ..branches.branch import Branch
 
 COLORS = ("#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#a6611a", "#017a79")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)))

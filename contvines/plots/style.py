@@ -4,6 +4,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from ..events.kinds import KINDS
+
 # line styles of the three states of an orbit
 LINES: dict[str, Any] = {"stable": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
 WIDTHS = {"stable": 1.25, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
@@ -20,22 +22,7 @@ class Mark:
     filled: bool = False
 
 
-MARKS = {
-    "fold": Mark("fold", "s", True),
-    "symmetry-breaking": Mark("symmetry breaking", "D"),
-    "branch-point": Mark("branch point", "o"),
-    "period-doubling": Mark("period doubling", "^"),
-    "neimark-sacker": Mark("Neimark-Sacker", "p"),
-    "hopf": Mark("Hopf", "h"),
-    "velocity-graze": Mark("velocity graze", "v", True),
-    "wall-graze": Mark("wall graze", ">", True),
-    "stick": Mark("turn to stick", "<", True),
-    "chatter": Mark("vanishing event", "X", True),
-    "switch-graze": Mark("switch graze", "d", True),
-    "corner": Mark("two events at once", "P", True),
-    "user": Mark("user function", "*", True),
-    "end": Mark("end of the interval", "|"),
-}
+MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in KINDS.values()}
 PLAIN = Mark("special point", "o")
 
 # axis labels in the field's notation; anything else is shown by its own name

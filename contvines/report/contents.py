@@ -11,9 +11,9 @@ from ..plots.diagram import default_measure
 from ..plots.style import MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
-    from ..branch import Branch
+    from ..branches.branch import Branch
+    from ..branches.special_point import SpecialPoint
     from ..graph.graph import Graph
-    from ..special import SpecialPoint
 
 NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
 SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most

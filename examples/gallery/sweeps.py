@@ -66,7 +66,7 @@ def main():
         heights = np.array([r.measures["max_abs_q1"] for r in rows])
         outer = [
             i for i in range(len(rows) - 1) if rows[i].word == "tt" and rows[i + 1].attractor != "sliding"
-        ] + [i for i in range(len(rows) - 1) if rows[i].word == "LR" and rows[i + 1].word in ("tt", "s-s+")]
+        ] + [i for i in range(len(rows) - 1) if rows[i].word == "LR" and rows[i + 1].word in ("tt", "ss")]
         numbers[f"{name}: between sliding and impacts (Omega, |q1|/b before, after)"] = [
             (round(float(rows[i + 1].value), 4), round(float(heights[i]), 3), round(float(heights[i + 1]), 3))
             for i in outer

@@ -62,9 +62,7 @@ class Attractor:
     impact_speed: float
 
     def __repr__(self) -> str:
-        return (
-            f"Attractor({self.kind}, word={self.letters!r}, periods={self.periods}, impacts={self.impacts})"
-        )
+        return f"Attractor({self.kind}, word={self.text!r}, periods={self.periods}, impacts={self.impacts})"
 
     @property
     def letters(self) -> str:
@@ -96,9 +94,9 @@ class Attractor:
 
     @property
     def text(self) -> str:
-        """The word as text; for motions with persistent contact the plain list of events."""
+        """The word in the one spelling of its motion; for motions with persistent contact the plain list of events."""
         if self.word is not None:
-            return self.word.text
+            return self.word.spelled(self.model.has_mirror(self.params))
         return self.letters if self.periods else ""
 
     @property

@@ -33,8 +33,7 @@ def read_alike(seed: Seed, before: Orbit) -> Seed:
             along = np.concatenate([along, image])
         along = np.roll(along, -places, axis=0)[: problem.length]
         tangent = np.append(along.ravel(), tangent[-1])
-    note = seed.note.replace(f"the word becomes {orbit.word.text}", f"the word becomes {turned.word.text}")
-    return seed._replace(problem=problem, u=problem.reduce(nodes), tangent=tangent, note=note)
+    return seed._replace(problem=problem, u=problem.reduce(nodes), tangent=tangent)
 
 
 def _first_event(orbit: Orbit, before: Orbit) -> int:

@@ -59,7 +59,7 @@ def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
         smallest, v, tangent = _simplest(other, orbit, v, tangent)
         persistence = bool(np.sign(q - p) != old_side)
         kind = "persistence" if persistence else "nonsmooth fold"
-        text = f"{note}: {kind}, the word becomes {smallest.word.text}"
+        text = f"{note}: {kind}, the word becomes {smallest.spelling}"
         seeds.append(Seed(smallest, v, q, tangent, "border", text, persistence))
         if smallest is not other:
             seeds.extend(_onwards(smallest, v, p))
@@ -92,7 +92,7 @@ def _onwards(problem: OrbitProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for other, v, q, tangent, note in proposals(problem, at_border, p, index):
         if _followed(other.orbit(v, q)):
-            text = f"{note}: the branches meet at the border, the word becomes {other.word.text}"
+            text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
 
@@ -134,7 +134,7 @@ def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iter
                 continue
             what = _escape(problem, rounds)
             yield Seed(
-                other, v, q, tangent, "border", f"{note}: {what}, the word becomes {there.word.text}", False
+                other, v, q, tangent, "border", f"{note}: {what}, the word becomes {other.spelling}", False
             )
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 EMPTY = Word((), ())
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StuckOrbit:
     """The motion without events; offers what `orbits.orbit.Orbit` offers.
 
@@ -40,6 +40,11 @@ class StuckOrbit:
     u: np.ndarray = field(repr=False)
 
     word, periods, impacts, symmetric = EMPTY, 1, 0, True
+    spelling = ""
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value:.10g}" for name, value in self.parameters.items())
+        return f"StuckOrbit({self.model.name}, {values})"
 
     @classmethod
     def of(cls, model: Model, params: np.ndarray) -> StuckOrbit:

@@ -123,7 +123,7 @@ def title(orbit: Orbit) -> str:
     many = "impact" if orbit.impacts == 1 else "impacts"
     periods = "forcing period" if orbit.periods == 1 else "forcing periods"
     kind = "symmetric" if orbit.symmetric else "asymmetric"
-    word = orbit.word.text if len(orbit.word.text) <= 60 else orbit.word.text[:40] + "..."
+    word = orbit.spelling if len(orbit.spelling) <= 60 else orbit.spelling[:40] + "..."
     return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
 
 

@@ -22,6 +22,7 @@ def need(holds, why):
 
 def num(text):
     mid, rad = (text, "0") if isinstance(text, str) else text
+    need(iv.mpf(str(rad)) >= 0, "a radius is negative")
     return iv.mpf(str(mid)) + iv.mpf([-1, 1]) * iv.mpf(str(rad))
 
 class A:
@@ -109,7 +110,7 @@ def equations(c, p, z, e, shift=1):
     if "normal" in c:
         b, j = c["normal"]
         return rows + [{0: z[b][d * n + j] - (d == 1), 1 + b * k + d * n + j: iv.mpf(1)} for d in range(1, k // n)]
-    if not e: return rows
+    if "border" not in c: return rows
     (name, i, side), x = c["border"], node(c["border"][1])
     w, v = motion(p, c["events"][i:i + 1], c["signs"][i], x, ext[1] if len(e) > 1 else x[0])
     push = p["limit"] - (v.rate(2) + p["bias"]) * side
@@ -147,15 +148,15 @@ def exists(c, p, z, e):
 def conditions(c, p, z, name, event, side, touch):
     """Inequalities (name, event, number) and (name, event, (f and its rates, first, last, zeros at start and end, touching phase))."""
     a, frame, signs = p["limit"](), [[A(v) for v in node] for node in z], c["signs"]
+    def ws(ph, i, s): return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
+    def push(ph, i):
+        v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
+        return (v.rate(2) + p["bias"])(), v.rate(3)()
     for i, letter in enumerate(c["events"]):
         mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
         last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
-        def ws(ph, s, i=i) -> list[Any]: return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
-        def push(ph, i=i):
-            v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
-            return (v.rate(2) + p["bias"])(), v.rate(3)()
-        P = push(first)
-        tests = [("approach", 0, ws(first, -WALL[letter])[1])] if letter in WALL else [("wall", s, 1 - z[i][1] * s) for s in (1, -1)]
+        P = push(first, i)
+        tests = [("approach", 0, ws(first, i, -WALL[letter])[1])] if letter in WALL else [("wall", s, 1 - z[i][1] * s) for s in (1, -1)]
         tests += {"t": [("turn", 0, -c["before"][i] * P[0] - a)], "u": [("slip", 0, mode * P[1])],
                   "s": [("stick", s, a - P[0] * s) for s in (1, -1)]}.get(letter, [])
         yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
@@ -163,13 +164,13 @@ def conditions(c, p, z, name, event, side, touch):
         yield "duration", i, last - first
         for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
             if c["frictionless"]:
-                f: Any = lambda ph, ws=ws, s=s: [v + (k == 0) for k, v in enumerate(ws(ph, -s))]  # noqa: E731
+                f: Any = lambda ph, i=i, s=s: [v + (k == 0) for k, v in enumerate(ws(ph, i, -s))]  # noqa: E731
                 kind, start, end = "wall", (WALL[letter] == s) * (1 + (here == "approach")), (WALL[wall] == s) * (1 + (there == "approach"))
             elif mode == 0:
-                f = lambda ph, push=push, s=s: [a - push(ph)[0] * s, push(ph)[1] * -s]  # noqa: E731
+                f = lambda ph, i=i, s=s: [a - push(ph, i)[0] * s, push(ph, i)[1] * -s]  # noqa: E731
                 kind, start, end = "hold", here == "stick" and side == s, s == signs[i + 1]
             else:
-                f = lambda ph, ws=ws, s=s: ws(ph, s)[1:]  # noqa: E731
+                f = lambda ph, i=i, s=s: ws(ph, i, s)[1:]  # noqa: E731
                 kind, start = "flight", {"t": 1, "u": 2}.get(letter, 0) + (here in ("turn", "approach", "slip"))
                 end = 2 if there == "stop" and side == mode else wall in "ts" or there == "approach"
             at = touch if here == {"wall": "reversal"}.get(kind, kind) and (kind == "flight" or side == s) else None
@@ -190,22 +191,60 @@ def positive(test, pace):
         if not any(k < len(rates) and rates[k] * s > 0 for k, s in ends) and (zero or not value + rates[1] * (over - mid) * pace > 0):
             todo += [(low, half), (half, high)]
 
-def steady(c, p, z):
+def steady(c, p, z, basis=()):
     """Whether all multipliers lie inside the unit circle, or one outside: by norm and trace of powers of their matrix."""
     n, size, e = c["n"], len(z) * c["n"], p["mass_ratio"]()
-    rows, order = equations(c, p, z, [], size + 1), [*range(n + 1, size + n + 1)]
-    M = [[0] * n for _ in range(n)]
+    rows = equations(c, p, z, [], size + 1)
+    M, B = [[0] * n for _ in range(n)], [[num(x) for x in row] for row in basis] or [[iv.mpf(int(i == j)) for i in range(n)] for j in range(n)]
     for j in range(n):
-        x = solve([{q: row[q] for q in row if q > n} | {0: -row.get(1 + j, iv.mpf(0))} for row in rows], order)
-        for i in range(n): M[i][j] = x[size + 1 + i]
+        x = [row[j] for row in B]
+        for i in range(len(z)):  # from node to node
+            known, new = range(1 + i * n, 1 + i * n + n), range(1 + i * n + n, 1 + i * n + 2 * n)
+            step = solve([{q: row[q] for q in row if q in new} | {0: -sum(row.get(q, iv.mpf(0)) * v for q, v in zip(known, x))}
+                          for row in rows[i * n:i * n + n]], new)
+            x = [step[q] for q in new]
+        for i in range(n): M[i][j] = x[i]
     if not any(letter in WALL for letter in c["events"]):  # shifting w, v + eps w kept, changes nothing: a trivial multiplier
         need(c["half"], "a sliding motion is stable or not on half its word")
         if n == 4: M[2] = [x + e * y for x, y in zip(M[2], M[1])]
         M = [[row[0], *(row[j] for j in range(2, n))] for i, row in enumerate(M) if i != 1]
+    if basis:  # the similar matrix in another basis
+        X = [solve([dict(enumerate(row, 1)) | {0: M[i][j]} for i, row in enumerate(B)], [*range(1, n + 1)]) for j in range(n)]
+        M = [[X[j][1 + i] for j in range(n)] for i in range(n)]
     for _ in range(26):
         if all(sum(abs(x) for x in row) < 1 for row in M): return True
         if abs(sum(M[i][i] for i in range(len(M)))) > len(M): return False
         M = [[sum(row[k] * M[k][j] for k in range(len(M))) for j in range(len(M))] for row in M]
+
+def cover(c, p, length):
+    """A piece of a branch: tiles m + s q + [-r, r] at p_c + q with one orbit each for every q, joined at common orbits."""
+    n, claims, joints, end, last = c["n"], c["claims"], [*c["joints"], None], iv.mpf(c["covered"][0]).b, None
+    for (center, half, nodes, basis), joint in zip(c["tiles"], joints, strict=True):
+        (m, s, r), q, P = ([[[num(t[k]) for t in x] for x in nodes] for k in range(3)]), num(["0", half]), num([center, half])
+        def box(q, wide, m=m, s=s, r=r):
+            return [[a + b * q + d * iv.mpf([-1, 1]) * wide for a, b, d in zip(*row)] for row in zip(m, s, r)]
+        here, size, flat = num([center, "0"]), n * length, [b for x in s for b in x]
+        need(len(m) == length and all(len(x) == n for x in m) and P.a <= end, "the tiles leave a gap")
+        move, rows = equations(c, p, box(q, 0), [P]), equations(c, p, box(q, 1), [P])
+        for row, at, along in zip(rows, equations(c, p, m, [here]), move):
+            slope = sum((along.get(1 + j, 0) * b for j, b in enumerate(flat)), along.get(1 + size, iv.mpf(0)))
+            row.pop(1 + size, None)
+            row[0] = at.get(0, iv.mpf(0)) + slope * q
+        step = solve(rows, [*range(n + 1, size + 1), *range(1, n + 1)])
+        need(all(abs(step[1 + j]) < d for j, d in enumerate(d for x in r for d in x)), "a solution leaves its tile")
+        here, z = finish(p | {c["parameter"]: A(P)}), box(q, 1)
+        found = [positive(test, 1 / here["frequency"]()) for _, _, test in conditions(c, here, z, "", -1, 0, None)]
+        need(claims["real"] is None or (all(found) if claims["real"] else False in found), "a tile is not proved real, or virtual")
+        fixed = p | {c["parameter"]: A(P)}
+        need(claims["stable"] is None or steady(c, fixed, z, basis) is claims["stable"], "a tile is not proved stable, or unstable")
+        for value, point in [x for x in (last, joint) if x]:
+            at, x = num(value), [[num(t) for t in node] for node in point]
+            need(at.a > P.a and at.b < P.b, "a joint lies outside its tile")
+            exists(c, p | {c["parameter"]: A(at)}, x, [])
+            inside = zip([v for node in x for v in node], [v for node in box(at - num([center, "0"]), 1) for v in node])
+            need(all(a.a > b.a and a.b < b.b for a, b in inside), "a joint lies outside its tile")
+        last, end = joint, P.b
+    need(iv.mpf(c["covered"][1]).b <= end, "the tiles end too early")
 
 def check(c):
     """Verify a certificate (a dict, as from JSON); raises `Refused` where it does not prove its claims."""
@@ -213,9 +252,12 @@ def check(c):
     except (LookupError, TypeError, AttributeError, ArithmeticError, ValueError) as error: raise Refused(str(error)) from None
 
 def verify(c):
+    if c["kind"] == "branch": return [verify(piece) for piece in c["pieces"]]
     need(c["format"] == "contvines certificate 1" and 64 <= c["bits"] <= 9000, "not a certificate of this format")
     iv.prec, sign, half = c["bits"] + 64, -1 if c["half"] else 1, c["half"]
-    z, e, (events, modes) = [[num(t) for t in x] for x in c["nodes"]], [num(t) for t in c["extras"]], (c["events"], c["modes"])
+    (events, modes), first = (c["events"], c["modes"]), c.get("tiles", [[0, 0, [], []]])[0]
+    if c["kind"] == "piece": c = c | {"nodes": [[t[0] for t in x] for x in first[2]], "extras": [[first[0], first[1]]]}
+    z, e = [[num(t) for t in x] for x in c["nodes"]], [num(t) for t in c["extras"]]
     kind, stuck, border, claims = c["kind"], not events, c.get("border"), c["claims"]
     need(len(events) == len(modes) == len(z) - bool(stuck and e) and claims["existence"] is True, "its parts do not fit together")
     c = c | {"n": 4 if c["machine"] == "coupled" else 2, "sign": sign, "signs": [*modes, *(sign * m for m in modes[:1] or [0])],
@@ -236,6 +278,7 @@ def verify(c):
     if wide > 1:
         mu = {"fold": (1, half), "symmetry-breaking": (-1, True), "period-doubling": (-1, False)}.get(kind, (1, half))
         need((c.get("multiplier", 1), half) == mu and len(e) == wide - 1 and border is None, f"no system of a {kind}")
+    elif kind == "piece": return cover(c, p, len(events))
     else: need(bool(border) == bool(e) == (kind != "orbit") and "normal" not in c and c.get("multiplier", 1) == 1, f"no {kind}")
     if z: exists(c, p, z, e)
     name, event, side, touch = (*border, e[1] if len(e) > 1 else None) if border else ("", -1, 0, None)

@@ -11,7 +11,7 @@ import numpy as np
 from orbits.proofs.admissible import NOTHING, Zero, examine
 from orbits.proofs.balls import Given, ball, decimal, precision
 from orbits.proofs.enclosing import enclose, refine
-from orbits.proofs.equations import Motif, System
+from orbits.proofs.equations import MIRRORED, Motif, System
 from orbits.proofs.flights import parameter_names
 from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import Obstacle, ProofError, Remedy, Step
@@ -67,6 +67,8 @@ def prove_orbit(
     motif = motif_of(machine, events, modes, periods, half, frictionless)
     given = {name: decimal(value) for name, value in parameters.items()}
     start = nodes[: len(motif)]
+    if half:
+        _require_mirror(motif, events, modes, nodes)
     proof = Proof("orbit", motif, given)
 
     def attempt(at: int) -> Proof:
@@ -186,6 +188,24 @@ def motif_of(
     return Motif(machine, tuple(events[:length]), tuple(modes[:length]), periods, half, frictionless)
 
 
+def _require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], nodes: np.ndarray) -> None:
+    """Refuse to prove half a word for the whole where the other half is not its mirror image.
+
+    Raises
+    ------
+    ProofError
+    """
+    n = len(motif)
+    image = -nodes[:n]
+    image[:, 0] = nodes[:n, 0] + np.pi * motif.periods
+    letters = tuple(MIRRORED.get(letter, letter) for letter in motif.events)
+    same = tuple(events[n:]) == letters and tuple(modes[n:]) == tuple(-mode for mode in motif.modes)
+    if not same or nodes.shape[0] != 2 * n or not np.max(np.abs(nodes[n:] - image)) < NEAR:
+        raise ProofError(
+            "the second half of the orbit is not the mirror image of the first: prove the whole word"
+        )
+
+
 def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
     """Refuse parameters outside their range, and friction where the word has none.
 
@@ -283,7 +303,7 @@ def _with_bits(attempt: Any, proof: Proof, bits: int, given: Mapping[str, Any]) 
             best = replace(best, obstacles=(obstacle,), bits=bits) if best.box is None else best
             if obstacle.remedy is Remedy.START:
                 return best
-            if obstacle.remedy is Remedy.DEGENERATE:
+            if obstacle.step is Step.REFINEMENT:
                 tries += 1
         bits *= 2
         if tries >= 2 or bits > MOST_BITS:

@@ -36,14 +36,20 @@ def stable(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None,
         product = _in_frames(factors)
     except ZeroDivisionError:
         return None, Obstacle(Step.STABILITY, Remedy.BORDER, detail="a map has no derivative")
+    verdict = _verdict(product)
+    return verdict, None if verdict is not None else Obstacle(Step.STABILITY, Remedy.CIRCLE)
+
+
+def _verdict(product: Any) -> bool | None:
+    """By norm and trace of the powers."""
     size = product.nrows()
     for _ in range(SQUARINGS):
         if norm(product) < 1:
-            return True, None
+            return True
         if abs(product.trace()) > size:
-            return False, None
+            return False
         product = product * product
-    return None, Obstacle(Step.STABILITY, Remedy.CIRCLE)
+    return None
 
 
 def factor_matrices(system: System, nodes: Sequence[Sequence[Any]]) -> list[Any]:
@@ -67,6 +73,28 @@ def _without_shift(factor: Any, p: Any) -> Any:
             row[1] = row[1] - eps * row[2]
     keep = [j for j in range(len(rows)) if j != 1]
     return library().arb_mat([[rows[i][j] for j in keep] for i in keep])
+
+
+def stable_in_basis(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None, list[list[str]]]:
+    """The same for pieces of branches, with the basis (rows of decimals) in which a checker sees it from the plain product.
+
+    The basis is empty where none helps, or where an impact-free motion's trivial multiplier is in the way.
+    """
+    if system.motif.impact_free:
+        return stable(system, nodes)[0], []
+    try:
+        factors = factor_matrices(system, nodes)
+        product = factors[0].mid()
+        for factor in factors[1:]:
+            product = (factor.mid() * product).mid()
+        basis = _basis(product)
+        carried = factors[0] if basis is None else factors[0] * basis
+        for factor in factors[1:]:
+            carried = factor * carried
+        verdict = _verdict(carried if basis is None else basis.solve(carried))
+    except ZeroDivisionError:
+        return None, []
+    return verdict, [] if basis is None else [[repr(float(value)) for value in row] for row in basis.tolist()]
 
 
 def norm(matrix: Any) -> Any:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from orbits.proofs.balls import Given
 from orbits.proofs.equations import Motif
 from orbits.proofs.flights import parameter_names
 from orbits.proofs.obstacles import ProofError
+from orbits.proofs.pieces import Pieces, prove_piece
 from orbits.proofs.proof import Proof
 from orbits.proofs.prove import MULTIPLIERS, motif_of, prove_orbit, prove_special
 from orbits.proofs.resting import prove_stuck
@@ -89,6 +91,66 @@ def of_point(
             raise ProofError(f"a {kind} needs the margin that vanishes there")
         vanishing = (_margin(word, margin), margin // PER_NODE)
     return prove_special(kind, motif, nodes[: len(motif)], given, name, value, margin=vanishing, bits=bits)
+
+
+def of_branch(
+    problem: Any,
+    points: np.ndarray,
+    values: np.ndarray,
+    marks: Sequence[int] = (),
+    within: tuple[float, float] | None = None,
+) -> Pieces:
+    """Prove a branch of an `OrbitProblem`, or its part within an interval of the parameter.
+
+    Parameters
+    ----------
+    problem : OrbitProblem
+    points, values : float arrays (n, N), (n,)
+        The branch in its order.
+    marks : sequence of int
+        Places of special points: stretches end there. A hundredth is left out at either end, where verdicts change.
+    within : (float, float), optional
+        Prove just this interval, on each stretch as far as that reaches.
+
+    Raises
+    ------
+    ProofError
+        If nothing of the branch lies in the interval, or the problem has no equations to prove.
+    """
+    if not len(problem.word):
+        raise ProofError(
+            "the absorber is stuck throughout: prove single orbits and special points of this branch"
+        )
+    orbit = problem.orbit(points[0], float(values[0]))
+    machine, word = orbit.model.name, problem.word
+    name, _ = _moved(problem, float(values[0]))
+    given = _parameters(machine, orbit.parameters, {})
+    motif = motif_of(machine, word.events, word.modes, problem.periods, problem.symmetric, word.frictionless)
+    numbers = np.array([_moved(problem, float(value))[1] for value in values])
+    turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(numbers))))
+    cuts = sorted({0, len(numbers) - 1, *(int(i) for i in turns), *(int(i) for i in marks)})
+    pieces = []
+    for first, last in pairwise(cuts):
+        order = np.argsort(numbers[first : last + 1])
+        x, u = numbers[first : last + 1][order], points[first : last + 1][order]
+        low, high = float(x[0]), float(x[-1])
+        if within is not None:
+            low, high = max(low, within[0]), min(high, within[1])
+        for end, at in ((low, 0), (high, -1)):
+            if end == float(x[at]) and high > low:
+                inner = 0.01 * (high - low)
+                low, high = (low + inner, high) if at == 0 else (low, high - inner)
+        if not high > low:
+            continue
+
+        def guess(p: float, x: np.ndarray = x, u: np.ndarray = u) -> np.ndarray:
+            columns = [np.interp(p, x, u[:, j]) for j in range(u.shape[1])]
+            return np.array(columns).reshape(len(motif), -1)
+
+        pieces.append(prove_piece(motif, guess, given, name, low, high))
+    if not pieces:
+        raise ProofError("the branch has no stretch between special points in this interval")
+    return Pieces(tuple(pieces))
 
 
 def _critical(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from orbits.proofs.pieces import Piece
     from orbits.proofs.proof import Proof
 
 SAYS = {
@@ -35,4 +36,21 @@ def sentence(proof: Proof) -> str:
     if proof.broken is not None:
         lines.append(f"  the margin {proof.broken[0]!r} of event {proof.broken[1]} is negative")
     lines += [f"  {obstacle}" for obstacle in proof.obstacles]
+    return "\n".join(lines)
+
+
+def piece_sentence(piece: Piece) -> str:
+    """What is proved of a piece of a branch."""
+    word = "".join(piece.motif.events) + (" and its mirror image" if piece.motif.half else "")
+    lines = []
+    if piece.covered:
+        low, high = piece.covered
+        facts = ["exactly one near the branch", SAYS["real"][piece.real], SAYS["stable"][piece.stable]]
+        lines.append(
+            f"the orbits of {word}: {', '.join(facts)}, for all {piece.parameter} from {low} to {high} "
+            f"({len(piece.tiles)} boxes)"
+        )
+    else:
+        lines.append(f"the orbits of {word} from {piece.asked[0]:g} to {piece.asked[1]:g}: not proved")
+    lines += [f"  {obstacle}" for obstacle in piece.obstacles]
     return "\n".join(lines)

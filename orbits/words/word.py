@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from heapq import heappop, heappush
@@ -217,6 +218,18 @@ class Word:
         modes = self.modes[place:] + self.modes[:place]
         blocks = [modes[i : i + root] for i in range(0, len(modes), root)]
         return self.rotate(place + root * least_rotation(blocks))
+
+    def spelled(self, mirror: bool = True) -> str:
+        """The word as people are told it: one spelling for one motion, from whichever event and in whichever mirror image.
+
+        That of `canonical`, without signs where the letters alone mean this motion.
+        """
+        canonical = self.canonical(mirror)
+        plain = canonical._written(signed=False)
+        with suppress(WordError):
+            if Word.parse(plain, self.frictionless).canonical(mirror) == canonical:
+                return plain
+        return canonical.text
 
     @property
     def mirror_symmetric_halves(self) -> bool:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from contvines.branch import Branch
+from contvines.branches.branch import Branch
+from contvines.branches.special_point import SpecialPoint
 from contvines.graph.graph import Graph, Switch
-from contvines.special import SpecialPoint
 
 
 def pitchfork_graph(finished: bool = True) -> Graph:

@@ -62,11 +62,11 @@ def test_folds_beside_borders_of_a_machine():
     assert not graph.of_kind("branch-point")
     by_word = {b.description["word"]: b for b in graph.branches.values()}
     folds = {word: [p for p in graph.on(by_word[word].label) if p.kind == "fold"] for word in by_word}
-    assert len(folds["RLts"]) == 2 and len(folds["RsLtt"]) == 1
-    assert by_word["RLts"].stable_intervals() == [
-        pytest.approx(sorted(p.value for p in folds["RLts"]), abs=1e-12)
+    assert len(folds["LRts"]) == 2 and len(folds["LsRtt"]) == 1
+    assert by_word["LRts"].stable_intervals() == [
+        pytest.approx(sorted(p.value for p in folds["LRts"]), abs=1e-12)
     ]
-    for fold in folds["RLts"] + folds["RsLtt"]:
+    for fold in folds["LRts"] + folds["LsRtt"]:
         problem, work = fold.problem, fold.problem.workspace()
         held = int(np.argmax(np.abs(fold.tangent[:-1])))
 

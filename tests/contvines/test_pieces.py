@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
+from contvines.branches.half_branch import HalfBranch, Piece
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from contvines.half import Half, Piece
 
 
 def line(n=1):
@@ -31,13 +31,13 @@ def piece(numbers, turned=False):
 @given(st.lists(st.tuples(st.integers(1, 4), st.booleans()), min_size=1, max_size=5), st.data())
 def test_joining_turning_inserting(sizes, data):
     counter = iter(range(1000))
-    half = Half([piece([float(next(counter)) for _ in range(size)], turned) for size, turned in sizes])
+    half = HalfBranch([piece([float(next(counter)) for _ in range(size)], turned) for size, turned in sizes])
     n = len(half)
     assert half.joined().values.tolist() == list(range(n)) and half.end == n - 1.0
     back = half.reversed()
     assert back.joined().values.tolist() == list(range(n))[::-1]
     np.testing.assert_array_equal(back.joined().tangents[:, 0], -np.arange(n, dtype=float)[::-1])
-    again = Half(half.pieces).reversed().reversed().extended(half, skip=1)
+    again = HalfBranch(half.pieces).reversed().reversed().extended(half, skip=1)
     assert again.joined().values.tolist() == [*range(n), *range(1, n)]
     i = data.draw(st.integers(0, n))
     point = Solved(np.array([-1.0]), -1.0, np.zeros(2), np.zeros(0), 0.0, 0.0, 0.0)

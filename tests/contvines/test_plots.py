@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.events.kinds import PREFIXES
 from contvines.graph.graph import Switch
 from contvines.plots import plot_diagram, plot_multipliers, plot_network, plot_portrait, save_figure
 from contvines.plots.figures import HOUSE as STYLE
 from contvines.plots.figures import check_picture
 from contvines.plots.style import LINES, MARKS
-from contvines.special import PREFIXES
 from tests.contvines import fakes
 
 

@@ -36,7 +36,7 @@ def test_window_between_fold_and_doubling():
     seed = absorber.symmetric_orbit(amplitude=0.55)
     graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
     for branch in graph:
-        if branch.description["word"] not in ("LttRLtLR", "LtLRLttR"):
+        if branch.description["word"] != "LRLttRLt":
             continue
         fold, doubling = (graph.of_kind(kind) for kind in ("fold", "period-doubling"))
         lower = next(point.value for point in fold if point.branch == branch.label)

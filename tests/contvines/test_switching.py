@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.switching import departures, null_vectors
+from contvines.switching.departures import departures, null_vectors
 
 
 def engine_of(f, n):

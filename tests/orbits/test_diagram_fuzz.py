@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.events.kinds import BORDERS
 from orbits import Absorber
 from orbits.attractors import find_attractor
 from orbits.cycles.identity import canonical
@@ -18,7 +19,6 @@ from orbits.starts.find import polish
 
 DRAWN = 400 if os.environ.get("CONTVINES_LARGE") else 60
 SECONDS = 120  # a guard against hanging, far above what any diagram here takes
-BORDERS = ("velocity-graze", "wall-graze", "stick", "chatter")
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from orbits import Absorber, ParameterError
+import contvines as cv
+from orbits import Absorber, Coupled, ParameterError
+from orbits.attractors import find_attractors, sweep
 from orbits.machines.absorber.closed_forms import (
     fold_beta,
     fold_square,
@@ -247,3 +249,33 @@ def test_any_spelling_goes_with_any_reading_of_the_guess(written):
             found = SLIDING.orbit(written, amplitude=1.2, guess=guess.nodes + 1e-3)
             assert found.word == guess.word
             assert found.events.w == pytest.approx(guess.events.w, abs=1e-10)
+
+
+def test_an_orbit_shows_its_own_parameters():
+    """Not the machine's defaults: the frequency of the special point, the amplitude of the reduced absorber."""
+    orbit = SLIDING.orbit("LR", amplitude=0.625)
+    assert "amplitude=0.625," in repr(orbit)
+    assert "amplitude=0.05," in repr(SLIDING.orbit("", amplitude=0.05))
+    machine = Coupled(
+        restitution=0.76,
+        friction=0.5,
+        gravity=0.211,
+        mass_ratio=0.006,
+        damping=0.9,
+        forcing=3.3,
+        frequency=1.01,
+    )
+    shown = repr(machine.orbit("tt", frequency=0.970625))
+    assert "frequency=0.970625" in shown and "1.01" not in shown
+
+
+def test_diagrams_sweeps_and_attractors_spell_a_motion_alike():
+    orbit = SLIDING.orbit("RLtL", amplitude=1.2)
+    graph = cv.diagram(orbit, over="amplitude", within=(1.19, 1.21), depth=0)
+    found = find_attractors(SLIDING, [{"w_rate": 1.0}, {"w_rate": -1.0}, None], amplitude=1.2)
+    rows = sweep(SLIDING, "amplitude", [1.2, 1.201])
+    spellings = {graph["B1"].description["word"], orbit.to_dict()["word"], orbit.spelling}
+    spellings |= {attractor.text for attractor in found} | {row.word for row in rows}
+    assert spellings == {"LRLt"}
+    assert all("word='LRLt'" in repr(attractor) for attractor in found)
+    assert orbit.to_dict()["events"] == "RLtL"  # in the order of the nodes

@@ -85,3 +85,18 @@ def test_long_words_are_shortened_in_messages():
     with pytest.raises(WordError) as caught:
         Word.parse("LR" * 200 + "L")
     assert f"word '{'LR' * 20}...' cannot be" in str(caught.value)
+
+
+def test_one_motion_has_one_spelling_and_all_are_read():
+    """Rotations and mirror images, signs and written slips: the same name, from which the same motion is read."""
+    families = [
+        ("LRLt", "LtLR", "RLtL", "LRtR", "RtRL", "tRLR"),
+        ("ss", "s+s-", "s-s+", "s u s u", "usus"),
+        ("LRs", "RsL", "LsR", "LsuR", "sRL", "RLs-"),
+        ("LR", "RL", "LR RL"),
+    ]
+    for family in families:
+        assert {Word.parse(text).spelled() for text in family} == {family[0]}
+        assert Word.parse(family[0]).canonical() == Word.parse(family[-1]).canonical()
+    # without a mirror image they are two motions
+    assert Word.parse("LRLt").spelled(mirror=False) != Word.parse("LRtR").spelled(mirror=False)

@@ -18,12 +18,13 @@ from orbits.machines.declared.orbit import REAL, DeclaredOrbit
 from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.sampling import lengths
 from orbits.machines.declared.solving import SOLVED, examined, newton
-from orbits.machines.declared.words import Word
+from orbits.machines.declared.words import SLIP, STICK, Word
 from orbits.protocol import Seed
 
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))  # of what grows beyond the border
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
 NEAR = 0.02  # change of the parameter, relative, beyond which an orbit is not next to the border
+GROWING = 1e-4  # least growth of the margins with the distance from a border
 SAME = 1e-5  # largest difference of states, at equal clocks, of one and the same motion
 CLOSE = 0.05  # of one that goes on from the border
 Found = tuple[DeclaredProblem, np.ndarray, float, np.ndarray]
@@ -83,12 +84,45 @@ def proposals(
     problem: DeclaredProblem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[DeclaredProblem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the rules propose."""
+    first = problem
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
     for edit in edits_at(orbit, index):
         found = grown(problem, orbit, p, [edit])
         if found is not None:
-            yield (*found, edit.note)
+            yield (*_read_alike(first, problem, edit, found), edit.note)
+
+
+def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Edit, found: Found) -> Found:
+    """The orbit found, read from the event from which the border orbit was read before it was turned; never from a slip."""
+    ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
+    grown_by = len(edit.events) - (edit.stop - edit.start)
+    places = ahead + grown_by
+    if (
+        problem.symmetric and ahead >= problem.length + edit.stop
+    ):  # the mirrored edit stands before it as well
+        places += grown_by
+    if ahead == 0 or ahead < edit.stop or places <= 0:
+        places = 0
+    return _unslipped(_rotated(found, places))
+
+
+def _rotated(found: Found, places: int) -> Found:
+    """The same orbit and direction, read `places` events further on."""
+    other, v, q, tangent = found
+    if places == 0 or not len(other.word):
+        return found
+    orbit = other.orbit(v, q).rotate(places)
+    again = other.sibling(orbit.word, other.periods, other.symmetric)
+    direction = np.roll(other.expand_direction(tangent[:-1]), -places, axis=0)[: again.length]
+    return again, again.reduce(orbit.nodes), q, np.append(direction.ravel(), tangent[-1])
+
+
+def _unslipped(found: Found) -> Found:
+    """Read from the stick before a slip that would come first."""
+    word = found[0].word
+    slips = len(word) > 1 and word.letter(0).kind == SLIP and word.letter(-1).kind == STICK
+    return _rotated(found, len(word) - 1) if slips else found
 
 
 def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
@@ -102,7 +136,7 @@ def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.
         modes[change.start : change.stop] = change.modes
         rows[change.start : change.stop] = list(change.nodes)
     if not events:  # nothing is left: the motion is looked at when the phase is zero
-        return Word((), (word.modes[-1],), word.alphabet), nodes[:1], 0
+        return Word((), (word.modes[min(e.start for e in edits) - 1],), word.alphabet), nodes[:1], 0
     return Word(tuple(events), tuple(modes), word.alphabet), np.array(rows), min(e.start for e in edits)
 
 
@@ -110,10 +144,15 @@ def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[
     """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
     length = problem.length
     forced = problem.forced
-    if problem.symmetric and len(problem.word):
-        if any(change.stop > length for change in edits):
+    empty = not len(problem.word)
+    halved = (
+        problem.symmetric if not empty else bool(edits[0].events) and problem.word.mirror_symmetric_halves
+    )
+    if halved:  # the same happens half a period later to the mirror image
+        if not empty and any(change.stop > length for change in edits):
             return None
-        word, nodes, first = applied(orbit.word.head(length), orbit.nodes[:length], edits)
+        head = orbit.word if empty else orbit.word.head(length)
+        word, nodes, first = applied(head, orbit.nodes[:length], edits)
         mirrored = word.mirror()
         word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.alphabet)
     else:
@@ -121,7 +160,7 @@ def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[
     if not forced:
         nodes = _durations(orbit, nodes, edits[0])
     try:
-        other = problem.sibling(word, problem.periods, problem.symmetric and bool(len(word)))
+        other = problem.sibling(word, problem.periods, halved and bool(len(word)))
     except ValueError:
         return None
     if not len(word):
@@ -224,8 +263,8 @@ def _beside(other: DeclaredProblem, guess: np.ndarray, p: float) -> Found | None
     if not residual < SOLVED:
         return None
     tangent = tangent / np.linalg.norm(tangent)
-    best, most = None, REAL
     for length in (1e-3, 1e-4, 1e-5, 1e-6):
+        best, most = None, GROWING * length
         for sign in (1.0, -1.0):
             v, r, residual, along = newton(
                 other, u + sign * length * tangent[:-1], q + sign * length * tangent[-1], tangent

@@ -138,6 +138,8 @@ def _at_guard(orbit: Any, place: int, j: int) -> list[Edit]:
             ]
         modes = (with_mode(mode, j, sign), mode)
         return [Edit(insert, insert, (slip, stick), modes, pair, "gap", "friction gives way for a moment")]
+    if len(word) and length < SHORT * 100:
+        return _pair(orbit, place)
     away, back = alphabet.text_of(j, SWITCH, -mode[j]), alphabet.text_of(j, SWITCH, mode[j])
     modes = (with_mode(mode, j, -mode[j]), mode)
     early[0], late[0] = node[0] - 0.5 * FIRST, node[0] + 0.5 * FIRST
@@ -263,6 +265,14 @@ def _stick(orbit: Any, place: int) -> list[Edit]:
         modes = (word.modes[place],)
         note = "a turn before a stick disappears"
         return [Edit(place - 1, place + 1, (letter.text,), modes, node[None], "margin", note)]
+    if (
+        place > 0
+        and word.letter(place - 1).contact == j
+        and word.letter(place - 1).kind == SLIP
+        and gap < SHORT * 100
+    ):
+        note = "a slip vanishes"
+        turned = Edit(place - 1, place + 1, (), (), orbit.nodes[:0], "margin", note)
     if follower.contact != j or follower.kind != SLIP:
         return [turned]
     if out[j] == before[j]:

@@ -173,7 +173,7 @@ class Watch:
             return callback
 
         events = [
-            heyoka.nt_event(f, note(i), direction=heyoka.event_direction.positive)
+            heyoka.nt_event(f + NUDGE, note(i), direction=heyoka.event_direction.positive)
             for i, f in enumerate(layout.lowered(functions))
             if not _is_number(f)
         ]
@@ -230,7 +230,10 @@ class Run:
         system = list(zip(variables, layout.lowered(rates)))
         lowered = layout.lowered(functions)
         self._places = [i for i, f in enumerate(lowered) if not _is_number(f)]
-        events = [heyoka.t_event(lowered[i], direction=heyoka.event_direction.negative) for i in self._places]
+        events = [
+            heyoka.t_event(lowered[i] + NUDGE, direction=heyoka.event_direction.negative)
+            for i in self._places
+        ]
         self._integrator = heyoka.taylor_adaptive(
             system,
             [0.0] * len(variables),
@@ -263,6 +266,8 @@ class Run:
 
 
 MOST_STEPS = 100_000  # of one flight: a flow that needs more runs away
+NUDGE = 1e-200
+"""Added to every event function: heyoka 7.13 loses the later roots in a step that begins exactly on one."""
 LARGE = 12  # states from which compact code compiles much faster and runs nearly as fast
 
 

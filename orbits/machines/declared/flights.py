@@ -36,6 +36,8 @@ class Work(NamedTuple):
     last_rates: np.ndarray
     end: np.ndarray
     numbers: np.ndarray
+    drift: np.ndarray
+    still: np.ndarray
 
 
 def workspace(length: int, states: int, numbers: int) -> Work:
@@ -52,6 +54,8 @@ def workspace(length: int, states: int, numbers: int) -> Work:
         np.zeros((L, n)),
         np.zeros(L),
         np.zeros((L, numbers)),
+        np.zeros(n),
+        np.zeros((n, d)),
     )
 
 
@@ -93,7 +97,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         if values is None:  # the strobe of a motion without events: at phase zero
             residual[0, 0] = end[0] - data.shift
             residual[0, 1:] = arrival[0] - onward[0]
-            own[0], following[0] = 0.0, 0.0
+            own[0], following[0] = 0.0, data.minus
             own[0, 1:, 1:] = by_state[0]
             own[0, 1:, 0] = -by_state[0] @ work.first_rates[0]
             following[0, 0, 0] = 1.0
@@ -127,6 +131,14 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         else:
             own[places, :, 0] = by_end
         derivative[places] = (slopes @ moved[:, :, None])[:, :, 0] + along
+    for j in data.pinned:  # the motion may be shifted along this state: the mean over the nodes is zero
+        work.drift[j] = residual[-1, 1 + j]
+        residual[-1, 1 + j] = nodes[:, 1 + j].mean()
+        derivative[-1, 1 + j] = 0.0
+    for row, values in data.still:  # what sticks for ever has no velocity
+        table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
+        residual[-1, 1 + row], derivative[-1, 1 + row] = table[0], table[n + 2]
+        work.still[row, 0], work.still[row, 1:] = table[n + 1], table[1 : n + 1]
     size = float(np.abs(residual).max())
     return size if math.isfinite(size) else math.inf
 
@@ -139,7 +151,7 @@ def bordered(
     sides = np.zeros((size + 1, 2), order="F")
     sides[:size, 0] = -work.residual.ravel()
     sides[size, 0], sides[size, 1] = target, 1.0
-    if size > SPARSE:
+    if size > SPARSE and not data.pinned:
         return _sparse(data, work, border, sides, step, tangent)
     matrix = np.zeros((size + 1, size + 1), order="F")
     fill(data, work, matrix)
@@ -165,13 +177,27 @@ def bordered(
 def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
     """The blocks of F_u in a dense matrix."""
     d, length = data.size + 1, data.length
-    for i in range(length):
+    last_own, last_following = closing(data, work)
+    for i in range(length - 1):
         rows = slice(i * d, (i + 1) * d)
         matrix[rows, i * d : (i + 1) * d] += work.own[i]
-        if i + 1 < length:
-            matrix[rows, (i + 1) * d : (i + 2) * d] += work.following[i]
-        else:
-            matrix[rows, :d] += work.following[i] * data.turned
+        matrix[rows, (i + 1) * d : (i + 2) * d] += work.following[i]
+    rows = slice((length - 1) * d, length * d)
+    matrix[rows, rows] += last_own
+    matrix[rows, :d] += last_following
+    for j in data.pinned:
+        row = (length - 1) * d + 1 + j
+        matrix[row] = 0.0
+        matrix[row, 1 + j : length * d : d] = 1.0 / length
+
+
+def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
+    """The blocks of the last row, closed by the mirror."""
+    own, following = work.own[-1], work.following[-1] * data.turned
+    for row, _ in data.still:
+        own = own.copy()
+        own[1 + row], following[1 + row] = 0.0, work.still[row]
+    return own, following
 
 
 def _sparse(
@@ -182,10 +208,9 @@ def _sparse(
 
     size = data.dimension
     rows, columns = data.sparsity
-    last = work.following[-1] * data.turned
-    entries = np.concatenate(
-        [work.own.ravel(), work.following[:-1].ravel(), last.ravel(), work.derivative.ravel(), border]
-    )
+    own, following = closing(data, work)
+    blocks = [work.own[:-1].ravel(), own.ravel(), work.following[:-1].ravel(), following.ravel()]
+    entries = np.concatenate([*blocks, work.derivative.ravel(), border])
     if not np.all(np.isfinite(entries)):
         return 0.0
     matrix = csc_matrix((entries, (rows, columns)), shape=(size + 1, size + 1))
@@ -260,7 +285,7 @@ def multipliers(data: Any, work: Work) -> Any:
     else:
         values = _periodic(chain, size)
     values = values[np.argsort(-np.abs(values), kind="stable")]
-    if data.loose is not None:  # a motion that may be shifted as a whole
+    for _ in range(data.trivial):  # a motion that may be shifted as a whole, a friction that sticks for ever
         values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
     return values[: data.n_multipliers]
 

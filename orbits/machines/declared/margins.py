@@ -14,8 +14,9 @@ import numpy as np
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
 from orbits.machines.declared.flights import Work
-from orbits.machines.declared.words import HIT, SLIP, STICK, STROBE, SWITCH, TURN, Word
+from orbits.machines.declared.words import HIT, SLIP, STICK, STROBE, SWITCH, TURN, Letter, Word
 
+DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes
 OWN = (
     1e-9  # share of a flight next to its ends in which the guard of the event there has no minimum of its own
 )
@@ -34,6 +35,9 @@ def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
     table = row.reshape(length, contacts + 2)
     table[:] = np.inf
     table[:, contacts + 1] = (end - begin) / data.clock_rate(work.numbers)
+    drift = max((abs(work.drift[j]) for j in data.pinned), default=0.0)
+    if drift > DRIFTING:  # it comes back shifted: no orbit
+        table[:, contacts + 1] = -drift
     for values, guards, watch, places in data.guard_groups:
         m, count = len(places), len(guards)
         if not count:
@@ -51,9 +55,9 @@ def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
             span = end[i] - begin[i]
             for g, guard in enumerate(guards):
                 j = guard.contact
-                if first.contact != j:
+                if not owned(data, first, j):
                     table[i, j] = min(table[i, j], at_start[k, g])
-                if last.contact != j:
+                if not owned(data, last, j):
                     table[i, j] = min(table[i, j], at_end[k, g])
                 _strength(
                     table, data, i, first, last, guard, at_start[k, g], rate_start[k, g], rate_end[k, g]
@@ -63,8 +67,8 @@ def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
             for clock, g, state in watch(nodes[i, 1:], begin[i], end[i], work.numbers[i]):
                 own = OWN * span
                 j = guards[g].contact
-                if (first.contact == j and clock - begin[i] < own) or (
-                    last.contact == j and end[i] - clock < own
+                if (owned(data, first, j) and clock - begin[i] < own) or (
+                    owned(data, last, j) and end[i] - clock < own
                 ):
                     continue
                 found.append((i, g, state, clock))
@@ -77,6 +81,11 @@ def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
             for (i, g, _, _), there in zip(found, inner):
                 j = guards[g].contact
                 table[i, j] = min(table[i, j], there[g])
+
+
+def owned(data: Any, letter: Letter, contact: int) -> bool:
+    """Whether an event says itself what a contact's guard is at it: the contact's own, or an impact that turns its velocity."""
+    return letter.contact == contact or data.word.alphabet.flips.get((letter.contact, contact)) is not None
 
 
 def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -> None:

@@ -11,12 +11,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.machines.declared import flights
+from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical, is_symmetric
 from orbits.machines.declared.identity import root as shortest
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import border_kind, fill_margins, per_node
-from orbits.machines.declared.words import STROBE, Letter, Word
+from orbits.machines.declared.words import HIT, STICK, STROBE, Letter, Word
 from orbits.protocol import Embedding, Symmetry
 
 TURN_OF_PHASE = 2.0 * np.pi
@@ -44,6 +46,21 @@ def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, 
 KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
 
 
+def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
+    """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
+    e, names = machine.equations, machine.equations.layout.states
+    known: set[str] = set()
+    for i, mode in enumerate(word.modes):
+        pattern = e.pattern(e.pattern_key(mode))
+        known |= set().union(*(variables_of(rate) for rate in pattern.rates))
+        for guard in pattern.guards:
+            if guard.kind != HIT:
+                known |= variables_of(guard.value)
+        if len(word) and word.letter(i).kind == HIT:
+            return ()
+    return tuple(j for j, name in enumerate(names) if name not in known)
+
+
 class DeclaredProblem:
     """Periodic orbits with a given word, against one parameter of a declared machine.
 
@@ -67,7 +84,6 @@ class DeclaredProblem:
     """
 
     spectrum = "map"
-    loose: int | None = None
 
     def __init__(
         self,
@@ -100,7 +116,16 @@ class DeclaredProblem:
         self.dimension = self.length * (self.size + 1)
         self.twist = -1.0 if symmetric else 1.0
         self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0
-        self.n_multipliers = self.size if self.forced else self.size - 1
+        self.loose = loose_states(machine, word)
+        self.pinned = () if symmetric else self.loose
+        stuck = [
+            j
+            for j, contact in enumerate(machine.contacts)
+            if isinstance(contact, DryFriction) and all(mode[j] == STUCK for mode in word.modes)
+        ]
+        self.trivial = len(self.loose) + len(stuck)
+        self.still = () if symmetric else self._still(stuck)
+        self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
         self.n_margins = per_node(self.contacts) * self.length
         self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
         self.period_shift = np.zeros(self.dimension) if self.forced else None
@@ -113,6 +138,18 @@ class DeclaredProblem:
         self.minus[1:, 1:] = -self.identity
         self.kernels, self.data = KERNELS, self
         self._assign()
+
+    def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Any], ...]:
+        """For each friction that sticks for ever: the state whose closing its velocity replaces, and the velocity compiled."""
+        e, found, taken = self.machine.equations, [], set(self.loose)
+        for j in frictions:
+            known = variables_of(e.velocity[j])
+            places = [k for k, name in enumerate(e.layout.states) if name in known and k not in taken]
+            taken.add(places[-1])
+            letter = Letter("", j, STICK)
+            key = e.pattern_key(self.word.modes[0])
+            found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
+        return tuple(found)
 
     def _assign(self) -> None:
         """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
@@ -233,6 +270,15 @@ class DeclaredProblem:
         image = -nodes
         image[..., 0] = nodes[..., 0] + self.shift
         return image
+
+    def expand_direction(self, direction: np.ndarray) -> np.ndarray:
+        """A direction of the unknowns, shape (N,), as one of the nodes of the whole cycle."""
+        nodes = np.asarray(direction).reshape(self.length, self.size + 1)
+        if not self.symmetric or not len(self.word):
+            return nodes
+        image = -nodes
+        image[:, 0] = nodes[:, 0]
+        return np.concatenate([nodes, image])
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""

@@ -14,6 +14,7 @@ from orbits.machines.declared.words import HIT, HOLD, RELEASE, SLIP, STICK, SWIT
 
 TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
+TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the depth is roundoff
 NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
 FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
 
@@ -214,8 +215,17 @@ class Stepper:
         watch.move(self.state, self.clock, end, numbers)
         begin, self.clock = self.clock, end
         values, _, guards = self._guards(self.modes)
-        if any(value < 0.0 and guard.kind == HIT for value, guard in zip(values, guards)):
-            self.state, self.clock = before, begin
+        for value, guard in zip(values, guards):
+            if value < 0.0 and guard.kind == HIT:
+                self.state, self.clock = before, begin
+                return
+        for value, guard in zip(values, guards):
+            if (
+                value < 0.0 and guard.kind == SWITCH
+            ):  # the surface was only touched: the flow stays on its side
+                self.state, self.clock = before, begin
+                self.modes = self._with(guard.contact, -self.modes[guard.contact])
+                return
 
     def _rebase(self) -> None:
         if self.machine.forced:
@@ -226,6 +236,22 @@ class Stepper:
         else:
             self.base += self.clock
             self.clock = 0.0
+
+    def _touches(self, switch: int) -> bool:
+        """Whether the surface of a switch is only touched; the state has then moved past it."""
+        values, rates, guards = self._guards(self.modes)
+        place = next(k for k, g in enumerate(guards) if g.contact == switch)
+        if abs(rates[place]) > TOUCH * (1.0 + np.abs(self.state).max()):
+            return False
+        _, _, _, numbers, watch = self._tools(self.modes)
+        before = self.state.copy()
+        watch.move(self.state, self.clock, self.clock + OFF, numbers)
+        self.clock += OFF
+        values, _, _ = self._guards(self.modes)
+        if values[place] > 0.0:
+            return True
+        self.state, self.clock = before, self.clock - OFF
+        return False
 
     def _happened(self, guard: Any) -> tuple[int, int, int] | None:
         j, kind = guard.contact, guard.kind
@@ -250,6 +276,8 @@ class Stepper:
             self.modes = tuple(modes)
             self._fresh = True
             return j, RELEASE, 0
+        if self._touches(j):
+            return None
         after = -self.modes[j]
         self.modes = self._with(j, after)
         values, rates, guards = self._guards(self.modes)

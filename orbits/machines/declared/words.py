@@ -148,8 +148,10 @@ class Word:
         for signed, noted in ((False, ()), (True, ()), (True, (0,))):
             text = self._written(signed, noted)
             try:
-                if parse(text, self.alphabet, _absent(self.modes[0])) == self:
-                    return text
+                read = parse(text, self.alphabet, _absent(self.modes[0]))
+                places = range(max(1, len(self))) if read.events == self.events and not noted else (0,)
+                if any(read.rotate(k) == self for k in places):
+                    return text  # the same cycle, even where the text leaves open from which event it is read
             except WordError:
                 pass
         return self._written(False, range(len(self.modes)))

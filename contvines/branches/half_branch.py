@@ -1,4 +1,4 @@
-"""Half: what has been found of a branch, as pieces in order; put together once, at the end."""
+"""HalfBranch: what has been found of a branch, as pieces in order; put together once, at the end."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .continuation.engine import Engine, Solved
-from .continuation.status import Status
-from .events.examine import Located
+from ..continuation.engine import Engine, Solved
+from ..continuation.status import Status
+from ..events.examine import Located
 
 
 class Piece(NamedTuple):
@@ -45,7 +45,7 @@ def piece_of(engine: Engine, point: Solved) -> Piece:
 
 
 @dataclass
-class Half:
+class HalfBranch:
     """Points of a branch in order, and the events with their indices among them."""
 
     pieces: list[Piece]
@@ -61,30 +61,30 @@ class Half:
         piece = self.pieces[-1]
         return float(piece.values[0 if piece.turned else -1])
 
-    def reversed(self) -> Half:
+    def reversed(self) -> HalfBranch:
         """The same points in opposite order, tangents turned round."""
         last = len(self) - 1
         events = [
             (last - i, e._replace(point=e.point._replace(tangent=-e.point.tangent)))
             for i, e in self.events[::-1]
         ]
-        return Half(
+        return HalfBranch(
             [piece._replace(turned=not piece.turned) for piece in self.pieces[::-1]], events, self.status
         )
 
-    def extended(self, other: Half, skip: int = 0) -> Half:
+    def extended(self, other: HalfBranch, skip: int = 0) -> HalfBranch:
         """This half, then the other one without its first ``skip`` points."""
         shift = len(self) - skip
         events = self.events + [(i + shift, e) for i, e in other.events]
-        return Half(self.pieces + other._slice(skip, len(other)), events, other.status)
+        return HalfBranch(self.pieces + other._slice(skip, len(other)), events, other.status)
 
-    def since(self, u: np.ndarray) -> Half:
+    def since(self, u: np.ndarray) -> HalfBranch:
         """From the first point with these unknowns on."""
         skip = next(i for i in range(len(self)) if np.array_equal(self.at(i)[0], u))
         events = [(i - skip, e) for i, e in self.events if i >= skip]
-        return Half(self._slice(skip, len(self)), events, self.status)
+        return HalfBranch(self._slice(skip, len(self)), events, self.status)
 
-    def inserted(self, engine: Engine, points: list[tuple[int, Solved]]) -> Half:
+    def inserted(self, engine: Engine, points: list[tuple[int, Solved]]) -> HalfBranch:
         """With more points, each before the point that has its index now; in increasing order."""
         pieces: list[Piece] = []
         here = 0
@@ -93,7 +93,7 @@ class Half:
             here = i
         where = [i for i, _ in points]
         events = [(i + int(np.searchsorted(where, i, side="right")), e) for i, e in self.events]
-        return Half(pieces + self._slice(here, len(self)), events, self.status)
+        return HalfBranch(pieces + self._slice(here, len(self)), events, self.status)
 
     def joined(self) -> Piece:
         """All points as one piece, in order."""
@@ -134,6 +134,6 @@ class Half:
         return found
 
 
-def single(engine: Engine, point: Solved) -> Half:
+def single(engine: Engine, point: Solved) -> HalfBranch:
     """A half of one point."""
-    return Half([piece_of(engine, point)])
+    return HalfBranch([piece_of(engine, point)])

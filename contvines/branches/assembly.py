@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..continuation.engine import Engine, Solved
+from ..events.segment import Segment
 from .branch import Branch
-from .continuation.engine import Engine, Solved
-from .events.segment import Segment
-from .half import Half
+from .half_branch import HalfBranch
 
 APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
 MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
 
 
-def filled(engine: Engine, half: Half, origin: int | None = None) -> Half:
+def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfBranch:
     """The half with a solved point between neighbouring special points, or ends, that have none between them."""
     special = {i for i, _ in half.events} | {0, len(half) - 1}
     if origin is not None:
@@ -83,7 +83,7 @@ def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
 def make_branch(
     label: str,
     engine: Engine,
-    half: Half,
+    half: HalfBranch,
     real: bool,
     ended: tuple[str, str],
     closed: bool,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .continuation.engine import Engine, Solved
+from ..continuation.engine import Engine, Solved
 
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
 

@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from .continuation.engine import Engine, Solved
-from .continuation.status import Status
-from .continuation.trace import Retrace, chunks
-from .events.examine import Located
-from .events.leaps import ends_branch
-from .events.watch import Watch
-from .half import Half, Piece, piece_of, single
+from ..continuation.engine import Engine, Solved
+from ..continuation.status import Status
+from ..continuation.trace import Retrace, chunks
+from ..events.examine import Located
+from ..events.leaps import ends_branch
+from ..events.watch import Watch
+from .half_branch import HalfBranch, Piece, piece_of, single
 
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 
 
-def follow(
+def trace_half(
     engine: Engine,
     start: Solved,
     watch: Watch,
@@ -29,7 +29,7 @@ def follow(
     first_step: float | None = None,
     notice: Callable[[int, float], None] | None = None,
     origin: Solved | None = None,
-) -> Half:
+) -> HalfBranch:
     """Follow a branch from a point in the direction of its tangent until it ends.
 
     A real branch ends at its first border, a virtual one where all margins are positive again; both end where they come
@@ -107,7 +107,7 @@ def follow(
 
 def _opening(
     engine: Engine, origin: Solved, start: Solved, watch: Watch, journal: Any, key: str, real: bool
-) -> Half:
+) -> HalfBranch:
     """From a special point to the first point of a branch that leaves it."""
     known = journal.recall(key)
     if known is None:

@@ -1,0 +1,191 @@
+"""Branch: an ordered family of solutions of one problem."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..problems.registry import without_problem
+
+
+@dataclass(eq=False)
+class Branch:
+    """A branch of solutions, in order along the curve, special points included.
+
+    Attributes
+    ----------
+    label : str
+    problem : Problem or None
+        None after loading a graph whose problem came from a Python callable.
+    points : ndarray, shape (n, N)
+    values : ndarray, shape (n,)
+        Parameter values.
+    tangents : ndarray, shape (n, N + 1)
+        Unit tangents (in the metric of the continuation), all pointing forward along the stored order.
+    multipliers : ndarray of complex, shape (n, m)
+        Of the full period (eigenvalues for flows).
+    margin : ndarray, shape (n,)
+        Smallest margin, +inf for a problem without margins.
+    stable : ndarray of bool, shape (n,)
+        A special point counts as stable when one of its neighbours is.
+    real : bool
+        False: beyond a border, no machine follows it.
+    ended : (str, str)
+        Why the branch ends, at its first and at its last point.
+    closed : bool
+        The last point is the first one again (modulo the shift by a period).
+    seed : str or None
+        Label of the special point from which the branch was reached.
+    marks : tuple of (int, str)
+        Index and label of each special point on the branch, in order.
+    description : dict
+        What ``problem.describe()`` said.
+    parameter : str
+    """
+
+    label: str
+    problem: Any = field(repr=False)
+    points: np.ndarray = field(repr=False)
+    values: np.ndarray = field(repr=False)
+    tangents: np.ndarray = field(repr=False)
+    multipliers: np.ndarray = field(repr=False)
+    margin: np.ndarray = field(repr=False)
+    stable: np.ndarray = field(repr=False)
+    real: bool = True
+    ended: tuple[str, str] = ("", "")
+    closed: bool = False
+    seed: str | None = None
+    marks: tuple[tuple[int, str], ...] = ()
+    description: dict[str, Any] = field(default_factory=dict, repr=False)
+    parameter: str = "p"
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __repr__(self) -> str:
+        lo, hi = self.range
+        return f"Branch({self.label}: {len(self)} points, {self.parameter} in [{lo:.6g}, {hi:.6g}])"
+
+    def _repr_html_(self) -> str:
+        from ..graph.table import Table, describe, ends, number
+
+        intervals = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in self.stable_intervals()) or "-"
+        low, high = self.range
+        rows = [
+            ("what", describe(self)),
+            (self.parameter, f"{number(low, 10)}..{number(high, 10)}"),
+            ("stable", intervals),
+            ("points", str(len(self))),
+            ("from .. to", ends(self)),
+            ("special points", ", ".join(label for _, label in self.marks) or "-"),
+        ]
+        return Table((self.label, "branch"), rows).html()
+
+    def to_pandas(self) -> Any:
+        """The points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
+        from ..export.frames import branch_frame
+
+        return branch_frame(self)
+
+    def to_xarray(self) -> Any:
+        """The branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
+        from ..export.frames import branch_dataset
+
+        return branch_dataset(self)
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Smallest and largest parameter value."""
+        return float(np.min(self.values)), float(np.max(self.values))
+
+    def pieces(self) -> list[tuple[int, int, bool]]:
+        """Runs of equal stability: (first, last, stable) with inclusive indices, neighbours sharing a point."""
+        n = len(self)
+        if n < 2:
+            return [(0, n - 1, bool(self.stable[0]))] if n else []
+        segment = self.stable[:-1] & self.stable[1:]  # segment i joins point i to point i + 1
+        breaks = np.flatnonzero(segment[1:] != segment[:-1]) + 1
+        starts = [0, *breaks.tolist()]
+        stops = [*breaks.tolist(), n - 1]
+        return [(a, b, bool(segment[a])) for a, b in zip(starts, stops, strict=True)]
+
+    def stable_intervals(self) -> list[tuple[float, float]]:
+        """Parameter intervals of the stable pieces, each with its ends in increasing order."""
+        intervals = []
+        for first, last, stable in self.pieces():
+            if stable:
+                part = self.values[first : last + 1]
+                intervals.append((float(part.min()), float(part.max())))
+        return intervals
+
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Names that `measure` knows beside the parameter's own; without a problem only ``norm``."""
+        names = getattr(self.problem, "measure_names", None) or ("norm",)
+        return tuple(str(name) for name in names if name != self.parameter)
+
+    def measure(self, name: str) -> np.ndarray:
+        """A measure along the branch, shape (n,). The parameter's own name is a measure, too."""
+        return self.measure_of(name, self.points, self.values)
+
+    def measure_of(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """A measure of other solutions of this branch's problem: `u` of shape (m, N), `p` and the result of shape (m,)."""
+        if name == self.parameter:
+            return np.asarray(p, dtype=float)
+        if self.problem is None:
+            return _bare_measure(self.label, name, u)
+        return self.problem.measures((name,), u, p)[name]
+
+    def orbit(self, i: int) -> Any:
+        """The solution at point i as the object that the problem hands to users."""
+        if self.problem is None:
+            raise ValueError(without_problem(self.label, self.description))
+        n = len(self)
+        if not -n <= i < n:
+            raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
+        return self.problem.orbit(self.points[i], float(self.values[i]))
+
+    def prove(self, within: tuple[float, float] | None = None, bits: int | None = None) -> Any:
+        """Prove the branch between its special points, or the part of it ``within`` an interval of the parameter.
+
+        Raises
+        ------
+        ValueError
+            If the problem has no proofs.
+        """
+        prove = getattr(self.problem, "prove_branch", None)
+        if prove is None:
+            raise ValueError(
+                f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
+            )
+        return prove(self.points, self.values, [i for i, _ in self.marks], within)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry of this branch in the JSON of a graph."""
+        about = self.description
+        return {
+            "label": self.label,
+            "word": about.get("word"),
+            "periods": about.get("periods"),
+            "impacts": about.get("impacts"),
+            "symmetric": about.get("symmetric"),
+            "real": bool(self.real),
+            "range": list(self.range),
+            "points": len(self),
+            "stable": [list(interval) for interval in self.stable_intervals()],
+            "ended": list(self.ended),
+            "closed": bool(self.closed),
+            "seed": self.seed,
+        }
+
+
+def _bare_measure(label: str, name: str, u: np.ndarray) -> np.ndarray:
+    if name == "norm":
+        return np.linalg.norm(u, axis=1)
+    if name.startswith("u") and name[1:].isdigit() and int(name[1:]) < u.shape[1]:
+        return u[:, int(name[1:])]
+    raise KeyError(
+        f"{label} was loaded without its problem; only norm and u0, u1 ... can be measured, not {name!r}"
+    )

@@ -1,0 +1,154 @@
+"""SpecialPoint: a located bifurcation, border or end, with its evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..problems.registry import without_problem
+
+
+@dataclass(eq=False)
+class SpecialPoint:
+    """A special point of a branch.
+
+    Attributes
+    ----------
+    label : str
+        Short and stable: LP1, SB1, PD1 ...
+    kind : str
+        See :mod:`contvines.events.kinds`.
+    branch : str
+        Label of the branch on which it was located.
+    value : float
+        Parameter value.
+    parameter : str
+        Name of the parameter.
+    u : ndarray, shape (N,)
+        The solution, in the unknowns of the branch's problem.
+    tangent : ndarray, shape (N + 1,)
+        Unit tangent of the branch, in the order in which the branch is stored.
+    multipliers : ndarray of complex
+        Of the full period (eigenvalues for flows).
+    margins : float
+        Smallest margin; +inf for a problem without margins.
+    bracket : (float, float)
+        Parameter values between which the point was bracketed when first seen.
+    residual : float
+        Largest absolute residual at the point.
+    location_error : float
+        Estimated error of ``value``.
+    real : bool
+        All margins positive (a border point itself counts as real).
+    criticality : {"supercritical", "subcritical"} or None
+    coefficient : float or None
+        Normal-form coefficient (see :mod:`contvines.switching.normal_forms`).
+    replay : float or None
+        Replay error by simulation.
+    multipliers_beyond : ndarray of complex or None
+        At a border: multipliers of the solution on the other side.
+    mirror : bool
+        The branch that leaves here has a mirror image that is not traced.
+    note : str
+    margin_index : int or None
+        Column of the margin that vanishes at a border.
+    index : int
+        Index of the point in the arrays of its branch.
+    problem : Problem or None
+        None after loading a graph whose problem came from a Python callable.
+    """
+
+    label: str
+    kind: str
+    branch: str
+    value: float
+    parameter: str
+    u: np.ndarray = field(repr=False)
+    tangent: np.ndarray = field(repr=False)
+    multipliers: np.ndarray = field(repr=False)
+    margins: float = float("inf")
+    bracket: tuple[float, float] = (float("nan"), float("nan"))
+    residual: float = 0.0
+    location_error: float = 0.0
+    real: bool = True
+    criticality: str | None = None
+    coefficient: float | None = None
+    replay: float | None = None
+    multipliers_beyond: np.ndarray | None = field(default=None, repr=False)
+    mirror: bool = False
+    note: str = ""
+    margin_index: int | None = None
+    index: int = -1
+    problem: Any = field(default=None, repr=False)
+
+    @property
+    def orbit(self) -> Any:
+        """The solution as the object that its problem hands to users."""
+        if self.problem is None:
+            raise ValueError(without_problem(self.label))
+        return self.problem.orbit(self.u, self.value)
+
+    def plot(self, **options: Any) -> Any:
+        """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
+        from ..plots.portrait import plot_portrait
+
+        return plot_portrait(self.orbit, **options)
+
+    def _repr_html_(self) -> str:
+        from ..graph.table import Table, number
+
+        sizes = ", ".join(
+            number(m.real, 8) + (f" {'+' if m.imag > 0 else '-'} {number(abs(m.imag), 8)}i" if m.imag else "")
+            for m in self.multipliers[:8]
+        )
+        rows = [
+            (
+                "kind",
+                " ".join(filter(None, (self.criticality or "", self.kind, "" if self.real else "(virtual)"))),
+            ),
+            ("on", self.branch),
+            (self.parameter, number(self.value, 14)),
+            ("located to", number(self.location_error, 2)),
+            ("multipliers", sizes or "-"),
+            *([("note", self.note)] if self.note else []),
+        ]
+        return Table((self.label, "special point"), rows).html()
+
+    def prove(self, **options: Any) -> Any:
+        """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.
+
+        Raises
+        ------
+        ValueError
+            If the problem has no proofs.
+        """
+        prove = getattr(self.problem, "prove", None)
+        if prove is None:
+            raise ValueError(
+                f"{self.label}: its problem offers no proofs; machines of orbits with flights in closed form do"
+            )
+        return prove(self.kind, self.u, self.value, margin=self.margin_index, **options)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry of this point in the JSON of a graph."""
+        return {
+            "label": self.label,
+            "kind": self.kind,
+            "branch": self.branch,
+            "value": {self.parameter: float(self.value)},
+            "multipliers": [[float(m.real), float(m.imag)] for m in self.multipliers],
+            "real": bool(self.real),
+            "criticality": self.criticality,
+            "residual": float(self.residual),
+            "replay": None if self.replay is None else float(self.replay),
+            "coefficient": None if self.coefficient is None else float(self.coefficient),
+            "location_error": float(self.location_error),
+            "bracket": [float(self.bracket[0]), float(self.bracket[1])],
+            "multipliers_beyond": None
+            if self.multipliers_beyond is None
+            else [[float(m.real), float(m.imag)] for m in self.multipliers_beyond],
+            "mirror": bool(self.mirror),
+            "note": self.note,
+        }

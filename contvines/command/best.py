@@ -1,0 +1,181 @@
+"""`contvines survey STUDY.toml --best "lowest worst-case peak" --over half_width`: a survey, its best, and the optimum near it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from contvines.command.study import Study
+
+LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
+WORST = ("worst-case", "worst", "robust")
+FORM = '"lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak" would do'
+
+
+def read_wish(text: str) -> tuple[bool, float | None, str]:
+    """Whether the largest is wanted, which quantile over the samples (None: the worst), and of which outcome.
+
+    Raises
+    ------
+    ValueError
+        If the text cannot be read.
+    """
+    words = text.replace("%", " % ").split()
+    if len(words) < 2 or words[0] not in LOW + HIGH:
+        raise ValueError(f"--best {text!r} cannot be read; {FORM}.")
+    rest, quantile = words[1:], None
+    while (rest and rest[0] in (*WORST, "%", "quantile", "of")) or (
+        rest and re.fullmatch(r"\d+(\.\d+)?", rest[0])
+    ):
+        if re.fullmatch(r"\d+(\.\d+)?", rest[0]):
+            quantile = float(rest[0]) / 100.0
+            if not 0.0 < quantile <= 1.0:
+                raise ValueError(
+                    f"--best {text!r}: {rest[0]} % is no quantile; a number above 0 and at most 100 would do."
+                )
+        rest = rest[1:]
+    if len(rest) != 1:
+        raise ValueError(f"--best {text!r} names {'no' if not rest else 'more than one'} outcome; {FORM}.")
+    return words[0] in HIGH, quantile, rest[0]
+
+
+def choose(
+    study: Study,
+    text: str,
+    over: list[str],
+    target: Path,
+    workers: int | None,
+    cluster: str | None,
+    plot: Path | None,
+    json_: bool,
+    quiet: bool,
+) -> None:
+    """Survey, choose, refine, and say what is sacrificed."""
+    import dataclasses
+
+    from contvines.command.compose import say
+    from contvines.command.survey import surveyed
+    from contvines.command.survey_study import family_of, outcomes_of, plan_and_machine, units_of
+    from contvines.survey.work import Job, work
+    from orbits.design import best
+
+    largest, quantile, outcome = read_wish(text)
+    plan, model = plan_and_machine(study)
+    over = over or list(plan.axes)
+    if sorted(over) != sorted(plan.axes):
+        raise ValueError(
+            f"--over {' '.join(over)}: [survey] vary has {', '.join(plan.axes) or 'nothing'} on a grid, and each of it is chosen; "
+            "what is uncertain is sampled (uniform, normal)."
+        )
+    if len(over) > 2:
+        raise ValueError(f"--over {' '.join(over)}: one or two parameters can be chosen at a time.")
+    if outcome.partition(":")[0] not in ("stable", "first", "share") and outcome not in study.survey.outcomes:
+        known = {"peak_at": "peak", "lower_peak_at": "lower_peak"}
+        if known.get(outcome, outcome) not in study.survey.outcomes and not _comes(outcome, study):
+            survey = study.survey.model_copy(update={"outcomes": [*study.survey.outcomes, outcome]})
+            study = dataclasses.replace(study, survey=survey)
+    found = surveyed(study, target, workers, cluster, quiet)
+    if outcome not in found.columns:
+        raise ValueError(
+            f"--best {text!r}: the survey has no outcome {outcome}; it has {', '.join(found.columns) or 'none'}."
+        )
+    job = Job(
+        family_of(study, model), study.parameter, study.within, tuple(outcomes_of(study)), study.survey.gaps, study.survey.values,
+        study.survey.starts, {"depth": study.depth, "virtual": study.virtual, "settings": study.settings},
+    )  # fmt: skip
+
+    def evaluate(values: dict[str, float]) -> dict[str, float]:
+        row = work(job, 0, values)
+        if row.note:
+            raise ValueError(row.note)
+        return row.columns
+
+    drawn = [{}]
+    if plan.samples:
+        drawn = [{name: float(v[i]) for name, v in plan.samples.items()} for i in range(plan.shape[-1])]
+    known = _known(found, outcome, largest, quantile)
+    limits = {name: (float(plan.axes[name][0]), float(plan.axes[name][-1])) for name in plan.axes}
+    choice = best(
+        evaluate, outcome, limits, largest=largest, tolerances=drawn, quantile=quantile, known=known
+    )
+    units = units_of(study, model)
+    if json_:
+        from contvines.export import json_text
+
+        names = {*choice.values, *choice.others, outcome}
+        said = {name: unit for name, unit in units.items() if name in names}
+        about = {
+            "best": choice.values,
+            outcome: choice.outcome,
+            "others": choice.others,
+            **({"units": said} if said else {}),
+        }
+        typer.echo(json_text(about))
+    elif not quiet:
+        typer.echo(_told(choice, outcome, found, units, largest))
+    if plot is not None:
+        from contvines.plots.figures import save_figure
+
+        figure = found.plot(outcome)
+        axes = figure.axes[0]
+        place = [choice.values[name] for name in plan.axes]
+        axes.plot(
+            place[0],
+            place[1] if len(place) == 2 else choice.outcome,
+            "*",
+            color="#b5121b",
+            markersize=14,
+            markeredgecolor="white",
+        )
+        save_figure(figure, plot)
+        say(f"drawn in {plot}", quiet)
+
+
+def _comes(outcome: str, study: Any) -> bool:
+    """Whether an outcome of the study has this column beside its own name."""
+    belongs = {"activation": ("activation_from_below", "activation_from_above"), "dissipation": ("impact_power", "friction_power"), "pumping": ("pumping_time", "pumped_share")}  # fmt: skip
+    prefix = [said.replace(":", "_") for said in study.survey.outcomes if ":" in said]
+    return any(outcome in belongs.get(said, ()) for said in study.survey.outcomes) or any(
+        outcome.startswith(start) for start in prefix
+    )
+
+
+def _known(
+    found: Any, outcome: str, largest: bool, quantile: float | None
+) -> list[tuple[dict[str, float], float]]:
+    """The survey's points and their outcomes over the samples."""
+    import itertools
+
+    import numpy as np
+
+    value = found[outcome] * (-1.0 if largest else 1.0)
+    if found.plan.samples:
+        value = value.max(axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
+    points = itertools.product(*found.plan.axes.values())
+    flat = value.ravel() * (-1.0 if largest else 1.0)
+    return [(dict(zip(found.plan.axes, map(float, point))), float(v)) for point, v in zip(points, flat)]
+
+
+def _told(choice: Any, outcome: str, found: Any, units: dict[str, str], largest: bool) -> str:
+    """The choice, and what it costs: the other outcomes beside the best that each could be on the grid."""
+    import numpy as np
+
+    def shown(name: str, value: float) -> str:
+        return f"{value:.6g} {units.get(name, '')}".rstrip()
+
+    lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
+    lines.append(
+        f"{outcome} = {shown(outcome, choice.outcome)}, the {'largest' if largest else 'lowest'} that was found"
+    )
+    if choice.others:
+        lines += ["", "there, beside it (and from ... to ... over the survey):"]
+        for name, value in choice.others.items():
+            column = found.columns.get(name)
+            known = column[np.isfinite(column)] if column is not None else np.array([])
+            span = f"  ({known.min():.6g} to {known.max():.6g})" if known.size else ""
+            lines.append(f"  {name} = {shown(name, value)}{span}")
+    return "\n".join(lines)

@@ -1,0 +1,47 @@
+"""Outcomes of a survey that only machines have: what impacts and friction dissipate, and how fast a free motion decays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from contvines.survey.outcomes import Findings, Outcome
+
+
+def dissipation(found: Findings) -> dict[str, float]:
+    """Power that impacts and friction dissipate where the stable response of the diagram is largest."""
+    from contvines.survey.outcomes import highest, stretches
+
+    tops = [(highest(stretch), stretch) for stretch in stretches(found.graph)]
+    if not tops:
+        return {"impact_power": np.nan, "friction_power": np.nan}
+    (_, _, index), stretch = max(tops, key=lambda top: top[0][0])
+    orbit: Any = stretch.branch.orbit(index)
+    period = 2.0 * np.pi * orbit.periods / orbit.parameters["frequency"]
+    seconds = period * float(orbit.model.gauge("time", orbit.params))
+    return {f"{name}_power": orbit.measure(f"{name}_loss") / seconds for name in ("impact", "friction")}
+
+
+def pumping(found: Findings) -> dict[str, float]:
+    """How long a free decay takes to lose nine tenths of its energy, and the absorber's share of what is lost.
+
+    It starts from the displacement that is the largest of the stable responses of the diagram, the absorber at rest in the middle.
+    """
+    from contvines.survey.outcomes import peak
+    from orbits.design.transients import free_decay
+
+    model = found.seed.model
+    height = peak(found)["peak"] / float(model.gauge("length", found.seed.params))
+    if not np.isfinite(height):
+        return {"pumping_time": np.nan, "pumped_share": np.nan}
+    decay = free_decay(model, found.seed.params, height)
+    return {
+        "pumping_time": decay.pumping_time * float(model.gauge("time", found.seed.params)),
+        "pumped_share": decay.absorber_share,
+    }
+
+
+OWN: dict[str, Outcome] = {"dissipation": dissipation, "pumping": pumping}
+UNITS = {"impact_power": "mW", "friction_power": "mW", "pumping_time": "s"}

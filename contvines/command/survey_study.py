@@ -1,0 +1,167 @@
+"""What a study's `[survey]` means: its plan, its family of machines, its outcomes and their units."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from contvines.command.study import Study
+    from contvines.survey.plan import Plan
+
+TEXTS = ("within", "values", "normal", "uniform")
+
+
+def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tuple[Plan, Any]:
+    """The plan of a study's survey, and its machine, which tells what varies.
+
+    Raises
+    ------
+    ValueError
+        If the plan cannot be; the sentence names the field, the value and what would do.
+    """
+    from contvines.command.compose import machine
+    from contvines.command.schema import PARAMETERS
+    from contvines.command.sentences import did_you_mean
+    from contvines.survey import planned
+
+    said = dict(study.survey.vary if vary is None else vary)
+    model = machine(study)
+    known = list(model.tables.QUANTITIES) if study.quantities else list(PARAMETERS[study.name])
+    for name in said:
+        if name not in known:
+            raise ValueError(
+                f"{study.path}: [survey] vary.{name}: the model {study.name!r} has no such parameter"
+                f"{did_you_mean(name, known)}; it has {', '.join(known)}."
+            )
+        if name == study.parameter:
+            raise ValueError(
+                f"{study.path}: [survey] vary.{name}: every diagram runs over {name} already; vary something else."
+            )
+        if study.quantities:
+            model = model.told_by(name)
+            said[name] = _numbers(model, name, said[name], f"{study.path}: [survey] vary.{name}")
+    try:
+        return planned(said, study.survey.sampling, study.survey.samples, study.survey.seed), model
+    except ValueError as error:
+        raise ValueError(f"{study.path}: {error}.") from None
+
+
+def family_of(study: Study, model: Any) -> Any:
+    """The machines of a study's survey."""
+    from contvines.command.compose import loose
+    from orbits.design import Family
+
+    return Family(
+        model, study.word, study.periods, study.guess, loose(study), over=study.parameter, within=study.within
+    )
+
+
+def outcomes_of(study: Study) -> list[Any]:
+    """A survey's outcomes, the machine's own and the user's among them.
+
+    Raises
+    ------
+    ValueError
+        If a name or a file is unknown.
+    """
+    from contvines.command.machine_outcomes import OWN
+    from contvines.survey.survey import outcome_named
+
+    found = []
+    for said in study.survey.outcomes:
+        file, _, function = said.rpartition(":")
+        try:
+            if file.endswith(".py"):
+                found.append(UserOutcome.of(study.path.parent / file, function))
+            else:
+                found.append(outcome_named(said, OWN))
+        except ValueError as error:
+            raise ValueError(f"{study.path}: {error}.") from None
+    return found
+
+
+def units_of(study: Study, model: Any) -> dict[str, str]:
+    """Units of parameters and outcomes."""
+    from contvines.command.machine_outcomes import UNITS
+
+    units = dict(model.units)
+    if not units:
+        return {}
+    over, shown = units.get(study.parameter, ""), units.get(model.default_measure, "")
+    units |= dict.fromkeys(("peak", "lower_peak"), shown) | UNITS
+    units |= dict.fromkeys(
+        ("peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"), over
+    )
+    for said in study.survey.outcomes:
+        kind, _, rest = said.partition(":")
+        if kind == "stable":
+            units |= dict.fromkeys((f"stable_{rest}", f"stable_{rest}_from", f"stable_{rest}_to"), over)
+        elif kind == "first":
+            units[f"first_{rest}"] = over
+    return units
+
+
+@dataclass(frozen=True)
+class UserOutcome:
+    """A function of a Python file; it is imported where it is called, in worker processes too."""
+
+    path: str
+    function: str
+
+    @classmethod
+    def of(cls, path: Path, function: str) -> UserOutcome:
+        """The function, if the file has it.
+
+        Raises
+        ------
+        ValueError
+            If it has not.
+        """
+        if not path.is_file():
+            raise ValueError(f"[survey] outcomes: there is no file {path}")
+        if not callable(getattr(_module(str(path)), function, None)):
+            raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
+        return cls(str(path.resolve()), function)
+
+    def __call__(self, found: Any) -> Mapping[str, float]:
+        value = getattr(_module(self.path), self.function)(found)
+        return value if isinstance(value, Mapping) else {self.function: float(value)}
+
+
+@cache
+def _module(path: str) -> Any:
+    spec = importlib.util.spec_from_file_location(f"outcomes_{Path(path).stem}", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise ValueError(
+            f"[survey] outcomes: {path} cannot be run ({type(error).__name__}: {error})"
+        ) from None
+    return module
+
+
+def _numbers(model: Any, name: str, said: Any, place: str) -> Any:
+    """Quantities as numbers counted in the machine's unit."""
+    from contvines.command.physical_study import number_of
+
+    def read(values: Any, where: str) -> Any:
+        if not isinstance(values, list):
+            return values
+        found = []
+        for i, value in enumerate(values):
+            number, refusal = number_of(model, name, value, f"{where}[{i}]")
+            if refusal:
+                raise ValueError(refusal)
+            found.append(number)
+        return found
+
+    if isinstance(said, dict):
+        return {key: read(value, f"{place}.{key}") if key in TEXTS else value for key, value in said.items()}
+    return read(said, place)

@@ -1,0 +1,147 @@
+"""Pictures of surveys: a curve over one parameter with bands of what is uncertain, a map over two with contours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .figures import new_axes, styled
+from .style import axis_label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..survey.results import Survey
+
+BANDS = ((0.0, 1.0, 0.16, "all samples"), (0.025, 0.975, 0.30, "95 %"), (0.25, 0.75, 0.45, "half of them"))
+BLUE, RED = "#0b3c6f", "#b5121b"
+
+
+def plot_survey(
+    survey: Survey,
+    outcome: str | None = None,
+    *,
+    axes: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
+    style: Any = None,
+) -> Figure:
+    """Draw an outcome of a survey.
+
+    Over one axis: a curve; with samples their median and bands. Over two axes: a map with contours, with samples of their worst
+    (largest) value. Samples alone: a dot per sample over each uncertain parameter.
+
+    Parameters
+    ----------
+    survey : Survey
+    outcome : str, optional
+        By default the first.
+    axes : Axes, optional
+        Drawn on; not for samples alone over several parameters.
+    figsize, style
+        As for `contvines.plots.diagram.plot_diagram`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such outcome, or more than two axes vary.
+    """
+    if not survey.columns:
+        raise ValueError("the survey has no outcome to draw: all of its systems failed; the notes say why")
+    name = outcome or next(iter(survey.columns))
+    if name not in survey.columns:
+        raise ValueError(f"{name}: the survey has no such outcome; it has {', '.join(survey.columns)}")
+    along = list(survey.plan.axes)
+    if len(along) > 2:
+        raise ValueError(
+            f"a picture shows one or two axes, the survey has {', '.join(along)}; vary fewer at a time"
+        )
+    with styled(style):
+        if not along:
+            return _samples(survey, name, figsize)
+        figure, axes = new_axes(axes, figsize=figsize)
+        if len(along) == 1:
+            _curve(axes, survey, name, along[0])
+        else:
+            _map(figure, axes, survey, name, along)
+        failed = survey.failed
+        if failed:
+            axes.set_title(f"{failed} of {len(survey.plan)} systems failed", color="0.4", fontsize="medium")
+    return figure
+
+
+def label_of(survey: Survey, name: str) -> str:
+    """An axis label: outcomes in words."""
+    words = {
+        "peak": "largest response, worst of the coexisting",
+        "lower_peak": "largest response, best of the coexisting",
+        "peak_at": "where the largest response is",
+        "covered": "share of the interval with a stable response",
+    }
+    unit = survey.units.get(name, "")
+    if name in words:
+        return f"{words[name]} [{unit}]" if unit else words[name]
+    return axis_label(name, unit=unit)
+
+
+def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
+    x, values = survey.plan.axes[over], survey.columns[name]
+    if survey.plan.samples:
+        known = np.where(np.isfinite(values), values, np.nan)
+        for low, high, strength, label in BANDS:
+            lower, upper = _quantiles(known, (low, high))
+            axes.fill_between(x, lower, upper, color=BLUE, alpha=strength, lw=0, label=label)
+        axes.plot(x, _quantiles(known, (0.5,))[0], color=BLUE, label="median")
+        axes.legend(loc="best")
+    else:
+        axes.plot(x, values, "o-", color=BLUE, markersize=3.5)
+    axes.set_xlabel(label_of(survey, over))
+    axes.set_ylabel(label_of(survey, name))
+
+
+def _quantiles(values: np.ndarray, shares: tuple[float, ...]) -> np.ndarray:
+    """Quantiles of the numbers in each row; no number where a row has none."""
+    found = np.full((len(shares), len(values)), np.nan)
+    for i, row in enumerate(values):
+        known = row[np.isfinite(row)]
+        if known.size:
+            found[:, i] = np.quantile(known, shares)
+    return found
+
+
+def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]) -> None:
+    x, y = (survey.plan.axes[n] for n in along)
+    values = survey.columns[name]
+    if survey.plan.samples:
+        values = np.where(
+            np.isnan(values).all(axis=-1), np.nan, np.nanmax(np.nan_to_num(values, nan=-np.inf), axis=-1)
+        )
+    shown = np.ma.masked_invalid(values.T)
+    colours = axes.pcolormesh(x, y, shown, cmap="viridis", shading="nearest", rasterized=True)
+    bar = figure.colorbar(colours, ax=axes)
+    bar.set_label(label_of(survey, name) + (", worst sample" if survey.plan.samples else ""))
+    known = shown.compressed()
+    if min(shown.shape) > 1 and known.size and known.max() > known.min():
+        lines = axes.contour(x, y, shown, levels=7, colors="white", linewidths=1.0)
+        axes.clabel(lines, fmt="%.4g", fontsize=8)
+    lost = np.argwhere(survey.notes.reshape(*survey.plan.shape[:2], -1)[..., 0] != "")
+    if len(lost):
+        axes.plot(x[lost[:, 0]], y[lost[:, 1]], "x", color=RED, label="failed", linestyle="none")
+        axes.legend(loc="best")
+    axes.set_xlabel(label_of(survey, along[0]))
+    axes.set_ylabel(label_of(survey, along[1]))
+    axes.grid(False)
+
+
+def _samples(survey: Survey, name: str, figsize: tuple[float, float] | None) -> Figure:
+    from .figures import new_figure
+
+    drawn = survey.plan.samples
+    figure = new_figure(figsize=figsize or (3.2 * len(drawn) + 1.0, 3.6))
+    panels = np.atleast_1d(figure.subplots(1, len(drawn), sharey=True))
+    for panel, (parameter, values) in zip(panels, drawn.items()):
+        panel.plot(values, survey.columns[name], "o", color=BLUE, markersize=3.5)
+        panel.set_xlabel(label_of(survey, parameter))
+    panels[0].set_ylabel(label_of(survey, name))
+    return figure

@@ -1,0 +1,199 @@
+"""Which systems a survey looks at: grids and lists, and samples of what is not known exactly."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+SAMPLINGS = ("latin", "sobol", "random")
+MOST = 1_000_000
+KEYS = ("within", "count", "values", "normal", "uniform")
+
+
+class PlanError(ValueError):
+    """A survey that cannot be planned; the sentence names the field, the value and what would do."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The systems of a survey: every combination of the axes, each with every sample.
+
+    Attributes
+    ----------
+    axes : dict
+        Values of each parameter on a grid, in order.
+    samples : dict
+        Sampled values of each uncertain parameter, all of one length; empty where nothing is uncertain.
+    """
+
+    axes: dict[str, np.ndarray]
+    samples: dict[str, np.ndarray]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters that vary."""
+        return (*self.axes, *self.samples)
+
+    @property
+    def dimensions(self) -> tuple[str, ...]:
+        """Names of the results' dimensions: the axes, and ``sample`` where there are samples."""
+        return (*self.axes, *(("sample",) if self.samples else ()))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of the dimensions."""
+        sampled = [len(next(iter(self.samples.values())))] if self.samples else []
+        return (*(len(values) for values in self.axes.values()), *sampled)
+
+    def __len__(self) -> int:
+        return int(np.prod(self.shape))
+
+    def systems(self) -> list[dict[str, float]]:
+        """Values of the parameters of each system, the last dimension running fastest."""
+        found = []
+        count = self.shape[-1] if self.samples else 1
+        for point in itertools.product(*self.axes.values()):
+            for i in range(count):
+                drawn = {name: float(values[i]) for name, values in self.samples.items()}
+                found.append({**{name: float(x) for name, x in zip(self.axes, point)}, **drawn})
+        return found
+
+    def neighbours(self) -> list[int | None]:
+        """For each system an earlier one that differs from it least in place: one step back along the last axis that moved."""
+        shape = self.shape
+        found: list[int | None] = []
+        for index in range(len(self)):
+            place = [int(k) for k in np.unravel_index(index, shape)]
+            axis = next((k for k in reversed(range(len(place))) if place[k] > 0), None)
+            if axis is None:
+                found.append(None)
+                continue
+            place[axis] = 0 if self.dimensions[axis] == "sample" else place[axis] - 1
+            found.append(int(np.ravel_multi_index(tuple(place), shape)))
+        return found
+
+
+def planned(vary: Mapping[str, Any], sampling: str = "latin", samples: int = 32, seed: int = 1) -> Plan:
+    """A plan from what a user says of each parameter.
+
+    Parameters
+    ----------
+    vary : mapping
+        Name -> a list of values; ``{"within": [low, high], "count": n}``, a grid; ``{"within": [low, high]}`` or
+        ``{"uniform": [low, high]}``, anywhere between; ``{"normal": [mean, deviation]}``, with ``within`` cut off there.
+    sampling : {"latin", "sobol", "random"}
+        How uncertain parameters are drawn, together.
+    samples : int
+        How many are drawn.
+    seed : int
+
+    Raises
+    ------
+    PlanError
+        With a sentence about the first thing that cannot be.
+    """
+    if not vary:
+        raise PlanError(
+            "[survey] vary is empty; name a parameter and its values, for example half_width = [10, 15]"
+        )
+    if sampling not in SAMPLINGS:
+        raise PlanError(
+            f"[survey] sampling = {sampling!r} is unknown; {', '.join(map(repr, SAMPLINGS))} would do"
+        )
+    if isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= MOST:
+        raise PlanError(f"[survey] samples = {samples!r}: a whole number from 1 to {MOST} would do")
+    axes: dict[str, np.ndarray] = {}
+    uncertain: dict[str, Any] = {}
+    for name, said in vary.items():
+        values = _axis(name, said)
+        if values is not None:
+            axes[name] = values
+        else:
+            uncertain[name] = _distribution(name, said)
+    drawn = _drawn(uncertain, sampling, samples, seed) if uncertain else {}
+    plan = Plan(axes, drawn)
+    if len(plan) > MOST:
+        raise PlanError(f"[survey] vary means {len(plan)} systems; at most {MOST} would do")
+    return plan
+
+
+def _axis(name: str, said: Any) -> np.ndarray | None:
+    """Values on an axis; None for an uncertain parameter."""
+    place = f"[survey] vary.{name}"
+    if isinstance(said, Mapping):
+        unknown = [key for key in said if key not in KEYS]
+        if unknown:
+            raise PlanError(f"{place}.{unknown[0]}: there is no such field; {', '.join(KEYS)} are known")
+        if "values" in said:
+            said = said["values"]
+        elif "count" in said:
+            low, high = _two(f"{place}.within", said.get("within"))
+            count = said["count"]
+            if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
+                raise PlanError(f"{place}.count = {count!r}: a whole number from 1 to {MOST} would do")
+            if not low < high:
+                raise PlanError(f"{place}.within = [{low:g}, {high:g}]: low < high would do")
+            return np.linspace(low, high, count)
+        else:
+            return None
+    if not isinstance(said, list | tuple | np.ndarray) or not len(said):
+        raise PlanError(f"{place} = {said!r}: a list of values, or within and count, would do")
+    return np.array([_number(f"{place}[{i}]", value) for i, value in enumerate(said)])
+
+
+def _distribution(name: str, said: Mapping[str, Any]) -> Any:
+    from scipy import stats
+
+    place = f"[survey] vary.{name}"
+    if "normal" in said:
+        mean, deviation = _two(f"{place}.normal", said["normal"])
+        if not deviation > 0.0:
+            raise PlanError(
+                f"{place}.normal = [{mean:g}, {deviation:g}]: [mean, deviation], the second above 0, would do"
+            )
+        if "within" not in said:
+            return stats.norm(mean, deviation)
+        low, high = _ends(place, "within", said)
+        return stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
+    key = "uniform" if "uniform" in said else "within"
+    low, high = _ends(place, key, said)
+    return stats.uniform(low, high - low)
+
+
+def _ends(place: str, key: str, said: Mapping[str, Any]) -> tuple[float, float]:
+    low, high = _two(f"{place}.{key}", said.get(key))
+    if not low < high:
+        raise PlanError(f"{place}.{key} = [{low:g}, {high:g}]: low < high would do")
+    return low, high
+
+
+def _drawn(uncertain: dict[str, Any], sampling: str, samples: int, seed: int) -> dict[str, np.ndarray]:
+    from scipy.stats import qmc
+
+    count = len(uncertain)
+    generator = np.random.default_rng(seed)
+    if sampling == "random":
+        places = generator.random((samples, count))
+    elif sampling == "sobol":
+        power = int(np.ceil(np.log2(samples)))
+        places = qmc.Sobol(count, rng=generator).random_base2(power)[:samples]
+    else:
+        places = qmc.LatinHypercube(count, rng=generator).random(samples)
+    places = np.clip(places, 1e-9, 1.0 - 1e-9)
+    return {name: np.asarray(law.ppf(places[:, i])) for i, (name, law) in enumerate(uncertain.items())}
+
+
+def _two(place: str, value: Any) -> tuple[float, float]:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise PlanError(f"{place} = {value!r}: two numbers would do")
+    return _number(f"{place}[0]", value[0]), _number(f"{place}[1]", value[1])
+
+
+def _number(place: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not np.isfinite(value):
+        raise PlanError(f"{place} = {value!r} is no finite number")
+    return float(value)

@@ -1,0 +1,115 @@
+"""Where the systems of a survey are worked on: in this process, in several of this machine, or on a dask cluster.
+
+All three run the same function on the same arguments, so the rows are the same bit for bit, in whatever order they come. A worker that is
+killed loses what it was working on, which another one does again.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from .plan import PlanError
+from .work import Job, Row, begin, work
+
+ATTEMPTS = 3  # at one system whose worker is lost
+LOST = (
+    "the process that worked on this system was lost {} times: it may need more memory than there is, or a script that calls for "
+    "several processes has no `if __name__ == '__main__':` before the call"
+)
+
+Task = tuple[int, dict[str, float], Any]
+
+
+def serial(job: Job, tasks: Sequence[Task]) -> Iterator[Row]:
+    """In this process, one after the other."""
+    for task in tasks:
+        yield work(job, *task)
+
+
+def pool(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
+    """In `workers` processes of this machine."""
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import get_context
+
+    left = {task[0]: task for task in tasks}
+    attempts = dict.fromkeys(left, 0)
+    context = get_context("spawn")
+    while left:
+        with ProcessPoolExecutor(min(workers, len(left)), mp_context=context, initializer=begin) as executor:
+            waiting = list(left.values())[::-1]
+            running: dict[Any, int] = {}
+            try:
+                while waiting or running:
+                    while waiting and len(running) < 2 * workers:
+                        task = waiting.pop()
+                        running[executor.submit(work, job, *task)] = task[0]
+                    done, _ = wait(running, return_when=FIRST_COMPLETED)
+                    for future in done:
+                        row = future.result()
+                        del running[future]
+                        del left[row.index]
+                        yield row
+            except BrokenProcessPool:
+                for index in running.values():
+                    attempts[index] += 1
+                    if attempts[index] >= ATTEMPTS and index in left:
+                        del left[index]
+                        yield Row(index, {}, LOST.format(ATTEMPTS))
+            finally:
+                for future in running:
+                    future.cancel()
+
+
+def cluster(job: Job, tasks: Sequence[Task], client: Any) -> Iterator[Row]:
+    """On a dask cluster; `client` is its address or a `distributed.Client`."""
+    from distributed import Client, as_completed
+    from distributed.scheduler import KilledWorker
+
+    own = isinstance(client, str)
+    if own:
+        try:
+            client = Client(client, timeout=10)
+        except (OSError, ValueError) as error:
+            raise PlanError(
+                f"--cluster {client}: there is no dask scheduler to be reached ({error})"
+            ) from None
+    try:
+        shared = client.scatter(job, broadcast=True, hash=False)
+        futures = {
+            client.submit(work, shared, *task, pure=False, retries=ATTEMPTS): task[0] for task in tasks
+        }
+        for future in as_completed(list(futures)):
+            index = futures.pop(future)
+            try:
+                yield future.result()
+            except KilledWorker:
+                yield Row(index, {}, LOST.format(ATTEMPTS))
+            future.release()
+    finally:
+        if own:
+            client.close()
+
+
+def cores() -> int:
+    """Number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def need_dask() -> None:
+    """Refuse a cluster where dask.distributed is not installed.
+
+    Raises
+    ------
+    PlanError
+    """
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise PlanError(
+            "--cluster needs dask.distributed, which is not installed: pip install 'contvines[surveys]'"
+        ) from None

@@ -1,0 +1,180 @@
+"""What a survey found: numbers over a grid and its samples, as arrays, NetCDF and CSV."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..graph.table import with_unit
+from .plan import Plan, PlanError
+from .work import Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """The outcomes of all systems of a plan.
+
+    Attributes
+    ----------
+    plan : Plan
+    columns : dict
+        Each outcome as an array of the plan's shape; no number where a system failed or has none.
+    notes : ndarray of str
+        Why a system failed; empty elsewhere.
+    units : dict
+        Of parameters and outcomes, where they have some.
+    about : dict
+        What was surveyed, JSON-able.
+    """
+
+    plan: Plan
+    columns: dict[str, np.ndarray]
+    notes: np.ndarray
+    units: dict[str, str] = field(default_factory=dict)
+    about: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, plan: Plan, rows: Sequence[Row], units: dict[str, str], about: dict[str, Any]) -> Survey:
+        """From rows in any order."""
+        ordered = sorted(rows, key=lambda row: row.index)
+        names = dict.fromkeys(name for row in ordered for name in row.columns)
+        columns = {}
+        for name in names:
+            values = np.full(len(plan), np.nan)
+            for row in ordered:
+                values[row.index] = row.columns.get(name, np.nan)
+            columns[name] = values.reshape(plan.shape)
+        notes = np.full(len(plan), "", dtype=object)
+        for row in ordered:
+            notes[row.index] = row.note
+        said = {name: units[name] for name in (*plan.names, *columns) if units.get(name)}
+        return cls(plan, columns, notes.reshape(plan.shape), said, about)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name in self.columns:
+            return self.columns[name]
+        raise KeyError(f"the survey has no outcome {name!r}; it has {', '.join(self.columns)}")
+
+    @property
+    def failed(self) -> int:
+        """Number of systems that failed."""
+        return int(np.count_nonzero(self.notes != ""))
+
+    def to_xarray(self) -> Any:
+        """An `xarray.Dataset`: a variable per outcome over the plan's dimensions, with units and the systems' notes."""
+        import xarray
+
+        dims = self.plan.dimensions
+        units = {name: {"units": unit} for name, unit in self.units.items()}
+        variables: dict[str, Any] = {
+            name: (dims, values, units.get(name, {})) for name, values in self.columns.items()
+        }
+        variables["note"] = (dims, self.notes.astype(str), {"long_name": "why the system failed"})
+        coords: dict[str, Any] = {
+            name: (name, values, units.get(name, {})) for name, values in self.plan.axes.items()
+        }
+        if self.plan.samples:
+            coords["sample"] = ("sample", np.arange(self.plan.shape[-1], dtype=np.int32))
+            coords |= {
+                name: ("sample", values, units.get(name, {})) for name, values in self.plan.samples.items()
+            }
+        return xarray.Dataset(variables, coords, {"about": json.dumps(self.about, sort_keys=True)})
+
+    def save(self, path: str | Path) -> None:
+        """Write NetCDF, and the same as CSV beside it; a file of that name is replaced in one step."""
+        path = Path(path)
+        draft = path.with_name(path.name + ".new")
+        self.to_xarray().to_netcdf(
+            draft, engine="scipy", format="NETCDF3_64BIT"
+        )  # needs no library of its own
+        os.replace(draft, path)
+        self.to_csv(path.with_suffix(".csv"))
+
+    def to_csv(self, path: str | Path) -> None:
+        """One row per system: its parameters, its outcomes, its note."""
+        with Path(path).open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            names = (*self.plan.names, *self.columns)
+            writer.writerow([*(with_unit(name, self.units.get(name)) for name in names), "note"])
+            flat = [values.ravel() for values in self.columns.values()]
+            for i, values in enumerate(self.plan.systems()):
+                cells = [repr(values[name]) for name in self.plan.names]
+                cells += [repr(float(column[i])) if np.isfinite(column[i]) else "" for column in flat]
+                writer.writerow([*cells, self.notes.ravel()[i]])
+
+    def plot(self, outcome: str | None = None, **options: Any) -> Figure:
+        """A curve over one axis, with bands where there are samples, or a map over two; see `contvines.plots.survey`."""
+        from ..plots.survey import plot_survey
+
+        return plot_survey(self, outcome, **options)
+
+    def best(
+        self, outcome: str, largest: bool = False, quantile: float | None = None
+    ) -> tuple[dict[str, float], float]:
+        """The point of the axes with the lowest (or largest) outcome, over the samples the worst, or this quantile of them.
+
+        A point at which a system failed or has no number is never the best.
+
+        Raises
+        ------
+        PlanError
+            If no point has a number.
+        """
+        value = self[outcome] if not largest else -self[outcome]
+        if self.plan.samples:
+            with np.errstate(invalid="ignore"):
+                value = np.max(value, axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
+        if not np.isfinite(value).any():
+            raise PlanError(f"no system of the survey has a number for {outcome}; the notes say why")
+        place = np.unravel_index(int(np.nanargmin(value)), value.shape)
+        point = {name: float(values[i]) for (name, values), i in zip(self.plan.axes.items(), place)}
+        found = float(value[place])
+        return point, -found if largest else found
+
+    def __str__(self) -> str:
+        lines = [f"{len(self.plan)} systems over {', '.join(self.plan.names)}"]
+        if self.failed:
+            lines[0] += f"; {self.failed} of them failed, the column note says why"
+        rows: list[tuple[str, ...]] = [("outcome", "smallest", "median", "largest", "unit")]
+        for name, values in self.columns.items():
+            known = values[np.isfinite(values)]
+            numbers = [f"{f(known):.6g}" if known.size else "-" for f in (np.min, np.median, np.max)]
+            rows.append((name, *numbers, self.units.get(name, "")))
+        widths = [max(len(row[i]) for row in rows) for i in range(5)]
+        lines += ["", *("  ".join(c.ljust(w) for c, w in zip(row, widths)).rstrip() for row in rows)]
+        return "\n".join(lines)
+
+
+def load_survey(path: str | Path) -> Survey:
+    """Read a survey from its NetCDF file.
+
+    Raises
+    ------
+    PlanError
+        If it is none.
+    """
+    import xarray
+
+    try:
+        with xarray.open_dataset(Path(path), engine="scipy") as data:
+            about = json.loads(data.attrs["about"])
+            axes = {name: data[name].values for name in about["axes"]}
+            samples = {name: data[name].values for name in about["samples"]}
+            columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
+            units = {str(n): str(v.attrs["units"]) for n, v in data.variables.items() if "units" in v.attrs}
+            notes = data["note"].values.astype(object)
+    except FileNotFoundError:
+        raise PlanError(f"{path}: there is no such file") from None
+    except (OSError, KeyError, ValueError) as error:
+        raise PlanError(f"{path}: this is not the NetCDF file of a survey ({error})") from None
+    return Survey(Plan(axes, samples), columns, notes, units, about)

@@ -1,0 +1,139 @@
+"""`survey`: the diagrams of many systems, and what comes out of them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from . import pools
+from .journal import Rows
+from .outcomes import MADE, PLAIN, Outcome
+from .plan import Plan, PlanError, planned
+from .results import Survey
+from .work import Job, Row
+
+
+def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outcome:
+    """The outcome that a name stands for.
+
+    Raises
+    ------
+    PlanError
+        If there is none.
+    """
+    known = {**PLAIN, **(more or {})}
+    if said in known:
+        return known[said]
+    kind, _, argument = said.partition(":")
+    if kind in MADE and argument:
+        return partial(MADE[kind], **{"word" if kind == "stable" else "kind": argument})
+    forms = [f"{name}:..." for name in MADE]
+    raise PlanError(f"[survey] outcomes: {said!r} is unknown; choose of {', '.join([*known, *forms])}")
+
+
+def survey(
+    family: Callable[[Mapping[str, float], Any], Any],
+    vary: Plan | Mapping[str, Any],
+    *,
+    over: str,
+    within: tuple[float, float],
+    outcomes: Sequence[str | Outcome] = ("peak",),
+    gaps: int = 5,
+    values: int = 0,
+    starts: int = 1,
+    workers: int | None = None,
+    cluster: Any = None,
+    journal: str | Path | None = None,
+    units: Mapping[str, str] | None = None,
+    about: Mapping[str, Any] | None = None,
+    progress: Callable[[Row], None] | None = None,
+    **options: Any,
+) -> Survey:
+    """A diagram of each of many systems.
+
+    Parameters
+    ----------
+    family : callable
+        ``family(values, near)``, what a diagram of the system with these values begins with; with members ``near(seed)``, what its
+        neighbours may begin with, and ``starts(values, neighbours)``, all of those in order (see `orbits.design.Family`).
+    vary : Plan or mapping
+        Which systems; see `planned`.
+    over, within
+        The parameter of the diagrams and its interval.
+    outcomes : sequence of str or callable
+        Names (`contvines.survey.outcomes`), or functions ``(found: Findings) -> {column: number}``.
+    gaps, values, starts : int
+        Where the systems are simulated besides; see `contvines.survey.work.Job`.
+    workers : int, optional
+        Processes of this machine; all cores by default, 1 for none beside this one.
+    cluster : str or distributed.Client, optional
+        A dask cluster instead.
+    journal : path, optional
+        Where rows are kept at once: the same survey goes on from them.
+    units : mapping, optional
+        Of parameters and outcomes.
+    about : mapping, optional
+        What is surveyed, JSON-able; it is kept with the results and decides whether a journal's rows are of the same survey.
+    progress : callable, optional
+        Called with each row.
+    **options
+        Of `contvines.diagram`, ``depth`` for example.
+
+    Returns
+    -------
+    Survey
+
+    Raises
+    ------
+    PlanError
+        If it cannot be; a system that fails is a row with a sentence.
+    """
+    plan = vary if isinstance(vary, Plan) else planned(vary)
+    functions = tuple(outcome_named(o) if isinstance(o, str) else o for o in outcomes)
+    job = Job(family, over, (float(within[0]), float(within[1])), functions, gaps, values, starts, options)
+    systems = plan.systems()
+    told = _told(plan, over, job.within, about)
+    digest = digest_of(plan, over, job.within, about)
+    if cluster is not None:
+        pools.need_dask()
+    with Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest}) as rows:
+        begun = getattr(family, "starts", None)
+        near = begun(systems, plan.neighbours()) if begun is not None else [None] * len(systems)
+        tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in rows.found]
+        for row in _worked(job, tasks, workers, cluster):
+            rows.keep(row)
+            if progress is not None:
+                progress(row)
+        found = [rows.found[i] for i in range(len(systems))]
+    return Survey.of(plan, found, dict(units or {}), {**told, "digest": digest})
+
+
+def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None) -> str:
+    """What decides a survey's rows: surveys that must give the same share it."""
+    text = json.dumps(_told(plan, over, within, about), sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _told(
+    plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None
+) -> dict[str, Any]:
+    return {
+        "survey": dict(about or {}),
+        "over": over,
+        "within": [float(within[0]), float(within[1])],
+        "axes": {name: values.tolist() for name, values in plan.axes.items()},
+        "samples": {name: values.tolist() for name, values in plan.samples.items()},
+    }
+
+
+def _worked(job: Job, tasks: list[pools.Task], workers: int | None, cluster: Any) -> Any:
+    if cluster is not None:
+        return pools.cluster(job, tasks, cluster)
+    count = workers or pools.cores()
+    if count == 1 or len(tasks) < 2:
+        return pools.serial(job, tasks)
+    return pools.pool(job, tasks, count)

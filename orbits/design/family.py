@@ -1,0 +1,187 @@
+"""A family of machines: one machine whose parameters take many values, and an orbit of each to begin with.
+
+An orbit of a neighbour is carried over by continuation in all parameters at once: Newton's method from its nodes, over half the way
+where the whole is too far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors import find_attractor
+from orbits.attractors.sweep import measures
+from orbits.cycles.stuck import StuckOrbit
+from orbits.machines.base import Model
+from orbits.orbit import Orbit
+from orbits.starts.find import StartError, find, polish
+from orbits.words import Word
+
+PLACES = 5  # where an orbit is looked for in the interval
+NARROW = 1.0 / 64.0  # the least part of the way that is tried
+
+
+def settled(model: Model, params: np.ndarray) -> Any:
+    """The orbit to which the machine settles from rest; None where nothing recurs."""
+    values: dict[str, Any] = dict(zip(model.parameter_names, (float(value) for value in params)))
+    found = find_attractor(model, max_period=8, **values)
+    if found.kind == "stuck":
+        return StuckOrbit.of(model, params)
+    if found.word is None or not found.nodes.size:
+        return None
+    orbit = found.orbit
+    if orbit.word.impact_free:  # it may be shifted as a whole: take the middle
+        orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
+    orbit = polish(orbit.root())
+    return orbit if orbit is not None and orbit.real else None
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Machines that differ in some parameters.
+
+    Parameters
+    ----------
+    machine : Model
+        The parameters that do not vary.
+    word : str, optional
+        Of the orbit to begin with; without it the one to which the machine settles from rest.
+    periods : int
+    guess : nested list, optional
+        Nodes of that orbit in `machine` itself.
+    loose : mapping, optional
+        Parameters that belong to the orbit rather than to the machine.
+    over, within : optional
+        A parameter and its interval in which an orbit to begin with may lie elsewhere, where the machine itself has none.
+    """
+
+    machine: Model
+    word: str | None = None
+    periods: int = 1
+    guess: Any = None
+    loose: Mapping[str, float] | None = None
+    over: str | None = None
+    within: tuple[float, float] | None = None
+
+    def __call__(self, values: Mapping[str, float], near: Any = None) -> Any:
+        """The orbit of the machine with these values, counted in its units.
+
+        Where the orbit with the family's word does not exist, the one to which the machine settles from rest.
+
+        Parameters
+        ----------
+        values : mapping
+        near : tuple, optional
+            `near` of a neighbour's orbit, or of this very one.
+
+        Raises
+        ------
+        ValueError
+            If the values make no machine, or no orbit is found.
+        """
+        model, loose = self.machine_at(values)
+        if near is not None:
+            orbit = self._carried(model, model.vector(loose), near)
+            if orbit is not None:
+                return orbit
+        refusal = None
+        try:
+            orbit = None if self.word is None else find(model, self.word, self.periods, self.guess, loose)
+            if orbit is not None and orbit.real:
+                return orbit
+        except StartError as error:
+            refusal = error
+        orbit = settled(model, model.vector(loose))
+        for value in self._elsewhere():
+            if orbit is None:
+                orbit = settled(model, model.vector_at(self.over or "", value, loose))
+        if orbit is None:
+            raise refusal or StartError(
+                f"the orbit {self.word!r} is no real one here, and the simulator finds no periodic motion to begin with"
+            )
+        return orbit
+
+    def machine_at(self, values: Mapping[str, float]) -> tuple[Any, dict[str, float]]:
+        """The machine with these values, and the parameters left to its orbits."""
+        own = {name: value for name, value in values.items() if name not in (self.loose or {})}
+        loose = {**(self.loose or {}), **{name: value for name, value in values.items() if name not in own}}
+        with_ = getattr(self.machine, "with_", None)  # a physical machine counts in its units
+        return (
+            with_(**own) if with_ is not None else self.machine.changed(**own)
+        ) if own else self.machine, loose
+
+    def _elsewhere(self) -> list[float]:
+        return (
+            []
+            if self.over is None or self.within is None
+            else np.linspace(*self.within, PLACES + 2)[1:-1].tolist()
+        )
+
+    def simulated(
+        self, values: Mapping[str, float], over: str, at: Sequence[float], starts: int
+    ) -> list[tuple[float, dict[str, float], str]]:
+        """Motions on which simulations settle: value of `over`, measures, word.
+
+        Parameters
+        ----------
+        values : mapping
+            Of the machine.
+        over, at
+            The parameter that is set to each of these.
+        starts : int
+            Simulations at each: from rest, then from states drawn at random (always the same ones).
+        """
+        model, loose = self.machine_at(values)
+        found = []
+        for value in at:
+            params = model.vector_at(over, value, loose)
+            numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
+            generator = np.random.default_rng(20)
+            for trial in range(starts):
+                start = None if trial == 0 else model.random_start(params, generator)
+                attractor = find_attractor(model, start, **numbers)
+                found.append((float(value), measures(attractor), attractor.text))
+        return found
+
+    @staticmethod
+    def near(orbit: Any) -> tuple[np.ndarray, np.ndarray, Any] | None:
+        """What a neighbour's orbit may begin with: nodes, parameter vector, word."""
+        return (orbit.nodes, orbit.params, orbit.word) if len(orbit.word) else None
+
+    def starts(self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]) -> list[Any]:
+        """`near` of each system's own orbit, each carried over from its neighbour; None where that fails."""
+        found: list[Any] = []
+        for values, neighbour in zip(systems, neighbours):
+            before = None if neighbour is None else found[neighbour]
+            try:
+                model, loose = self.machine_at(values)
+                if before is None:
+                    orbit = self(values) if neighbour is None else None
+                else:
+                    orbit = self._carried(model, model.vector(loose), before)
+                found.append(None if orbit is None else self.near(orbit))
+            except ValueError:
+                found.append(None)
+        return found
+
+    def _carried(self, model: Model, params: np.ndarray, near: Any) -> Orbit | None:
+        """The orbit at `params` from one nearby, both with the word of the latter."""
+        nodes, here, word = near
+        if word.frictionless != model.frictionless(params):
+            return None
+        assert isinstance(word, Word)
+        reached, step = 0.0, 1.0
+        while reached < 1.0:
+            goal = min(reached + step, 1.0)
+            there = params if goal == 1.0 else here + goal * (params - here)
+            orbit = polish(Orbit(model, word, self.periods, nodes, there))
+            if orbit is None or not orbit.real:
+                step *= 0.5
+                if step < NARROW:
+                    return None
+                continue
+            nodes, reached = orbit.nodes, goal
+        return orbit
