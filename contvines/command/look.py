@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.compare import CompareOption, check_compared, compared
 from contvines.command.options import FileArgument, TrustOption
 from contvines.graph.table import with_unit
 
@@ -107,6 +108,7 @@ def plot(
         Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
     ] = None,
     kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
+    compare: CompareOption = None,
     branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
     xlim: Annotated[
         tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
@@ -132,6 +134,8 @@ def plot(
     from contvines.store import load
 
     asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
+    asked |= {"--compare": compare[0] if compare else None}
+    check_compared(compare, True)
     asked |= {"--no-legend": None if legend else "", "--branch": branch}
     _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
@@ -151,10 +155,9 @@ def plot(
     if not graph.branches:
         raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
     if kind is Picture.diagram:
-        from contvines.plots.diagram import plot_diagram
-
-        figure = plot_diagram(
+        figure = compared(
             graph,
+            compare,
             x,
             y,
             words=words,
@@ -223,7 +226,7 @@ def export(
 
 def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
     """Options that this kind of picture would ignore are refused."""
-    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend")
+    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend", "--compare")
     takes = {
         Picture.diagram: (of_diagrams, "draws all branches"),
         Picture.multipliers: (("--branch",), "draws over the parameter"),

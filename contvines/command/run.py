@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.compare import CompareOption, check_compared
 from contvines.command.options import TrustOption
 
 StudyArgument = Annotated[
@@ -62,9 +63,10 @@ def diagram(
             help="At the end, simulate a few starts and say in one line what they reach that is on no branch.",
         ),
     ] = True,
+    compare: CompareOption = None,
 ) -> None:
     """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
-    _run("diagram", study, output, plot, quiet, x, y, look)
+    _run("diagram", study, output, plot, quiet, x, y, compare, look)
 
 
 def atlas(
@@ -146,6 +148,7 @@ def _run(
     quiet: bool,
     x: str | None,
     y: str | None,
+    compare: list[str] | None = None,
     look: bool = False,
 ) -> None:
     from contvines.command.compose import (
@@ -163,6 +166,7 @@ def _run(
 
     study = checked_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
+    check_compared(compare, plot is not None)
     target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)
     if target.resolve() == path.resolve():
@@ -195,7 +199,7 @@ def _run(
 
         say(told(graph, f"contvines atlas {path} adds what hangs together with it"), quiet)
     if plot is not None:
-        _draw(graph, x, y, plot)
+        _draw(graph, x, y, plot, compare)
         say(f"drawn in {plot}", quiet)
 
 
@@ -250,9 +254,14 @@ def _look(graph: Any, study: Any, target: Path) -> None:
             store.checkpoint(graph)
 
 
-def _draw(graph: Any, x: str | None, y: str | None, path: Path) -> None:
-    from contvines.plots.atlas import plot_atlas
-    from contvines.plots.diagram import plot_diagram
+def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:
     from contvines.plots.figures import save_figure
 
-    save_figure((plot_atlas if graph.attractors else plot_diagram)(graph, x, y), path)
+    if graph.attractors:
+        from contvines.plots.atlas import plot_atlas
+
+        save_figure(plot_atlas(graph, x, y), path)
+        return
+    from contvines.command.compare import compared
+
+    save_figure(compared(graph, compare, x, y), path)
