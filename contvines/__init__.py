@@ -31,6 +31,9 @@ _HOME = {
     "Attractor": ".graph.attractor",
     "atlas": ".coexistence.build",
     "basins": ".coexistence.basins",
+    "Chart": ".loci.chart",
+    "Locus": ".loci.locus",
+    "chart": ".loci.charting",
     "diagram": ".graph.automatic",
     "load": ".store",
     "locus": ".loci.locus",
@@ -44,9 +47,11 @@ _HOME = {
 __all__ = [
     "AlgebraicProblem",
     "Branch",
+    "Chart",
     "Embedding",
     "Graph",
     "Kernels",
+    "Locus",
     "MapProblem",
     "MemoryJournal",
     "NullJournal",
@@ -57,6 +62,7 @@ __all__ = [
     "Symmetry",
     "atlas",
     "basins",
+    "chart",
     "diagram",
     "load",
     "locus",
@@ -88,7 +94,9 @@ if TYPE_CHECKING:
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
     from .journal import MemoryJournal, NullJournal
-    from .loci.locus import locus
+    from .loci.chart import Chart
+    from .loci.charting import chart
+    from .loci.locus import Locus, locus
     from .problems.algebraic import AlgebraicProblem
     from .problems.maps import MapProblem
     from .problems.protocol import Embedding, Kernels, Seed, Symmetry

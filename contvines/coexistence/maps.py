@@ -126,7 +126,7 @@ class MapPopulation:
                 points = np.array(cycle)
                 gaps = np.abs(x[:, None, :] - points[None]).max(axis=2).min(axis=1)
                 here = (gaps < NEAR * self.size) & (periods == periods[i])
-                problem = self.problem.sibling(points, p, int(periods[i]))
+                problem = self.problem.cycle_through(points, p)
                 motions.append(
                     Cycle("periodic", f"{periods[i]}-cycle", int(periods[i]), problem, points.ravel())
                 )
@@ -167,12 +167,16 @@ class _Iteration:
     def __call__(self, x: np.ndarray) -> np.ndarray:
         if self.together:
             return np.array(self.functions.f(np.ascontiguousarray(x.T), self.value), dtype=float).T.copy()
-        return np.array([self.functions.value(point, self.p) for point in x])
+        return np.array([self.one(point) for point in x])
+
+    def one(self, x: np.ndarray) -> np.ndarray:
+        """The image of one point, whatever it is."""
+        return np.asarray(self.functions.f(x, self.value), dtype=float).reshape(-1)
 
     def _takes_columns(self, x: np.ndarray) -> bool:
         try:
             columns = np.array(self.functions.f(np.ascontiguousarray(x.T), self.value), dtype=float)
-            single = np.array([self.functions.value(point, self.p) for point in x])
+            single = np.array([self.one(point) for point in x])
         except Exception:  # a function of one point: whatever it says of columns
             return False
         return columns.shape == x.T.shape and np.array_equal(columns.T, single)

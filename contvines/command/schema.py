@@ -104,6 +104,13 @@ class AtlasSection(Section):
     seed: Annotated[int, Field(ge=0)] = 0
 
 
+class ChartSection(Section):
+    """`[chart]`, optional: the second parameter of `contvines chart`."""
+
+    parameter: str
+    within: Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
 class SurveySection(Section):
     """`[survey]`, optional: the many machines of `contvines survey`."""
 
@@ -124,6 +131,7 @@ class StudySections(Section):
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
     atlas: AtlasSection = AtlasSection()
+    chart: ChartSection | None = None
     survey: SurveySection = SurveySection()
 
 

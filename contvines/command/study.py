@@ -19,6 +19,7 @@ from contvines.command.schema import (
     EXCITATION,
     PARAMETERS,
     AtlasSection,
+    ChartSection,
     StudyFile,
     StudySections,
     SurveySection,
@@ -53,6 +54,7 @@ class Study:
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep, atlas : settings of the brute-force sweep and of the atlas.
+    chart : second parameter and its interval, of a chart.
     machine : a ready machine, where the study describes one that the catalogue does not have (a page).
     loose : parameters to hand to the ready machine with each orbit.
     state : where the simulation starts that looks for a first orbit, if no word is given.
@@ -73,6 +75,7 @@ class Study:
     settings: dict[str, Any]
     sweep: SweepSection
     atlas: AtlasSection = field(default_factory=AtlasSection)
+    chart: ChartSection | None = None
     machine: Any = None
     loose: dict[str, float] = field(default_factory=dict)
     state: dict[str, float] | None = None
@@ -247,6 +250,15 @@ def _resolve(file: StudyFile, path: Path) -> Study:
     swept = file.sweep.within
     if swept is not None and go.parameter in known:
         wrong += _check_interval("sweep", go.parameter, swept, name)
+    if file.chart is not None:
+        other = file.chart.parameter
+        if other not in known:
+            wrong.append(
+                f"[chart] parameter = {other!r}: the model {name!r} has no such parameter{did_you_mean(other, known)}; "
+                f"it has {', '.join(known)}."
+            )
+        else:
+            wrong += _check_interval("chart", other, file.chart.within, name)
     wrong += _check_guess(file.start.guess, name)
     if wrong:
         raise StudyError(together(wrong))
@@ -282,6 +294,7 @@ def _study(
         ),
         sweep=file.sweep,
         atlas=file.atlas,
+        chart=file.chart,
         quantities=quantities,
         survey=file.survey,
     )
