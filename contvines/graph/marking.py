@@ -181,7 +181,7 @@ def _known(
         if kind == "user" and known.note != event.note:
             continue
         form = problem.canonical(point.u, point.p) if form is None else form
-        if same_form(form, run.form(known)):
+        if same_form(form, run.form(known), engine.scale):
             return known.label
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree
