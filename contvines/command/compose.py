@@ -42,7 +42,7 @@ def checked_study(path: Path) -> "Study":
 
 def machine(study: "Study") -> Any:
     """The machine of a study, `[start]`'s overrides included."""
-    from orbits.machines.catalogue import build
+    from orbits.machines.building import build
 
     if study.machine is not None:
         return study.machine

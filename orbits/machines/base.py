@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.path import single
 from orbits.machines.rest import Rest
@@ -220,9 +221,7 @@ class Model:
         **parameters: Any,
     ) -> Orbit:
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
-        from orbits.starts.find import find
-
-        return find(self, word, periods, guess, parameters)
+        return above("find")(self, word, periods, guess, parameters, made=above("Orbit"))
 
     # ------------------------------------------------------------------ the parameter that varies
     @property

@@ -160,7 +160,7 @@ def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: fl
     flights = proof.motif.flights(here)
     one, other = (float(flights.resting(phase)[0].mid()) for phase in (ball(0), ball(float(np.pi / 2))))
     bias = float(ball(0) + flights.bias)
-    side = -1 if bias < 0 else 1
+    side = min((1, -1), key=lambda s: float(ball(0) + flights.limit[s]) - s * bias)
     phase = float(np.arctan2(other - bias, one - bias)) + (0.0 if side > 0 else float(np.pi))
     assert proof.parameter is not None
     system = AtSlip(proof.motif, p, proof.parameter, side)
@@ -227,8 +227,10 @@ def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
         raise ProofError(
             "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
         )
-    friction = motif.flights(p).friction
-    if motif.frictionless != bool(friction == 0):
+    limit = motif.flights(p).limit
+    if not (limit[1] >= 0 and limit[-1] >= 0):
+        raise ProofError("the slope leaves friction no load: keep it between -pi/2 and pi/2")
+    if motif.frictionless != bool(limit[1] == 0 and limit[-1] == 0):
         raise ProofError(
             "a word without friction's events needs friction exactly 0, and any other needs friction above 0"
         )

@@ -88,11 +88,10 @@ def test_newton_kantorovich_by_hand_agrees_with_the_prover():
         .symmetric_orbit(amplitude=0.6)
         .prove()
     )
-    middle = [mpmath.mpf(pair[0]) for pair in proof.nodes()[0]]
     iv.dps = 60
     numbers = [iv.mpf("0.6"), iv.mpf("1.006") * iv.mpf("0.5") * iv.mpf("0.211"), iv.mpf("0.76")]
     arguments = (*unknowns, *symbols)
-    m = [iv.mpf(x) for x in middle]
+    m = [iv.mpf(pair[0]) for pair in proof.nodes()[0]]
 
     def at(expression, x):
         names = {"sin": iv.sin, "cos": iv.cos, "pi": iv.pi, "mpf": iv.mpf}
