@@ -206,6 +206,12 @@ class Model:
             "w_rate": generator.uniform(-2.0, 2.0),
         }
 
+    def population(self, over: str | None = None, **parameters: float) -> Any:
+        """Many starts and what they settle on; see `orbits.attractors.population.Population`."""
+        from orbits.attractors.population import Population
+
+        return Population(self, over or self.default_parameter, parameters)
+
     def measure_own(
         self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
     ) -> dict[str, np.ndarray]:
