@@ -149,6 +149,13 @@ def plot(
     if size is not None and not all(1.0 <= side <= 60.0 for side in size):
         raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
     graph = load(file, trust=trust)
+    if hasattr(graph, "loci"):
+        from contvines.plots.chart import plot_chart
+
+        _refuse_of_chart(file, kind, asked)
+        save_figure(plot_chart(graph, figsize=size, style=style), target)
+        typer.echo(str(target))
+        return
     _say_what_lacks(graph)
     if not graph.finished:
         _unfinished(file)
@@ -217,11 +224,25 @@ def export(
     check_target(target, to.value)
     measures = to in (Format.csv, Format.mat)
     graph = load(file, problems=measures, trust=trust)
+    if hasattr(graph, "loci"):
+        from contvines.export.charts import export_chart
+
+        typer.echo(str(export_chart(graph, to.value, target)))
+        return
     if measures:
         _say_what_lacks(graph)
     if not graph.finished:
         _unfinished(file)
     typer.echo(str(write(graph, to.value, target)))
+
+
+def _refuse_of_chart(file: Path, kind: Picture, options: dict[str, Any]) -> None:
+    """Options that the picture of a chart would ignore are refused."""
+    for name, value in {**options, "--kind": None if kind is Picture.diagram else kind.value}.items():
+        if value is not None:
+            raise ValueError(
+                f"{name}{_given(value)}: {file} holds a chart, whose picture has no use for it; leave {name} out."
+            )
 
 
 def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:

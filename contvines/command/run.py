@@ -91,7 +91,7 @@ def switch(
     settings = {
         k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
     }  # trace allows one only
-    with _interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
+    with interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
         new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
     if new:
         with Store.open(file, write=True) as store:
@@ -161,7 +161,7 @@ def _continue(
     alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
     with Store.attach(target, fingerprint, study.describe()) as store:
         note = f"all finished points are kept in {target}; the same command goes on from there"
-        with _interruptible(note), shown(quiet=quiet) as progress:
+        with interruptible(note), shown(quiet=quiet) as progress:
             graph = run(study, seed, journal=store, progress=progress, **alone)
         if not store.finished:
             store.checkpoint(graph)
@@ -170,7 +170,7 @@ def _continue(
 
 
 @contextmanager
-def _interruptible(note: str) -> Iterator[None]:
+def interruptible(note: str) -> Iterator[None]:
     """Ctrl-C ends the command with a sentence that says what is kept and how to go on."""
     from contvines.command.compose import Interrupted
 
