@@ -150,8 +150,12 @@ def _known(
         return None
     if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
         source = run.graph.special[pending.point]
-        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p) and may_be_one(
-            problem, point.u, point.p, source
+        gaps = np.abs(branch.values[[0, -1]] - source.value)
+        home = abs(source.value - point.p) <= gaps.min()  # the other end is a border of its own, however near
+        if (
+            home
+            and abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p)
+            and may_be_one(problem, point.u, point.p, source)
         ):
             return source.label
     if kind in BORDERS and at_end:

@@ -224,6 +224,12 @@ class MapProblem(CallableProblem):
         """The cycles of twice the length in given pieces."""
         return self._with_cycle(np.tile(self.u0, 2), self.p0, pieces)
 
+    def cycle_through(self, points: np.ndarray, p: float) -> MapProblem:
+        """The problem of the cycles with as many points as given, shape (n, d), with its start there."""
+        return self._with_cycle(
+            np.asarray(points, dtype=float).reshape(-1), p, self.pieces.repeated(len(points), 1)
+        )
+
     def _shift_by_half(self, u: np.ndarray) -> np.ndarray:
         return np.roll(u, self.dimension // 2)
 
@@ -308,6 +314,12 @@ class MapProblem(CallableProblem):
         if name not in {f"x{j}" for j in range(self.node)}:
             return None
         return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+
+    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
+        """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
+        from ..coexistence.maps import MapPopulation
+
+        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""

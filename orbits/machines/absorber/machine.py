@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from orbits.doors import above
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import ShakenRest
 from orbits.machines.cavity.shaken import Shaken
@@ -107,9 +108,10 @@ class Absorber(Shaken):
         ParameterError
             If there is no symmetric orbit at this amplitude.
         """
-        from orbits.orbit import Orbit
         from orbits.words import Word
 
         params = self.vector({"amplitude": amplitude})
         nodes = symmetric_nodes(params, stable)
-        return Orbit(self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params)
+        return above("Orbit")(
+            self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params
+        )
