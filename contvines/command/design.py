@@ -50,7 +50,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
             raise StudyError(
                 "[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency."
             )
-        return Design(cavity=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
+        return Design(half_width=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
     if cavity is not None and natural_frequency is not None:
         raise StudyError(
             f"--cavity and --natural-frequency were both given, but [model] gravity = {values['gravity']!r} "

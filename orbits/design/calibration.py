@@ -163,7 +163,7 @@ def from_impacts(
 
     def residuals(values: np.ndarray, used: int = count) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, values)))
-        numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+        numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
         run = simulate(model, start, events=40 * used + 400, **numbers)
         phases = run.phases[run.codes < 2][:used]
         if phases.size < used:
@@ -241,7 +241,7 @@ def from_sweep(
 
     def residuals(guess: np.ndarray) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, guess)))
-        numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+        numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
         rows = sweep(model, over, places, transient=transient, nudge=0.0, **numbers)
         return np.array([row.measures[measure] for row in rows]) - heights
 
