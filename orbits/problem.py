@@ -308,6 +308,11 @@ class OrbitProblem:
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
         return above("of_point")(self, kind, u, p, margin, bits)
 
+    def population(self, over: str | None = None) -> Any:
+        """Starts of this machine and what they settle on; see `orbits.attractors.population.Population`."""
+        over = over or self.parameter
+        return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
+
     @property
     def spelling(self) -> str:
         """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""

@@ -99,6 +99,21 @@ def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 
+def run_atlas(study: "Study", model: Any, **options: Any) -> "Graph":
+    """The atlas of a study's machine; options as for `contvines.atlas`."""
+    import contvines
+    from contvines.coexistence.population import population_of
+
+    fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
+    asked = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
+    return contvines.atlas(
+        population_of(model, study.parameter, **fixed),
+        within=study.within,
+        **study.atlas.model_dump(),
+        **{**asked, **options},
+    )
+
+
 def beside(path: Path, ending: str) -> Path:
     """The default place of a result: the study's or file's name with another ending, in the current folder."""
     return Path(path.stem + ending)

@@ -95,7 +95,7 @@ class MapProblem(CallableProblem):
         self.pieces = Pieces(switches, self.values, flat[None, :d])
         self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
         self.functions = Differentiated(*self._wrapped(self.pieces), flat[:d], self.values, "the map")
-        if self.functions.find_structure(flat[:d]) != "dense":
+        if self._structure_at(flat[:d]) != "dense":
             raise ValueError(
                 "the jacobian of a map must be an array; use AlgebraicProblem for f(x, p) - x with sparse ones"
             )
@@ -171,6 +171,15 @@ class MapProblem(CallableProblem):
             other.scales = self.scales.head(self.node).tiled(other.cycle)
         return other._own()
 
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
+        """f(x_i) - x_{i+1} alone."""
+        nodes = u.reshape(self.cycle, self.node)
+        images = np.empty_like(nodes)
+        for i, node in enumerate(nodes):
+            self.pieces.current = i
+            images[i] = self.functions.value(node, p)
+        return (images - np.roll(nodes, -1, axis=0)).reshape(-1)
+
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Residual f(x_i) - x_{i+1}, its Jacobian and parameter derivative."""
         n, d = self.cycle, self.node
@@ -223,6 +232,12 @@ class MapProblem(CallableProblem):
     def doubled_with(self, pieces: Pieces) -> MapProblem:
         """The cycles of twice the length in given pieces."""
         return self._with_cycle(np.tile(self.u0, 2), self.p0, pieces)
+
+    def cycle_through(self, points: np.ndarray, p: float) -> MapProblem:
+        """The problem of the cycles with as many points as given, shape (n, d), with its start there."""
+        return self._with_cycle(
+            np.asarray(points, dtype=float).reshape(-1), p, self.pieces.repeated(len(points), 1)
+        )
 
     def _shift_by_half(self, u: np.ndarray) -> np.ndarray:
         return np.roll(u, self.dimension // 2)
@@ -308,6 +323,12 @@ class MapProblem(CallableProblem):
         if name not in {f"x{j}" for j in range(self.node)}:
             return None
         return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+
+    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
+        """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
+        from ..coexistence.maps import MapPopulation
+
+        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""
