@@ -28,6 +28,9 @@ _HOME = {
     "SpecialPoint": ".branches.special_point",
     "Switch": ".graph.graph",
     "Symmetry": ".problems.protocol",
+    "Chart": ".loci.chart",
+    "Locus": ".loci.locus",
+    "chart": ".loci.charting",
     "diagram": ".graph.automatic",
     "load": ".store",
     "locus": ".loci.locus",
@@ -41,9 +44,11 @@ _HOME = {
 __all__ = [
     "AlgebraicProblem",
     "Branch",
+    "Chart",
     "Embedding",
     "Graph",
     "Kernels",
+    "Locus",
     "MapProblem",
     "MemoryJournal",
     "NullJournal",
@@ -52,6 +57,7 @@ __all__ = [
     "SpecialPoint",
     "Switch",
     "Symmetry",
+    "chart",
     "diagram",
     "load",
     "locus",
@@ -83,7 +89,9 @@ if TYPE_CHECKING:
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
     from .journal import MemoryJournal, NullJournal
-    from .loci.locus import locus
+    from .loci.chart import Chart
+    from .loci.charting import chart
+    from .loci.locus import Locus, locus
     from .problems.algebraic import AlgebraicProblem
     from .problems.maps import MapProblem
     from .problems.protocol import Embedding, Kernels, Seed, Symmetry

@@ -314,6 +314,28 @@ class OrbitProblem:
 
         return Orbit(self.model, self.word, self.periods, self.expand(u), self.values(p))
 
+    def witness(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
+        """What the machine settles on at a parameter value, simulated from rest and from random starts.
+
+        Returns
+        -------
+        list of dict
+            "word" (None where there is none), "periods" and "kind" of each motion, sorted.
+        """
+        from orbits.attractors import find_attractor
+
+        params, generator = self.values(p), np.random.default_rng(7)
+        named = dict(zip(self.model.parameter_names, map(float, params)))
+        found: dict[tuple[str, int, str], dict[str, Any]] = {}
+        for i in range(starts):
+            start = None if i == 0 else self.model.random_start(params, generator)
+            motion = find_attractor(self.model, start, max_period=12, patience=1, **named)
+            word = motion.word
+            text = None if word is None else word.canonical().text
+            key = (text or "", int(motion.periods), motion.kind)
+            found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
+        return [found[key] for key in sorted(found)]
+
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
         return self.orbit(u, p).replay()

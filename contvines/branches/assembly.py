@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
@@ -11,6 +13,7 @@ from .ending import Ending
 from .half_branch import HalfBranch
 
 APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
+RESOLVED = 1e-8  # but between a fold and a flip, where a sliver of stable solutions may lie, down to this
 MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
 
 
@@ -20,6 +23,9 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
     if origin is not None:
         special.add(origin)
     events = dict.fromkeys(i for i, _ in half.events)
+    kinds: dict[int, list[str]] = {}
+    for i, event in half.events:
+        kinds.setdefault(i, []).append(event.kind)
     inserted: list[tuple[int, Solved]] = []
     for i in sorted(special):
         if i + 1 not in special or not (i in events or i + 1 in events):
@@ -28,12 +34,19 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
             Solved(u, p, tangent, np.zeros(0), 0.0, 0.0, 0.0) for u, p, tangent in map(half.at, (i, i + 1))
         )
         segment = Segment(engine, *ends)
-        if not segment.length > APART:
+        if not segment.length > (RESOLVED if a_sliver(kinds.get(i, ()), kinds.get(i + 1, ())) else APART):
             continue
         middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
         if middle is not None:
             inserted.append((i + 1, middle))
     return half.inserted(engine, inserted) if inserted else half
+
+
+def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
+    """Whether solutions between neighbouring points of these kinds may be stable although those on both sides are not."""
+    return any(
+        a != b and {a, b} <= {"fold", "period-doubling", "symmetry-breaking"} for a in one for b in other
+    )
 
 
 def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.ndarray:

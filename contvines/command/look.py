@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.compare import CompareOption, check_compared, compared
 from contvines.command.options import FileArgument, TrustOption
 from contvines.graph.table import with_unit
 
@@ -107,6 +108,7 @@ def plot(
         Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
     ] = None,
     kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
+    compare: CompareOption = None,
     branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
     xlim: Annotated[
         tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
@@ -132,6 +134,8 @@ def plot(
     from contvines.store import load
 
     asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
+    asked |= {"--compare": compare[0] if compare else None}
+    check_compared(compare, True)
     asked |= {"--no-legend": None if legend else "", "--branch": branch}
     _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
@@ -145,16 +149,22 @@ def plot(
     if size is not None and not all(1.0 <= side <= 60.0 for side in size):
         raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
     graph = load(file, trust=trust)
+    if hasattr(graph, "loci"):
+        from contvines.plots.chart import plot_chart
+
+        _refuse_of_chart(file, kind, asked)
+        save_figure(plot_chart(graph, figsize=size, style=style), target)
+        typer.echo(str(target))
+        return
     _say_what_lacks(graph)
     if not graph.finished:
         _unfinished(file)
     if not graph.branches:
         raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
     if kind is Picture.diagram:
-        from contvines.plots.diagram import plot_diagram
-
-        figure = plot_diagram(
+        figure = compared(
             graph,
+            compare,
             x,
             y,
             words=words,
@@ -214,6 +224,11 @@ def export(
     check_target(target, to.value)
     measures = to in (Format.csv, Format.mat)
     graph = load(file, problems=measures, trust=trust)
+    if hasattr(graph, "loci"):
+        from contvines.export.charts import export_chart
+
+        typer.echo(str(export_chart(graph, to.value, target)))
+        return
     if measures:
         _say_what_lacks(graph)
     if not graph.finished:
@@ -221,9 +236,18 @@ def export(
     typer.echo(str(write(graph, to.value, target)))
 
 
+def _refuse_of_chart(file: Path, kind: Picture, options: dict[str, Any]) -> None:
+    """Options that the picture of a chart would ignore are refused."""
+    for name, value in {**options, "--kind": None if kind is Picture.diagram else kind.value}.items():
+        if value is not None:
+            raise ValueError(
+                f"{name}{_given(value)}: {file} holds a chart, whose picture has no use for it; leave {name} out."
+            )
+
+
 def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
     """Options that this kind of picture would ignore are refused."""
-    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend")
+    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend", "--compare")
     takes = {
         Picture.diagram: (of_diagrams, "draws all branches"),
         Picture.multipliers: (("--branch",), "draws over the parameter"),

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, ValidationError
 
-from contvines.command.schema import ContinueSection, Section, SweepSection
+from contvines.command.schema import ChartSection, ContinueSection, Section, SweepSection
 from contvines.command.sentences import did_you_mean, sentence_of, together
 
 
@@ -34,6 +34,7 @@ class PageStudyFile(Section):
     start: PageStart = PageStart()
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+    chart: ChartSection | None = None
 
 
 def is_page(data: dict[str, Any]) -> bool:
@@ -118,6 +119,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         "sweep": file.sweep,
+        "chart": file.chart,
         "machine": machine,
         "loose": {**machine.parameters, **given},
         "state": file.start.state,

@@ -20,7 +20,8 @@ def shown(*, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
         task = progress.add_task("starting (the first run compiles its kernels)")
 
         def tell(state: Any) -> None:
-            text = (
+            own = getattr(state, "sentence", None)
+            text = own or (
                 f"{state.message}  |  {state.branches} branch{'' if state.branches == 1 else 'es'}, {state.special} special points, "
                 f"{state.points} points, {state.waiting} waiting"
             )

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.compare import CompareOption, check_compared
 from contvines.command.options import TrustOption
 
 StudyArgument = Annotated[
@@ -46,9 +47,10 @@ def diagram(
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
+    compare: CompareOption = None,
 ) -> None:
     """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
-    _run("diagram", study, output, plot, quiet, x, y)
+    _run("diagram", study, output, plot, quiet, x, y, compare)
 
 
 def trace(
@@ -89,7 +91,7 @@ def switch(
     settings = {
         k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
     }  # trace allows one only
-    with _interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
+    with interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
         new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
     if new:
         with Store.open(file, write=True) as store:
@@ -114,6 +116,7 @@ def _run(
     quiet: bool,
     x: str | None,
     y: str | None,
+    compare: list[str] | None = None,
 ) -> None:
     from contvines.command.compose import beside, check_place, checked_study, first_orbit, run_diagram, say
     from contvines.command.measures import check_axes
@@ -121,6 +124,7 @@ def _run(
 
     study = checked_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
+    check_compared(compare, plot is not None)
     target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)
     if target.resolve() == path.resolve():
@@ -144,7 +148,7 @@ def _run(
     if not quiet:
         typer.echo(str(graph))
     if plot is not None:
-        _draw(graph, x, y, plot)
+        _draw(graph, x, y, plot, compare)
         say(f"drawn in {plot}", quiet)
 
 
@@ -157,7 +161,7 @@ def _continue(
     alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
     with Store.attach(target, fingerprint, study.describe()) as store:
         note = f"all finished points are kept in {target}; the same command goes on from there"
-        with _interruptible(note), shown(quiet=quiet) as progress:
+        with interruptible(note), shown(quiet=quiet) as progress:
             graph = run(study, seed, journal=store, progress=progress, **alone)
         if not store.finished:
             store.checkpoint(graph)
@@ -166,7 +170,7 @@ def _continue(
 
 
 @contextmanager
-def _interruptible(note: str) -> Iterator[None]:
+def interruptible(note: str) -> Iterator[None]:
     """Ctrl-C ends the command with a sentence that says what is kept and how to go on."""
     from contvines.command.compose import Interrupted
 
@@ -183,8 +187,8 @@ def _check_picture(path: Path) -> None:
     check_picture(path)
 
 
-def _draw(graph: Any, x: str | None, y: str | None, path: Path) -> None:
-    from contvines.plots.diagram import plot_diagram
+def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:
+    from contvines.command.compare import compared
     from contvines.plots.figures import save_figure
 
-    save_figure(plot_diagram(graph, x, y), path)
+    save_figure(compared(graph, compare, x, y), path)

@@ -96,6 +96,13 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
+class ChartSection(Section):
+    """`[chart]`, optional: the second parameter of `contvines chart`."""
+
+    parameter: str
+    within: Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
 class SurveySection(Section):
     """`[survey]`, optional: the many machines of `contvines survey`."""
 
@@ -115,6 +122,7 @@ class StudySections(Section):
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+    chart: ChartSection | None = None
     survey: SurveySection = SurveySection()
 
 

@@ -18,6 +18,7 @@ from contvines.command.physical_study import converted, is_physical
 from contvines.command.schema import (
     EXCITATION,
     PARAMETERS,
+    ChartSection,
     StudyFile,
     StudySections,
     SurveySection,
@@ -52,6 +53,7 @@ class Study:
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep : settings of the brute-force sweep.
+    chart : second parameter and its interval, of a chart.
     machine : a ready machine, where the study describes one that the catalogue does not have (a page).
     loose : parameters to hand to the ready machine with each orbit.
     state : where the simulation starts that looks for a first orbit, if no word is given.
@@ -71,6 +73,7 @@ class Study:
     virtual: bool
     settings: dict[str, Any]
     sweep: SweepSection
+    chart: ChartSection | None = None
     machine: Any = None
     loose: dict[str, float] = field(default_factory=dict)
     state: dict[str, float] | None = None
@@ -244,6 +247,15 @@ def _resolve(file: StudyFile, path: Path) -> Study:
     swept = file.sweep.within
     if swept is not None and go.parameter in known:
         wrong += _check_interval("sweep", go.parameter, swept, name)
+    if file.chart is not None:
+        other = file.chart.parameter
+        if other not in known:
+            wrong.append(
+                f"[chart] parameter = {other!r}: the model {name!r} has no such parameter{did_you_mean(other, known)}; "
+                f"it has {', '.join(known)}."
+            )
+        else:
+            wrong += _check_interval("chart", other, file.chart.within, name)
     wrong += _check_guess(file.start.guess, name)
     if wrong:
         raise StudyError(together(wrong))
@@ -278,6 +290,7 @@ def _study(
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         sweep=file.sweep,
+        chart=file.chart,
         quantities=quantities,
         survey=file.survey,
     )

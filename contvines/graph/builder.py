@@ -19,7 +19,7 @@ from ..events.scan import MARGIN
 from ..events.watch import AT_BORDER, Watch
 from ..interrupts import listening, take
 from .leaving import leave
-from .marking import mark, origin_index
+from .marking import mark, may_be_one, origin_index
 from .pending import Origin, Pending
 from .run import Run
 
@@ -176,12 +176,14 @@ def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
 def same_border(run: Run, label: str, known: Branch) -> str:
     """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
     graph = run.graph
+    here = graph.special[label]
     for _, other in known.marks:
         point = graph.special[other]
         if (
             other != label
             and point.kind in BORDERS
-            and abs(point.value - graph[label].value) <= 1e-9 * run.unit(point.value)
+            and abs(point.value - here.value) <= 1e-9 * run.unit(point.value)
+            and may_be_one(here.problem, here.u, here.value, point)
         ):
             run.merge(label, other)
             return other

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
+from ..branches.assembly import a_sliver
 from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
@@ -13,6 +16,7 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
+from ..forms.coefficients import pair_form
 from ..interrupts import OPEN
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
@@ -79,8 +83,20 @@ def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pe
         if index in (0, last) and event.ends_branch:
             ends[0 if index == 0 else 1] = _ending(run, label, kind, branch, meets)
     branch.marks = tuple(sorted(marks))
+    _tell_slivers(run, branch)
     branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
     return fresh
+
+
+def _tell_slivers(run: Run, branch: Branch) -> None:
+    """Say where two changes of stability lie so close together that no solution between them could be looked at."""
+    for (i, one), (j, other) in pairwise(branch.marks):
+        kinds = [run.graph.special[label].kind for label in (one, other)]
+        if j - i == 1 and a_sliver(kinds[:1], kinds[1:]):
+            for label, neighbour in ((one, other), (other, one)):
+                run.remark(
+                    label, f"next to {neighbour}; stable solutions between the two would not be resolved"
+                )
 
 
 def origin_index(half: HalfBranch, pending: Pending) -> int | None:
@@ -132,13 +148,18 @@ def _known(
         return None
     if kind in BORDERS and at_end and pending.kind is Origin.BORDER and pending.point is not None:
         source = run.graph.special[pending.point]
-        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p):
+        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p) and may_be_one(
+            problem, point.u, point.p, source
+        ):
             return source.label
     if kind in BORDERS and at_end:
         for other in run.queue:
             if other.kind is not Origin.BORDER or other.point is None:
                 continue
-            if abs(run.graph.special[other.point].value - point.p) > BACK_AT_BORDER * run.unit(point.p):
+            source = run.graph.special[other.point]
+            if abs(source.value - point.p) > BACK_AT_BORDER * run.unit(point.p):
+                continue
+            if not may_be_one(problem, point.u, point.p, source):
                 continue
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
@@ -159,6 +180,17 @@ def _known(
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree
     return None
+
+
+def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
+    """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
+
+    Only problems of one kind that can compare motions tell.
+    """
+    alike = getattr(problem, "same_motion", None)
+    if alike is None or type(point.problem) is not type(problem):
+        return True
+    return bool(alike(u, p, point.problem, point.u))
 
 
 def _special(
@@ -194,6 +226,10 @@ def _special(
         special.met_from = branch.label
     if kind == "fold":
         special.coefficient = fold_coefficient(engine, point)
+    if kind in ("neimark-sacker", "hopf"):
+        form = pair_form(engine.problem, special.u, special.value, engine.spectrum(point.row))
+        special.coefficient, special.criticality = form.coefficient, form.criticality
+        special.remarks = (*special.remarks, form.note) if form.note else special.remarks
     run.events[label] = event
     return special
 

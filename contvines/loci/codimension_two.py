@@ -2,200 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
-
 import numpy as np
 
-from ..problems.derivatives import along
-from .coefficients import Forms
-from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
+from .conditions import References, Test, own_conditions, test_of
+from .kernels import FLIP, FOLD, MARGIN, PAIR
 from .kinds import Look, looks
-from .linear import Null
 from .locus import Locus
 from .plane import Place, Plane
+from .plane_point import PlanePoint
 from .problem import LocusProblem
 
-Test = Callable[[Plane], float]
-THIRD_ORDER = ("cubic", "lyapunov")
+COSTLY = ("quadratic", "cubic", "lyapunov")
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
+CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
+APART = 1e-5  # a pair is complex if its imaginary part exceeds this
+DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
-
-
-@dataclass(eq=False)
-class PlanePoint:
-    """A point of codimension two.
-
-    Attributes
-    ----------
-    label, kind : str
-    parameters : (str, str)
-    value : (float, float)
-    u : ndarray, shape (N,)
-        The motion, in the unknowns of ``problem``.
-    on : list of str
-        Labels of the loci on which it lies.
-    coefficients : dict
-        Of its normal form; see :mod:`contvines.loci.coefficients`.
-    multipliers : ndarray of complex
-        Of the full period.
-    real : bool
-    error : float
-        Last correction of Newton's method, relative.
-    residual : float
-    margins : tuple of int
-        Places of the margins that vanish there.
-    note : str
-    problem : Problem or None
-    """
-
-    label: str
-    kind: str
-    parameters: tuple[str, str]
-    value: tuple[float, float]
-    u: np.ndarray = field(repr=False)
-    on: list[str] = field(default_factory=list)
-    coefficients: dict[str, float] = field(default_factory=dict)
-    multipliers: np.ndarray = field(default_factory=lambda: np.zeros(0, complex), repr=False)
-    real: bool = True
-    error: float = 0.0
-    residual: float = 0.0
-    margins: tuple[int, ...] = ()
-    note: str = ""
-    problem: Any = field(default=None, repr=False)
-
-    @property
-    def orbit(self) -> Any:
-        """The motion as the object that its problem hands to users."""
-        if self.problem is None:
-            raise ValueError(f"{self.label} was loaded without its problem")
-        return self.problem.orbit(self.u, self.value[0])
-
-    def to_dict(self) -> dict[str, Any]:
-        """The entry of this point in the JSON of a chart."""
-        return {
-            "label": self.label,
-            "kind": self.kind,
-            "value": dict(zip(self.parameters, map(float, self.value))),
-            "on": list(self.on),
-            "coefficients": {name: float(value) for name, value in self.coefficients.items()},
-            "real": bool(self.real),
-            "multipliers": [[float(m.real), float(m.imag)] for m in self.multipliers],
-            "error": float(self.error),
-            "residual": float(self.residual),
-            "note": self.note,
-        }
-
-
-class References:
-    """Borders and positions that belong to one point of a locus, held fixed while tests are compared and solved."""
-
-    def __init__(self, plane: Plane, locus: LocusProblem) -> None:
-        problem, maps = plane.problem, plane.problem.spectrum == "map"
-        self.plus: Null = plane.first.null_vectors()
-        flips = maps and getattr(problem, "pinned", 0) != 2
-        self.minus: Null | None = plane.first.null_vectors(flipped=True) if flips else None
-        self.reference = locus.reference
-        self.second = 0.0
-        if plane.m >= 2:
-            self.reference = plane.pair(self._nearest(plane))[1]
-            self.second = self._other(plane)
-
-    def _nearest(self, plane: Plane) -> float:
-        spectrum = plane.spectrum
-        upper = spectrum[spectrum.imag > 0.0]
-        if not len(upper):
-            return self.reference
-        if plane.flow:
-            return float(np.abs(upper[np.argmin(np.abs(upper.real))]) ** 2)
-        return float(upper[np.argmin(np.abs(np.abs(upper) - 1.0))].real)
-
-    def _other(self, plane: Plane) -> float:
-        spectrum = plane.spectrum
-        upper = spectrum[spectrum.imag > 0.0]
-        if len(upper) < 2:
-            return np.nan
-        distance = np.abs(upper.real) if plane.flow else np.abs(np.abs(upper) - 1.0)
-        other = upper[np.argsort(distance)[1]]
-        return float(np.abs(other) ** 2 if plane.flow else other.real)
-
-
-def own_conditions(plane: Plane, locus: LocusProblem, at: References) -> list[Test]:
-    """The conditions of the locus itself, with references held fixed."""
-    if locus.condition == FOLD:
-        return [lambda x: x.singular_test(at.plus.left, at.plus.right)]
-    if locus.condition == FLIP:
-        assert at.minus is not None
-        minus = at.minus
-        return [lambda x: x.singular_test(minus.left, minus.right, flipped=True)]
-    if locus.condition == BRANCH:
-        return [
-            lambda x: x.singular_test(at.plus.left, at.plus.right),
-            lambda x: x.unfolding_test(at.plus.left, at.plus.right),
-        ]
-    if locus.condition == PAIR:
-        return [lambda x: x.pair(at.reference)[0]]
-    return [lambda x: float(x.row[2 * x.m + locus.index])]
-
-
-def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False) -> Test | None:
-    """The test function of something to look for; None where it cannot be asked here.
-
-    Coefficients of third order are computed to a few digits with ``rough``.
-    """
-    plus, minus = at.plus, at.minus
-    if look.test == "quadratic":
-        return lambda x: _bend(x, plus)
-    if look.test == "cubic":
-        return lambda x: _forms(x, rough).cubic(-1.0).value
-    if look.test == "lyapunov":
-        return lambda x: _lyapunov(x, at.reference, rough)
-    if look.test == "plus":
-        return lambda x: x.singular_test(plus.left, plus.right)
-    if look.test == "minus":
-        return None if minus is None else lambda x: x.singular_test(minus.left, minus.right, flipped=True)
-    if look.test == "pair":
-        return lambda x: x.pair(at.reference)[0]
-    if look.test == "second-pair":
-        return None if np.isnan(at.second) else lambda x: x.pair(at.second)[0]
-    if look.test == "double":
-        return lambda x: x.two_nearest(look.value)
-    return lambda x: x.pair(at.reference)[1] - look.value
-
-
-def _bend(plane: Plane, null: Null) -> float:
-    """w.B(v, v), as the derivative of g along the null vector."""
-    place, line = plane.place, plane.first
-    v, _ = line.null(null.left, null.right)
-
-    def test(t: float) -> np.ndarray:
-        line.at(place.u + t * v, place.p)
-        return np.array(line.null(null.left, null.right)[1])
-
-    value = float(along(test, _size(place.u) / float(np.abs(v).max())))
-    line.at(place.u, place.p)
-    return value
-
-
-def _size(u: np.ndarray) -> float:
-    return max(float(np.abs(u).max(initial=0.0)), 1.0)
-
-
-def _forms(plane: Plane, rough: bool = False) -> Forms:
-    place = plane.place
-    return Forms(plane.locus.at(place.q), place.u, place.p, rough)
-
-
-def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> float:
-    place = plane.pair(reference)[1]
-    if plane.flow:
-        if place <= 0.0:
-            return np.nan
-        return _forms(plane, rough).lyapunov(1j * np.sqrt(place))[0].value
-    if abs(place) >= 1.0:
-        return np.nan
-    return _forms(plane, rough).lyapunov(complex(place, np.sqrt(1.0 - place * place)))[0].value
 
 
 def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
@@ -206,11 +28,12 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     places = [Place(U[: problem.size], float(U[problem.size]), float(q)) for U, q in zip(points, values)]
     wanted = looks(plane.problem, problem.condition)
     found: list[tuple[int, PlanePoint]] = []
-    costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in THIRD_ORDER}
+    costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COSTLY}
+    at: References | None = None
     for i in range(len(places) - 1):
         if not plane.at(places[i]) < 1e300:
             continue
-        at = References(plane, problem)
+        at = References(plane, problem, at)
         tests = [
             (look, test)
             for look in wanted
@@ -247,11 +70,12 @@ def _at_end(locus: Locus, point: PlanePoint) -> bool:
 
 
 def _along(plane: Plane, places: list[Place], look: Look, problem: LocusProblem) -> list[float]:
-    """A coefficient of third order at all points, to a few digits."""
+    """A coefficient at all points, to a few digits where it is of third order."""
     values = []
+    at: References | None = None
     for place in places:
         plane.at(place)
-        at = References(plane, problem)
+        at = References(plane, problem, at)
         test = test_of(look, problem, at, rough=True)
         assert test is not None
         plane.at(place)
@@ -301,6 +125,8 @@ def solved(
     if not low - 1e-9 <= place.p <= high + 1e-9:
         return None
     residual = plane.at(place)
+    if not _holds(kind, plane):
+        return None
     margins = plane.row[2 * plane.m :]
     zero = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < 1e-8))
     return PlanePoint(
@@ -316,6 +142,23 @@ def solved(
         margins=zero,
         problem=locus.at(place.q),
     )
+
+
+def _holds(kind: str, plane: Plane) -> bool:
+    """Whether the multipliers at a solution are those that the name of the point says."""
+    spectrum = plane.spectrum
+    if not plane.m:
+        return True
+    edge = np.abs(spectrum.real) if plane.flow else np.abs(np.abs(spectrum) - 1.0)
+    pairs = int(np.sum((edge < CRITICAL) & (spectrum.imag > APART)))
+    if kind.endswith("-neimark-sacker") or kind in ("zero-hopf", "double-hopf"):
+        return pairs >= (2 if kind.startswith("double") else 1)
+    doubles = {
+        "bogdanov-takens": (0.0,),
+        "resonance-1-1": (1.0, -1.0) if plane.problem.flip_kind == "symmetry-breaking" else (1.0,),
+        "resonance-1-2": () if plane.problem.flip_kind == "symmetry-breaking" else (-1.0,),
+    }.get(kind, ())
+    return not doubles or any(int(np.sum(np.abs(spectrum - place) < DOUBLE)) >= 2 for place in doubles)
 
 
 BORDER_KINDS = {

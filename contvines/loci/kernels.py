@@ -353,7 +353,7 @@ def renew(data, work, b, c, null):
         c[i] = null[i] / size
         lines[0, i] = b[i]
     lines[0, n] = 0.0
-    transpose(data[CALLS], data[FIRST], work[BASE], c, work[TRIAL])
+    transpose(data[CALLS], data[FIRST], work[BASE], c[:n], work[TRIAL])
     F = work[TRIAL_F]
     for i in range(n):
         F[i] = 0.0

@@ -72,14 +72,20 @@ class Linearisation:
         """Turn to perturbations that change sign over the period, and back."""
         self.kernels.flip(self.data, self.work, sign)
 
-    def null_vectors(self, flipped: bool = False) -> Null:
-        """The null vectors of the matrix, or of the flipped one; for a regular one those of its smallest singular values."""
-        rng = np.random.default_rng(5)
-        v, w = rng.standard_normal((2, self.size)) / np.sqrt(self.size)
-        g = np.nan
+    def null_vectors(self, flipped: bool = False, near: Null | None = None) -> Null:
+        """The null vectors of the matrix, or of the flipped one; for a regular one those of its smallest singular values.
+
+        ``near`` are those of a neighbour.
+        """
+        sweeps, g = 1, np.nan
+        if near is None:
+            sweeps = SWEEPS
+            v, w = np.random.default_rng(5).standard_normal((2, self.size)) / np.sqrt(self.size)
+        else:
+            v, w = near.right, near.left
         if flipped:
             self.flip(-1.0)
-        for _ in range(SWEEPS):
+        for _ in range(sweeps):
             v, g = self.null(w, v)
             v /= np.linalg.norm(v)
             w, _ = self.left(w, v)

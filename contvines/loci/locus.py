@@ -23,6 +23,7 @@ from ..events.watch import Watch
 from ..journal import NullJournal
 from .kernels import BRANCH, MARGIN
 from .problem import LocusProblem
+from .sides import impossible_side
 from .starts import begin, first_point
 
 UNFOLDED = 1e-7  # an unfolding beyond this (relative to the largest unknown) says that a branch point does not persist
@@ -58,6 +59,9 @@ class Locus:
         Where it turns round in the second parameter.
     within : (float, float)
         Interval of the second parameter.
+    beyond : int
+        Of a border: on which side of it, looking along the points with q to the right and p upwards, the motion cannot be: 1
+        left, -1 right, 0 not known.
     """
 
     label: str
@@ -69,6 +73,7 @@ class Locus:
     marks: tuple[tuple[int, str], ...] = ()
     turns: tuple[Turn, ...] = ()
     within: tuple[float, float] = (-np.inf, np.inf)
+    beyond: int = 0
 
     def __len__(self) -> int:
         return len(self.branch)
@@ -298,7 +303,10 @@ def trace_locus(
         for i, e in whole.events
         if e.kind == "fold"
     )
-    return Locus(label, problem.kind, (problem.inner, problem.over), branch, flags, seed, (), turns, within)
+    side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
+    return Locus(
+        label, problem.kind, (problem.inner, problem.over), branch, flags, seed, (), turns, within, side
+    )
 
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:

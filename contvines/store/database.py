@@ -179,7 +179,8 @@ class Store:
                 self._version = version
             if not self._kept:
                 self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
-            present = {self._renew(*entry) for entry in graph_entries(graph)}
+            entries: Any = graph.entries() if hasattr(graph, "entries") else graph_entries(graph)
+            present = {self._renew(*entry) for entry in entries}
             for place in self._kept.keys() - present:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
                 del self._kept[place]
@@ -198,15 +199,19 @@ class Store:
         return kind, key
 
     def graph(self, *, problems: bool = True, trust: bool = False) -> Any:
-        """The graph as of the last checkpoint; without `problems`, numbers only (quicker).
+        """The graph (or chart) as of the last checkpoint; without `problems`, numbers only (quicker).
 
         With `trust`, functions that the file names are imported; see :mod:`contvines.problems.registry`.
         """
         from contvines.graph.persistence import graph_from_entries
 
-        kinds = ("graph", "branch", "special", "switch", "proof")
+        kinds = ("graph", "branch", "special", "switch", "proof", "chart", "locus", "plane-point", "region")
         entries = {kind: dict(self.entries(kind)) for kind in kinds}
         try:
+            if entries["chart"]:
+                from contvines.loci.chart import chart_from_entries
+
+                return chart_from_entries(entries, problems=problems, trust=trust)
             return graph_from_entries(entries, problems=problems, trust=trust)
         except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
             raise StoreError(

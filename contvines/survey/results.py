@@ -175,6 +175,6 @@ def load_survey(path: str | Path) -> Survey:
             notes = data["note"].values.astype(object)
     except FileNotFoundError:
         raise PlanError(f"{path}: there is no such file") from None
-    except (OSError, KeyError, ValueError) as error:
-        raise PlanError(f"{path}: this is not the NetCDF file of a survey ({error})") from None
+    except (OSError, KeyError, ValueError, TypeError):
+        raise PlanError(f"{path}: this is not the NetCDF file of a survey") from None
     return Survey(Plan(axes, samples), columns, notes, units, about)

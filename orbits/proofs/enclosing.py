@@ -53,13 +53,24 @@ class Box:
 def refine(
     system: System, nodes: Sequence[Sequence[Any]], extras: Sequence[Any], bits: int
 ) -> tuple[Any, Any]:
-    """Newton's method on the middles until it stands still.
+    """Newton's method on the middles (of parameters as well) until it stands still.
 
     Raises
     ------
     Obstacle
         If it leaves the neighbourhood of the start.
     """
+    balls = system.p
+    system.p = {name: value.mid() for name, value in balls.items()}
+    try:
+        return _newton(system, nodes, extras, bits)
+    finally:
+        system.p = balls
+
+
+def _newton(
+    system: System, nodes: Sequence[Sequence[Any]], extras: Sequence[Any], bits: int
+) -> tuple[Any, Any]:
     z = [[value.mid() for value in node] for node in nodes]
     e = [value.mid() for value in extras]
     goal = library().arb(2) ** (-(3 * bits) // 4)

@@ -62,3 +62,34 @@ def test_one_border_reached_from_two_branches():
         in graph[tie.target].ended
     )
     assert not any("WG4" in end for branch in graph for end in branch.ended)
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6, 1e-7])
+def test_a_sliver_between_a_fold_and_a_doubling_is_marked(width):
+    """x' = x + p - x^2 turns at x = 0; y' = -(1 + x - d) y flips at x = d: stable for 0 < x < d only, exactly."""
+    problem = cv.MapProblem(
+        lambda z, p: np.array([z[0] + p - z[0] ** 2, -(1.0 + z[0] - width) * z[1]]),
+        [0.3, 0.0],
+        0.09,
+        parameter="p",
+    )
+    graph = cv.diagram(problem, within=(-0.1, 0.2), depth=0)
+    branch = graph["B1"]
+    (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
+    assert (fold.value, flip.value) == pytest.approx((0.0, width**2), abs=1e-13)
+    stable = branch.points[branch.stable][:, 0]
+    assert len(stable) >= 3  # both ends, and something between
+    assert np.all((stable > -1e-9) & (stable < width + 1e-9))
+    assert len(branch.stable_intervals()) == 1
+
+
+def test_a_sliver_too_narrow_to_be_seen_is_told_of():
+    problem = cv.MapProblem(
+        lambda z, p: np.array([z[0] + p - z[0] ** 2, -(1.0 + z[0] - 3e-9) * z[1]]),
+        [0.3, 0.0],
+        0.09,
+        parameter="p",
+    )
+    graph = cv.diagram(problem, within=(-0.1, 0.2), depth=0)
+    for point in (*graph.of_kind("fold"), *graph.of_kind("period-doubling")):
+        assert "would not be resolved" in point.note

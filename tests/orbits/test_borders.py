@@ -285,3 +285,24 @@ def test_no_doubled_orbit_where_the_other_round_cannot_be():
     assert len(switches(graph, graze)) == 1
     for amplitude in (graze.value - 1e-4, graze.value + 1e-4):
         assert find_attractor(machine, {"w_rate": 1.0}, amplitude=amplitude, transient=2000).periods == 1
+
+
+def test_periods_are_added_where_a_turn_touches_a_wall():
+    """Beside the doubling, stable orbits of six and seven rounds with one more impact; the simulator settles on them."""
+    machine = Absorber(
+        restitution=0.15840379606858848,
+        friction=0.27062304650022073,
+        gravity=0.08085179925290478,
+        mass_ratio=0.006,
+    )
+    graph = cv.diagram(machine.orbit("LttRtt", amplitude=1.28), over="amplitude", within=(1.27, 1.3), depth=1)
+    graze = at(graph, 1.28857446, "wall-graze")
+    added = [graph[s.target] for s in switches(graph, graze) if "times as long" in s.note]
+    assert {branch.description["periods"] for branch in added} == {6, 7}
+    for branch in added:
+        assert branch.stable.all()
+        orbit = branch.orbit(len(branch) // 2)
+        start = {"phase": orbit.events.phase[0] % (2 * np.pi), "w": orbit.events.w[0]}
+        start["w_rate"] = orbit.events.rate_post[0] * (1.0 + 1e-8)
+        seen = find_attractor(machine, start, amplitude=orbit.parameters["amplitude"], max_period=8)
+        assert (seen.periods, seen.impacts) == (orbit.periods, 2 * orbit.periods + 1)

@@ -145,11 +145,12 @@ class Word:
     @cached_property
     def text(self) -> str:
         """As it is written in studies: modes appear, in brackets, only where the events leave them open."""
+        turns = bool(self.events) and all(self.letter(i).kind == TURN for i in range(len(self)))
         for signed, noted in ((False, ()), (True, ()), (True, (0,))):
             text = self._written(signed, noted)
             try:
                 read = parse(text, self.alphabet, _absent(self.modes[0]))
-                places = range(max(1, len(self))) if read.events == self.events and not noted else (0,)
+                places = range(len(self)) if turns and read.events == self.events else (0,)
                 if any(read.rotate(k) == self for k in places):
                     return text  # the same cycle, even where the text leaves open from which event it is read
             except WordError:

@@ -23,12 +23,25 @@ import numpy as np
 
 from .taylor import Line, along_line
 
+NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
+
 
 class Coefficient(NamedTuple):
     """A normal-form coefficient with an estimate of its error."""
 
     value: float
     error: float
+
+
+class Pair(NamedTuple):
+    """The critical vector of a pair with open ends, the left one, derivatives along real and imaginary part, h20, w.K q."""
+
+    vector: Any
+    left: np.ndarray
+    a: Line
+    b: Line
+    h20: np.ndarray
+    weight: complex
 
 
 class Forms:
@@ -124,20 +137,33 @@ class Forms:
         left, values, right = np.linalg.svd(self.closed_by(factor))
         return right[-1].conj(), left[:, -1].conj()
 
-    def quadratic(self) -> Coefficient:
-        """a at a fold: z + a z^2, or z' = a z^2."""
-        v, w = self.null(1.0 if not self.flow else 0.0)
-        v, w = np.real(v), np.real(w)
-        line, weight = self.line(v, 1.0), float(w @ self.K @ v)
+    def quadratic(self, along: np.ndarray | None = None) -> Coefficient:
+        """a at a fold: z + a z^2, or z' = a z^2; its sign is that along a direction, if one is given."""
+        v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
+        if along is not None and v @ along < 0.0:
+            v = -v
+        line, weight = self.line(v, 1.0), float(w @ self.K @ v) or np.nan
         value = -0.5 * float(w @ line.second @ self.extended(v, 1.0)) / weight
         return Coefficient(value, abs(0.5 * self.n * line.second_error / weight))
+
+    def size_of_quadratic(self, along: np.ndarray) -> float:
+        """What the quadratic coefficient would be if the second derivative pointed along the left null vector.
+
+        At a cusp it may vanish; what the third derivative makes of it a little further along counts, too.
+        """
+        v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
+        if v @ along < 0.0:
+            v = -v
+        line, x = self.line(v, 1.0), self.extended(v, 1.0)
+        size = float(np.linalg.norm(line.second @ x) + NEAR * np.linalg.norm(line.third @ x))
+        return 0.5 * size / (abs(float(w @ self.K @ v)) or np.nan)
 
     def cubic(self, factor: float) -> Coefficient:
         """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
         v, w = self.null(factor)
         v, w = np.real(v), np.real(w)
         closure = factor if not self.flow else 1.0
-        line, weight = self.line(v, closure), float(w @ self.K @ v)
+        line, weight = self.line(v, closure), float(w @ self.K @ v) or np.nan
         x = self.extended(v, closure)
         regular = self.closed_by(0.0 if self.flow else 1.0)
         h = self._solve(regular, -(line.second @ x))
@@ -150,6 +176,23 @@ class Forms:
         """A solution, of least length where the matrix is singular."""
         return np.linalg.lstsq(matrix, side, rcond=1e-10)[0]
 
+    def bogdanov_takens(self) -> tuple[float, float]:
+        """(a, b) at a double zero of a flow: z1' = z2, z2' = a z1^2 + b z1 z2.
+
+        Source: Kuznetsov, section 8.4, with q0, q1 and p1, p0 the right and left chains of the double zero.
+        """
+        q0, p1 = (np.real(x) for x in self.null(0.0))
+        if q0[np.argmax(np.abs(q0))] < 0.0:  # a and b change their signs with q0
+            q0 = -q0
+        q1, p0 = self._solve(self.J, q0), self._solve(self.J.T, p1)
+        q1 = q1 - (q0 @ q1) * q0
+        scale = p1 @ q1
+        p1 = p1 / scale
+        p0 = p0 / scale
+        p0 = p0 - (p0 @ q1) * p1
+        along_q0 = self.line(q0, 1.0).second
+        return 0.5 * float(p1 @ along_q0 @ q0), float(p0 @ along_q0 @ q0 + p1 @ along_q0 @ q1)
+
     # ------------------------------------------------------------------ a pair
     def lyapunov(self, multiplier: complex) -> tuple[Coefficient, complex]:
         """(first Lyapunov coefficient, c) of a pair: d = Re(c / m) for maps, l1 = Re(c) / omega for flows.
@@ -159,30 +202,105 @@ class Forms:
         multiplier : complex
             m on the unit circle (i omega for flows); the raw one of the problem's own period.
         """
+        multiplier = 1j * multiplier.imag if self.flow else multiplier / abs(multiplier)
+        pair = self._pair(multiplier)
+        one, first = pair.vector, pair.a.second + 1j * pair.b.second
+        mixed = 0.0 if self.flow else 1.0
+        h11 = np.linalg.solve(self.closed_by(mixed), -np.real(first @ one.conj()))
+        total = (pair.a.third + pair.b.third) @ one  # q q q* = (a^2 + b^2) q
+        total = total + 2.0 * first @ self.extended(h11, 1.0)
+        total = total + first.conj() @ self.extended(pair.h20, multiplier**2)
+        c = complex(-0.5 * (pair.left @ total) / pair.weight)
+        error = float(abs(self.n * (pair.a.third_error + 3.0 * pair.a.second_error) / pair.weight))
         if self.flow:
-            multiplier = 1j * multiplier.imag
-        else:
-            multiplier = multiplier / abs(multiplier)
+            omega = abs(multiplier.imag)
+            return Coefficient(c.real / omega, error / omega), c
+        return Coefficient(float((c / multiplier).real), error), c
+
+    def fourth_order(self, multiplier: complex) -> dict[str, float]:
+        """A = -i c / abs(d) at a resonance 1:4, where z -> i z + c z^2 z* + d z*^3."""
+        multiplier = multiplier / abs(multiplier)
+        _, c = self.lyapunov(multiplier)
+        pair = self._pair(multiplier)
+        a, b = pair.a, pair.b
+        x, y = pair.vector.real, pair.vector.imag
+        total = a.third @ x - 3.0 * b.third @ x - 1j * (3.0 * a.third @ y - b.third @ y)
+        h02 = self.extended(pair.h20.conj(), multiplier.conjugate() ** 2)
+        total = total + 3.0 * (a.second - 1j * b.second) @ h02
+        d = complex(-(pair.left @ total) / (6.0 * pair.weight))
+        A = -1j * c / abs(d)
+        return {"A_re": A.real, "A_im": A.imag}
+
+    def _pair(self, multiplier: complex) -> Pair:
         q, w = self.null(multiplier)
         # the phase in which real and imaginary parts are orthogonal
         square = np.sum(q * q)
         q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > 1e-300 else q
         one: Any = self.extended(q, multiplier)
         a, b = self.line_of(one.real), self.line_of(one.imag)
-        first, third = a.second + 1j * b.second, a.third + b.third
-        conjugate = a.second - 1j * b.second
-        square, mixed = (0.0, 0.0) if self.flow else (multiplier**2, 1.0)
-        if self.flow:
-            square = 2.0 * multiplier
-        h20 = np.linalg.solve(self.closed_by(square), -(first @ one))
-        h11 = np.linalg.solve(self.closed_by(mixed), -np.real(first @ one.conj()))
-        total = third @ one
-        total = total + 2.0 * first @ self.extended(h11, 1.0)
-        total = total + conjugate @ self.extended(h20, multiplier**2)
-        weight = complex(w @ self.K @ q)
-        c = complex(-0.5 * (w @ total) / weight)
-        error = float(abs(self.n * (a.third_error + 3.0 * a.second_error) / weight))
-        if self.flow:
-            omega = abs(multiplier.imag)
-            return Coefficient(c.real / omega, error / omega), c
-        return Coefficient(float((c / multiplier).real), error), c
+        twice = 2.0 * multiplier if self.flow else multiplier**2
+        h20 = np.linalg.solve(self.closed_by(twice), -((a.second + 1j * b.second) @ one))
+        return Pair(one, w, a, b, h20, complex(w @ self.K @ q))
+
+
+class Pitch(NamedTuple):
+    """What a pair on the stability boundary does: first Lyapunov coefficient, and how it is to be read.
+
+    Attributes
+    ----------
+    coefficient : float or None
+        d of a cycle, l1 of an equilibrium; None where it cannot be had.
+    criticality : {"supercritical", "subcritical"} or None
+        Supercritical: a stable circle (cycle) is born where the motion has lost its stability.
+    note : str
+        A nearby strong resonance, or that the error is as large as the coefficient.
+    """
+
+    coefficient: float | None
+    criticality: str | None
+    note: str
+
+
+RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coefficient no longer decides
+STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
+
+
+def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
+    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
+
+    Parameters
+    ----------
+    problem : Problem
+    u, p
+        The point.
+    spectrum : ndarray of complex
+        Raw multipliers there, or eigenvalues.
+    """
+    values: Any = np.asarray(spectrum, dtype=complex)
+    flow = problem.spectrum == "flow"
+    upper = values[values.imag > 0.0]
+    if not len(upper) or getattr(problem.kernels, "matrix", None) is None:
+        return Pitch(None, None, "")
+    critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
+    try:
+        found, _ = Forms(problem, u, p).lyapunov(critical)
+    except (ValueError, IndexError, np.linalg.LinAlgError):
+        return Pitch(None, None, "")
+    value = float(found.value)
+    if not np.isfinite(value):
+        return Pitch(None, None, "")
+    note = ""
+    if not flow:
+        full = complex(np.asarray(problem.to_multipliers(np.array([critical])))[0])
+        angle = abs(float(np.angle(full)))
+        note = next(
+            (
+                f"near the strong resonance {n}"
+                for n, place in STRONG.items()
+                if abs(angle - place) < RESONANT
+            ),
+            "",
+        )
+    if found.error > 0.5 * abs(value):
+        return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
+    return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)

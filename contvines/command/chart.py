@@ -1,0 +1,191 @@
+"""`contvines locus` and `contvines chart`: special points followed in a second parameter."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from contvines.command.options import FileArgument, TrustOption
+
+OverOption = Annotated[str, typer.Option("--over", metavar="NAME", help="The second parameter.")]
+WithinOption = Annotated[
+    tuple[float, float], typer.Option("--within", metavar="LOW HIGH", help="Its interval.")
+]
+PlotOption = Annotated[
+    Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the plane of the two parameters.")
+]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
+VirtualOption = Annotated[
+    bool, typer.Option("--virtual", help="Go on where no machine follows the motion; drawn dotted.")
+]
+
+
+def locus(
+    file: FileArgument,
+    label: Annotated[str, typer.Argument(metavar="LABEL", help="A special point, for example SB1.")],
+    over: OverOption,
+    within: WithinOption,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE.vines", help="Where to keep it; by default FILE-LABEL.vines here."
+        ),
+    ] = None,
+    plot: PlotOption = None,
+    virtual: VirtualOption = False,
+    quiet: QuietOption = False,
+    trust: TrustOption = False,
+) -> None:
+    """Follow one special point of a result in a second parameter.
+
+    The locus ends with either interval: that of the diagram, and --within.
+    """
+    from contvines.command.compose import beside, check_place
+    from contvines.store import load
+
+    target = output or beside(file, f"-{label}.vines")
+    check_place(target)
+    _check(within, plot, target, file)
+    graph = load(file, trust=trust)
+    _refuse_charts(graph, file)
+    if label not in graph.special:
+        what = "is a branch" if label in graph.branches else "is no label of it"
+        raise ValueError(
+            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
+        )
+    from contvines.command.progress import shown
+    from contvines.loci.charting import chart_of_one
+
+    with shown(quiet=quiet) as progress:
+        found = chart_of_one(graph, label, over, within, virtual=virtual, progress=progress)
+    found.save(target)
+    _tell(found, target, plot, quiet)
+
+
+def chart(
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="STUDY.toml|FILE.vines", help="A study, or a diagram that was made of one."),
+    ],
+    over: Annotated[
+        str | None,
+        typer.Option("--over", metavar="NAME", help="The second parameter; by default [chart] parameter."),
+    ] = None,
+    within: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--within", metavar="LOW HIGH", help="Its interval; by default [chart] within."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE.vines", help="Where to keep it; by default NAME-chart.vines here."
+        ),
+    ] = None,
+    plot: PlotOption = None,
+    virtual: VirtualOption = False,
+    quiet: QuietOption = False,
+    trust: TrustOption = False,
+) -> None:
+    """Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted."""
+    from contvines.command.compose import beside, check_place, say
+    from contvines.store import Store
+
+    target = output or beside(file, "-chart.vines")
+    check_place(target)
+    graph, over, within = _diagram(file, over, within, trust, quiet)
+    _check(within, plot, target, file)
+    fingerprint = _fingerprint(graph, over, within, virtual)
+    found: Any = None
+    if target.exists():
+        with Store.open(target) as store:
+            store.require(fingerprint)
+            if store.finished:
+                found = store.graph(problems=False)
+                say(f"{target} holds the finished chart; nothing to compute.", quiet)
+            else:
+                say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
+    if found is None:
+        from contvines.command.progress import shown
+        from contvines.command.run import interruptible
+        from contvines.loci.charting import chart as make
+
+        with Store.attach(target, fingerprint, {"chart": [over, *within]}) as store:
+            note = f"all finished points are kept in {target}; the same command goes on from there"
+            with interruptible(note), shown(quiet=quiet) as progress:
+                found = make(graph, over, within, virtual=virtual, journal=store, progress=progress)
+            store.tidy()
+    _tell(found, target, plot, quiet)
+
+
+def _diagram(
+    file: Path, over: str | None, within: tuple[float, float] | None, trust: bool, quiet: bool
+) -> tuple[Any, str, tuple[float, float]]:
+    """The diagram to chart, made first if a study is given, and what to chart it over."""
+    from contvines.command.study import is_database
+    from contvines.store import load
+
+    if is_database(file):
+        graph = load(file, trust=trust)
+        _refuse_charts(graph, file)
+        if not graph.finished:
+            raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
+        if over is None or within is None:
+            missing = "--over" if over is None else "--within"
+            raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8 would do.")
+        return graph, over, within
+    from contvines.command.compose import beside, checked_study
+    from contvines.command.run import diagram
+
+    study = checked_study(file)
+    if study.chart is not None:
+        over = over or study.chart.parameter
+        within = within or (study.chart.within[0], study.chart.within[1])
+    if over is None or within is None:
+        raise ValueError(
+            f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
+            "parameter and within."
+        )
+    diagram(file, quiet=True)
+    return load(beside(file, ".vines")), over, within
+
+
+def _check(within: tuple[float, float], plot: Path | None, target: Path, source: Path) -> None:
+    low, high = within
+    if not low < high:
+        raise ValueError(f"--within {low:g} {high:g}: give the lower number first, then the higher one.")
+    if target.resolve() == source.resolve():
+        raise ValueError(f"{target}: this is the file itself; choose another name with -o.")
+    if plot is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(plot)
+
+
+def _refuse_charts(graph: Any, file: Path) -> None:
+    if not hasattr(graph, "special"):
+        raise ValueError(f"{file}: this file holds a chart; give one that `contvines diagram` has made.")
+
+
+def _fingerprint(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:
+    import hashlib
+    import json
+
+    values = [(point.label, point.kind, point.value) for point in graph.special.values()]
+    text = json.dumps(
+        ["chart", graph.model, graph.parameter, list(graph.within), values, over, list(within), virtual]
+    )
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _tell(found: Any, target: Path, plot: Path | None, quiet: bool) -> None:
+    from contvines.command.compose import say
+
+    say(f"kept in {target}", quiet)
+    if not quiet:
+        typer.echo(str(found))
+    if plot is not None:
+        from contvines.plots.chart import plot_chart
+        from contvines.plots.figures import save_figure
+
+        save_figure(plot_chart(found), plot)
+        say(f"drawn in {plot}", quiet)

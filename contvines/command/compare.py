@@ -1,0 +1,100 @@
+"""Lines to compare a response with: the bare oscillator, a tuned absorber of the same mass, a friction damper."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+CompareOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--compare",
+        metavar="KIND",
+        help="With a picture of responses: bare, tuned or friction; may be repeated.",
+    ),
+]
+LOOKS = {
+    "bare": ("0.35", (0, (1, 1.2))),
+    "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
+    "friction": ("#7b3294", (0, (3, 1.2))),
+}
+SHOWN = ("max_abs_q1", "amplitude")
+POINTS = 600
+
+
+def check_compared(kinds: list[str] | None, drawn: bool) -> None:
+    """Refuse, before any work, lines that there are not, or that no picture would show.
+
+    Raises
+    ------
+    ValueError
+    """
+    from orbits.design.references import KINDS
+
+    for kind in kinds or ():
+        if kind not in KINDS:
+            raise ValueError(f"--compare {kind}: there is no such response; {', '.join(KINDS)} would do.")
+        if not drawn:
+            raise ValueError(
+                f"--compare {kind}: there is no picture to show it in; give --plot FILE.png, too."
+            )
+
+
+def compared(
+    graph: Any, kinds: list[str] | None, x: str | None = None, y: str | None = None, **options: Any
+) -> Any:
+    """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
+    from contvines.plots.diagram import plot_diagram
+    from contvines.plots.figures import new_axes, styled
+    from contvines.plots.style import axis_label
+
+    if not kinds:
+        return plot_diagram(graph, x, y, **options)
+    with styled(options.get("style")):
+        _, axes = new_axes(None, figsize=options.pop("figsize", None))
+        over, shown = draw_compared(axes, graph, kinds, x, y)
+        axes.set_xlabel(axis_label(over, unit=graph.units.get(over)))
+        axes.set_ylabel(axis_label(shown, unit=graph.units.get(shown)))
+        return plot_diagram(graph, x, y, axes=axes, **options)
+
+
+def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: str | None) -> tuple[str, str]:
+    """Draw the lines on axes on which the graph is drawn next; returns what is on the axes.
+
+    Raises
+    ------
+    ValueError
+        If the graph shows no response of an oscillator over its parameter.
+    """
+    import numpy as np
+
+    from contvines.plots.diagram import default_measure
+    from orbits.design.references import NAMES, reference
+
+    shown, over = y or default_measure(graph), x or graph.parameter
+    problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)
+    model = getattr(problem, "model", None)
+    if (
+        model is None
+        or "damping" not in getattr(model, "parameter_names", ())
+        or shown not in SHOWN
+        or over != graph.parameter
+    ):
+        raise ValueError(
+            f"--compare {kinds[0]}: this goes with the displacement of an oscillator ({' or '.join(SHOWN)}) over the parameter; "
+            f"here {shown} is drawn over {over}."
+        )
+    assert problem is not None
+    values = np.linspace(graph.within[0], graph.within[1], POINTS)
+    params = np.atleast_2d(problem.values(values))
+    for kind in kinds:
+        color, dashes = LOOKS[kind]
+        response = reference(kind, model, params) * model.gauge("length", params)
+        axes.plot(
+            values, response, color=color, linestyle=dashes, linewidth=1.4, zorder=1.7, label=NAMES[kind]
+        )
+    return over, shown

@@ -1,0 +1,47 @@
+"""A chart for other programs: the points of its loci as a table, or all of it as JSON."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .files import check_target
+from .standard_json import json_text
+
+if TYPE_CHECKING:
+    from ..loci.chart import Chart
+
+FORMATS = ("csv", "json")
+
+
+def export_chart(chart: Chart, form: str, path: Path) -> Path:
+    """Write a chart.
+
+    Parameters
+    ----------
+    chart : Chart
+    form : {"csv", "json"}
+        csv has a row per point of every locus: its label, kind and word, both parameters, and whether the motion is real.
+    path : Path
+
+    Raises
+    ------
+    ValueError
+        If there is no such format for charts, or the place will not do.
+    """
+    if form not in FORMATS:
+        raise ValueError(f"--to {form}: a chart is written as {' or '.join(FORMATS)}.")
+    check_target(path, form)
+    if form == "json":
+        path.write_text(json_text(chart.to_dict()) + "\n", encoding="utf-8")
+        return path
+    names = [name + (f" [{chart.units[name]}]" if chart.units.get(name) else "") for name in chart.parameters]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["locus", "kind", "word", *names, "real"])
+        for locus in chart.loci.values():
+            word = locus.branch.description.get("word") or ""
+            for (p, q), real in zip(locus.values, locus.real):
+                writer.writerow([locus.label, locus.kind, word, repr(float(p)), repr(float(q)), int(real)])
+    return path

@@ -1,0 +1,1 @@
+"""Normal forms at single points, from derivatives of the equations there."""

@@ -1,0 +1,160 @@
+"""Chart: loci, points of codimension two and regions in the plane of two parameters, as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
+
+from ..branches.branch import Branch
+from ..problems.registry import UnknownFactory, rebuild
+from .locus import Locus, Turn
+from .plane_point import PlanePoint
+from .regions import Region
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(eq=False)
+class Chart:
+    """What happens in the plane of two parameters.
+
+    Attributes
+    ----------
+    parameters : (str, str)
+        The parameter of the diagrams (drawn upright) and the second one (drawn across).
+    within : ((float, float), (float, float))
+        Their intervals.
+    loci : dict of Locus
+    points : dict of PlanePoint
+    regions : list of Region
+    model : dict
+        Name and parameters of the model.
+    settings : dict
+    units : dict of str
+        Units of the parameters, by name, where they have any.
+    finished : bool
+        False while the run that makes it goes on, or was interrupted.
+    message : str
+    """
+
+    parameters: tuple[str, str]
+    within: tuple[tuple[float, float], tuple[float, float]]
+    loci: dict[str, Locus] = field(default_factory=dict)
+    points: dict[str, PlanePoint] = field(default_factory=dict)
+    regions: list[Region] = field(default_factory=list)
+    model: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, Any] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    finished: bool = False
+    message: str = ""
+
+    def __getitem__(self, label: str) -> Any:
+        for group in (self.loci, self.points):
+            if label in group:
+                return group[label]
+        known = ", ".join([*self.loci, *self.points]) or "none yet"
+        raise KeyError(f"the chart has no label {label!r}; it has {known}")
+
+    def __contains__(self, label: object) -> bool:
+        return label in self.loci or label in self.points
+
+    def __str__(self) -> str:
+        from .table import table
+
+        return table(self)
+
+    def __repr__(self) -> str:
+        state = "" if self.finished else ", unfinished"
+        return (
+            f"Chart({self.parameters[0]} x {self.parameters[1]}: {len(self.loci)} loci, {len(self.points)} points, "
+            f"{len(self.regions)} regions{state})"
+        )
+
+    def of_kind(self, kind: str) -> list[PlanePoint]:
+        """The points of codimension two of a kind."""
+        return [point for point in self.points.values() if point.kind == kind]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The chart as a JSON-able dict."""
+        result = {
+            "parameters": list(self.parameters),
+            "within": [list(interval) for interval in self.within],
+            "model": self.model,
+            "finished": self.finished,
+            "message": self.message,
+            "loci": [locus.to_dict() for locus in self.loci.values()],
+            "points": [point.to_dict() for point in self.points.values()],
+            "regions": [region.to_dict(self.parameters) for region in self.regions],
+        }
+        return {**result, "units": self.units} if self.units else result
+
+    def plot(self, **options: Any) -> Any:
+        """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
+        from ..plots.chart import plot_chart
+
+        return plot_chart(self, **options)
+
+    def save(self, path: str | Path) -> None:
+        """Write the chart to a .vines file, as graphs are; ``contvines.load`` reads both."""
+        from ..store import save
+
+        save(self, path)
+
+    # ------------------------------------------------------------------ to and from a file
+    def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """The chart as (kind, key, content)."""
+        apart = ("loci", "points", "regions")
+        yield "chart", "chart", {f.name: getattr(self, f.name) for f in fields(self) if f.name not in apart}
+        for locus in self.loci.values():
+            own = {f.name: getattr(locus, f.name) for f in fields(locus) if f.name != "branch"}
+            own["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
+            branch = {
+                f"branch_{f.name}": getattr(locus.branch, f.name)
+                for f in fields(locus.branch)
+                if f.name != "problem"
+            }
+            yield "locus", locus.label, {**own, **branch}
+        for point in self.points.values():
+            own = {f.name: getattr(point, f.name) for f in fields(point) if f.name != "problem"}
+            yield "plane-point", point.label, own
+        for i, region in enumerate(self.regions):
+            yield "region", str(i), {f.name: getattr(region, f.name) for f in fields(region)}
+
+
+def chart_from_entries(
+    entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True, trust: bool = False
+) -> Chart:
+    """The chart that `Chart.entries` took apart."""
+    head = dict(next(iter(entries["chart"].values())))
+    head["parameters"] = tuple(head["parameters"])
+    head["within"] = tuple(tuple(interval) for interval in head["within"])
+    chart = Chart(**head)
+    for label, content in entries.get("locus", {}).items():
+        own = {k: v for k, v in content.items() if not k.startswith("branch_")}
+        parts = {k.removeprefix("branch_"): v for k, v in content.items() if k.startswith("branch_")}
+        parts["ended"] = tuple(parts["ended"])
+        parts["marks"] = tuple((int(i), str(name)) for i, name in parts["marks"])
+        problem = None
+        if problems:
+            try:
+                problem = rebuild(parts["description"], trust)
+            except UnknownFactory:
+                problem = None
+        own["parameters"], own["within"] = tuple(own["parameters"]), tuple(own["within"])
+        own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
+        own["turns"] = tuple(Turn(int(i), (float(p), float(q))) for i, p, q in own["turns"])
+        chart.loci[label] = Locus(branch=Branch(problem=problem, **parts), **own)
+    for label, content in entries.get("plane-point", {}).items():
+        own = dict(content)
+        for name in ("parameters", "value", "margins"):
+            own[name] = tuple(own[name])
+        on = next((chart.loci[name] for name in own["on"] if name in chart.loci), None)
+        problem = None if on is None or on.problem is None else on.problem.at(own["value"][1])
+        if problem is not None and problem.dimension != len(own["u"]):
+            problem = None
+        chart.points[label] = PlanePoint(problem=problem, **own)
+    for content in entries.get("region", {}).values():
+        chart.regions.append(Region(**{**content, "at": tuple(content["at"])}))
+    return chart

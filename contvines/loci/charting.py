@@ -1,0 +1,126 @@
+"""Making a chart: loci from all special points of a graph, points of codimension two on them, loci that leave these."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ..continuation.settings import Settings
+from ..continuation.starts import check_interval
+from ..graph.graph import Graph
+from .chart import Chart
+from .charting_run import Charting, ChartProgress
+from .locus import locus
+
+
+def chart(
+    graph: Graph,
+    over: str,
+    within: tuple[float, float],
+    bounds: tuple[float, float] | None = None,
+    depth: int = 2,
+    virtual: bool = False,
+    regions: bool = True,
+    settings: Settings | Mapping[str, Any] | None = None,
+    journal: Any = None,
+    progress: Callable[[ChartProgress], None] | None = None,
+) -> Chart:
+    """A chart of two parameters: a locus from every special point of a graph, and again from what is found on them.
+
+    Parameters
+    ----------
+    graph : Graph
+        A diagram in the first parameter, made at a value of the second one that lies in ``within``.
+    over : str
+        Name of the second parameter.
+    within : (float, float)
+        Its interval.
+    bounds : (float, float), optional
+        Interval of the first parameter; that of the graph if left out.
+    depth : int
+        How many generations of points of codimension two start loci of their own.
+    virtual : bool
+        Follow loci beyond borders, too, and start them at virtual special points.
+    regions : bool
+        Divide the plane into regions, and simulate in each.
+    settings : Settings or mapping, optional
+    journal : Journal, optional
+        What it remembers is not computed again.
+    progress : callable, optional
+        Called with a :class:`ChartProgress`.
+
+    Returns
+    -------
+    Chart
+
+    Raises
+    ------
+    ValueError
+        If a parameter or interval will not do, or no special point of the graph has a locus; the sentence says why.
+    """
+    within = check_interval(within)
+    bounds = check_interval(graph.within if bounds is None else bounds)
+    points = [s for s in graph.special.values() if s.kind not in ("end", "user") and (s.real or virtual)]
+    if not points:
+        raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
+    run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), journal, progress)
+    for point in points:
+        run.add_special(point)
+    run.work(depth)
+    if regions:
+        run.divide()
+    run.finish()
+    return run.chart
+
+
+def chart_of_one(
+    graph: Graph,
+    label: str,
+    over: str,
+    within: tuple[float, float],
+    virtual: bool = False,
+    settings: Settings | Mapping[str, Any] | None = None,
+    progress: Callable[[ChartProgress], None] | None = None,
+) -> Chart:
+    """The locus of one special point of a graph with the points of codimension two on it, as a chart.
+
+    Parameters
+    ----------
+    graph : Graph
+    label : str
+        Of the special point.
+    over, within, virtual, settings, progress
+        As for :func:`chart`.
+
+    Raises
+    ------
+    ValueError
+        As :func:`contvines.locus` does.
+    """
+    run = Charting(
+        graph,
+        over,
+        check_interval(within),
+        check_interval(graph.within),
+        virtual,
+        Settings.of(settings),
+        None,
+        progress,
+    )
+    found = locus(
+        graph.special[label],
+        over,
+        within,
+        bounds=graph.within,
+        virtual=virtual,
+        settings=settings,
+        progress=lambda name, count, value: run.tell(f"{name}: {count} points"),
+    )
+    run.chart.loci[label] = found
+    run.mark(found)
+    run.chart.message = "finished"
+    run.finish()
+    return run.chart
+
+
+__all__ = ["ChartProgress", "chart", "chart_of_one"]

@@ -1,0 +1,282 @@
+"""The state of a chart while it is made: a queue of places where loci may start, and what is known already."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..branches.special_point import SpecialPoint
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from ..events.kinds import PREFIXES as SPECIAL
+from ..graph.graph import Graph
+from ..graph.identity import same_form
+from ..journal import NullJournal
+from .chart import Chart
+from .codimension_two import find
+from .coefficients_at import coefficients
+from .departures import Candidate, leaving
+from .kernels import MARGIN
+from .kinds import PREFIXES
+from .locus import Locus, checked_ends, trace_locus
+from .plane_point import PlanePoint
+from .problem import condition
+from .regions import divide
+from .starts import begin
+
+SAME = 1e-7  # points of the plane closer than this part of its sides are one
+LARGEST = 120  # loci; a chart that was cut there says so
+
+
+class ChartProgress(NamedTuple):
+    """Where a chart is: a sentence, and how much there is so far."""
+
+    message: str
+    loci: int
+    points: int
+    waiting: int
+
+    @property
+    def sentence(self) -> str:
+        """For a progress line."""
+        return f"{self.message}  |  {self.loci} loci, {self.points} points, {self.waiting} waiting"
+
+
+class Charting:
+    """The state of a chart while it is made."""
+
+    def __init__(
+        self,
+        graph: Graph,
+        over: str,
+        within: tuple[float, float],
+        bounds: tuple[float, float],
+        virtual: bool,
+        settings: Settings,
+        journal: Any,
+        progress: Callable[[ChartProgress], None] | None,
+    ) -> None:
+        self.graph, self.over, self.within, self.bounds = graph, over, within, bounds
+        self.virtual, self.settings, self.progress = virtual, settings, progress
+        self.journal = NullJournal() if journal is None else journal
+        self.chart = Chart(
+            (graph.parameter, over),
+            (bounds, within),
+            model=dict(graph.model),
+            settings={**settings.to_dict(), "virtual": virtual},
+            units={
+                name: unit
+                for name, unit in getattr(graph, "units", {}).items()
+                if name in (graph.parameter, over)
+            },
+        )
+        self.queue: deque[tuple[Candidate, int]] = deque()
+        self.numbers: dict[str, int] = {}
+        for taken in graph.special:
+            prefix = taken.rstrip("0123456789")
+            self.numbers[prefix] = max(self.numbers.get(prefix, 0), int(taken[len(prefix) :] or 0))
+        self.forms: dict[str, Engine] = {}
+        self.refused: list[str] = []
+
+    def tell(self, message: str) -> None:
+        """Report progress."""
+        if self.progress is not None:
+            self.progress(
+                ChartProgress(message, len(self.chart.loci), len(self.chart.points), len(self.queue))
+            )
+
+    def label(self, prefix: str) -> str:
+        """The next label with this prefix."""
+        self.numbers[prefix] = self.numbers.get(prefix, 0) + 1
+        return f"{prefix}{self.numbers[prefix]}"
+
+    # ------------------------------------------------------------------ loci
+    def add_special(self, point: SpecialPoint) -> None:
+        """Queue the locus of a special point of the graph."""
+        if point.problem is None:
+            raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+        value = getattr(point.problem, "parameters", {}).get(self.over)
+        if value is None:
+            begin(point.problem, point.kind, point.u, point.value, self.over)  # says why
+            return
+        if not self.within[0] <= value <= self.within[1]:
+            raise ValueError(
+                f"the diagram was made at {self.over} = {value:.10g}, outside of within = [{self.within[0]:.10g}, "
+                f"{self.within[1]:.10g}]; widen the interval"
+            )
+        if not self.queue and not self.chart.loci:
+            checked_ends(point.problem, self.over, self.within)
+        candidate = Candidate(
+            point.problem, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
+        )
+        self.queue.append((candidate, 0))
+
+    def work(self, depth: int) -> None:
+        """Trace what is queued, and what is found, until nothing is new."""
+        while self.queue:
+            if len(self.chart.loci) >= LARGEST:
+                self.chart.message = f"stopped at {LARGEST} loci with {len(self.queue)} waiting"
+                break
+            candidate, generation = self.queue.popleft()
+            known = self.known(candidate)
+            if known is not None:
+                point = self.chart.points.get(candidate.seed)
+                if point is not None and known.label not in point.on:
+                    point.on.append(known.label)
+                continue
+            locus = self.trace(candidate)
+            if locus is None:
+                continue
+            self.chart.loci[locus.label] = locus
+            fresh = self.mark(locus)
+            self.journal.checkpoint(self.chart)
+            self.tell(f"{locus.label} finished")
+            if generation < depth:
+                for point in fresh:
+                    self.queue += [(c, generation + 1) for c in leaving(point, locus, self.bounds, self.over)]
+        else:
+            self.chart.message = "finished"
+
+    def trace(self, candidate: Candidate) -> Locus | None:
+        """The locus of a candidate; None, with a remark, where it cannot be followed."""
+        own = (
+            candidate.seed in self.graph.special
+        )  # a locus is called like the special point from which it comes
+        label = candidate.seed if own else self.label(SPECIAL.get(candidate.kind, "L"))
+        try:
+            problem = begin(
+                candidate.problem,
+                candidate.kind,
+                candidate.u,
+                candidate.p,
+                self.over,
+                candidate.index,
+                self.bounds,
+            )
+            locus = trace_locus(
+                problem,
+                candidate.u,
+                candidate.p,
+                candidate.q,
+                self.within,
+                self.settings,
+                label,
+                candidate.seed,
+                self.virtual,
+                self.journal,
+                lambda name, count, value: self.tell(f"{name}: {count} points"),
+            )
+        except ValueError as error:
+            self.refused.append(f"{candidate.seed}: {error}")
+            locus = None
+        if locus is None or len(locus) < 3:
+            if not own:
+                self.numbers[label.rstrip("0123456789")] -= 1
+            return None
+        return locus
+
+    def known(self, candidate: Candidate) -> Locus | None:
+        """The locus on which a candidate lies already, or None."""
+        wanted = condition(candidate.problem, candidate.kind)
+        for locus in self.chart.loci.values():
+            if locus.kind != candidate.kind or locus.problem is None:
+                continue
+            if self.passes(locus, candidate, border=wanted == MARGIN):
+                return locus
+        return None
+
+    def passes(self, locus: Locus, candidate: Candidate, border: bool) -> bool:
+        """Whether a locus goes through the place of a candidate, with the same motion (at borders: with any word)."""
+        values, size = locus.values, locus.size
+        unit = np.array([self.bounds[1] - self.bounds[0], self.within[1] - self.within[0]])
+        place = np.array([candidate.p, candidate.q])
+        near = np.abs((values - place) / unit).max(axis=1)
+        if not near.min() < 0.2:
+            return False
+        form = candidate.problem.canonical(candidate.u, candidate.p)
+        engine = self.forms.setdefault(locus.label, Engine(locus.problem, self.within, self.settings))
+        gaps = values[:, 1] - candidate.q
+        segments = np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) | (near[:-1] < 1e-6) | (near[1:] < 1e-6))
+        for i in segments:
+            share = (
+                0.0 if gaps[i] == gaps[i + 1] else float(np.clip(gaps[i] / (gaps[i] - gaps[i + 1]), 0.0, 1.0))
+            )
+            guess = (1.0 - share) * locus.branch.points[i] + share * locus.branch.points[i + 1]
+            if abs(guess[size] - candidate.p) > 0.1 * unit[0]:
+                continue
+            found = engine.at_value(guess, candidate.q)
+            U = guess if found is None else found.u
+            reach = 1e-4 if found is None else SAME
+            if abs(U[size] - candidate.p) > reach * unit[0]:
+                continue
+            if border:
+                return True
+            here = locus.problem.base.canonical(U[:size], float(U[size]))
+            if same_form(here, form):
+                return True
+        return False
+
+    # ------------------------------------------------------------------ points
+    def mark(self, locus: Locus) -> list[PlanePoint]:
+        """Find the points of codimension two on a locus; returns those that are new."""
+        fresh: list[PlanePoint] = []
+        marks: list[tuple[int, str]] = []
+        for index, point in find(locus):
+            known = next((other for other in self.chart.points.values() if self.same(point, other)), None)
+            if known is None:
+                point.label = self.label(PREFIXES[point.kind])
+                point.on = [locus.label]
+                point.coefficients = coefficients(point)
+                self.chart.points[point.label] = known = point
+                fresh.append(point)
+            elif locus.label not in known.on:
+                known.on.append(locus.label)
+            if all(name != known.label for _, name in marks):
+                marks.append((index, known.label))
+        locus.marks = tuple(marks)
+        return fresh
+
+    def same(self, one: PlanePoint, other: PlanePoint) -> bool:
+        """Whether two points are one: the same kind at the same place."""
+        unit = (self.bounds[1] - self.bounds[0], self.within[1] - self.within[0])
+        return one.kind == other.kind and all(
+            abs(a - b) <= SAME * w for a, b, w in zip(one.value, other.value, unit)
+        )
+
+    # ------------------------------------------------------------------ regions
+    def divide(self) -> None:
+        """Regions between the real parts of the loci, and what a simulation finds in each."""
+        curves = []
+        for each in self.chart.loci.values():
+            values = each.values.copy()
+            values[~each.real] = np.nan
+            curves.append(values)
+        problem = next(iter(self.graph.branches.values())).problem
+        regions = divide(curves, self.chart.within)
+        for i, region in enumerate(regions):
+            self.tell(f"region {i + 1} of {len(regions)}")
+            region.attractors = self.witness(problem, region.at)
+        self.chart.regions = regions
+
+    def witness(self, problem: Any, place: tuple[float, float]) -> list[dict[str, Any]]:
+        """What is stable at a place, by simulation; empty where the problem cannot be simulated."""
+        if getattr(problem, "witness", None) is None:
+            return []
+        key = f"region/{place[0]!r}/{place[1]!r}"
+        known = self.journal.recall(key)
+        if known is None:
+            there = problem.against(problem.parameter, {self.over: place[1]})
+            known = {"attractors": there.witness(place[0])}
+            self.journal.record(key, known)
+        return list(known["attractors"])
+
+    def finish(self) -> None:
+        """Close the chart and keep it."""
+        self.chart.finished = True
+        if self.refused and not self.chart.loci:
+            raise ValueError("no locus could be followed: " + "; ".join(dict.fromkeys(self.refused)))
+        self.journal.checkpoint(self.chart)
+        self.tell(self.chart.message)

@@ -1,0 +1,119 @@
+"""Test functions in the plane of two parameters: the conditions of a locus, and those of the points on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..forms.coefficients import Forms
+from .kernels import BRANCH, FLIP, FOLD, PAIR
+from .kinds import Look
+from .linear import Null
+from .plane import Plane
+from .problem import LocusProblem
+
+UNSURE = 1e-3  # a coefficient whose error exceeds this part of its natural size is not known
+
+Test = Callable[[Plane], float]
+
+
+class References:
+    """Borders and positions that belong to one point of a locus, held fixed while tests are compared and solved."""
+
+    def __init__(self, plane: Plane, locus: LocusProblem, near: References | None = None) -> None:
+        problem, maps = plane.problem, plane.problem.spectrum == "map"
+        self.plus: Null = plane.first.null_vectors(near=None if near is None else near.plus)
+        flips = maps and getattr(problem, "pinned", 0) != 2
+        before = None if near is None else near.minus
+        self.minus: Null | None = plane.first.null_vectors(True, before) if flips else None
+        self.reference = locus.reference
+        self.second = 0.0
+        if plane.m >= 2:
+            self.reference = plane.pair(self._nearest(plane))[1]
+            self.second = self._other(plane)
+
+    def _nearest(self, plane: Plane) -> float:
+        spectrum = plane.spectrum
+        upper = spectrum[spectrum.imag > 0.0]
+        if not len(upper):
+            return self.reference
+        if plane.flow:
+            return float(np.abs(upper[np.argmin(np.abs(upper.real))]) ** 2)
+        return float(upper[np.argmin(np.abs(np.abs(upper) - 1.0))].real)
+
+    def _other(self, plane: Plane) -> float:
+        spectrum = plane.spectrum
+        upper = spectrum[spectrum.imag > 0.0]
+        if len(upper) < 2:
+            return np.nan
+        distance = np.abs(upper.real) if plane.flow else np.abs(np.abs(upper) - 1.0)
+        other = upper[np.argsort(distance)[1]]
+        return float(np.abs(other) ** 2 if plane.flow else other.real)
+
+
+def own_conditions(plane: Plane, locus: LocusProblem, at: References) -> list[Test]:
+    """The conditions of the locus itself, with references held fixed."""
+    if locus.condition == FOLD:
+        return [lambda x: x.singular_test(at.plus.left, at.plus.right)]
+    if locus.condition == FLIP:
+        assert at.minus is not None
+        minus = at.minus
+        return [lambda x: x.singular_test(minus.left, minus.right, flipped=True)]
+    if locus.condition == BRANCH:
+        return [
+            lambda x: x.singular_test(at.plus.left, at.plus.right),
+            lambda x: x.unfolding_test(at.plus.left, at.plus.right),
+        ]
+    if locus.condition == PAIR:
+        return [lambda x: x.pair(at.reference)[0]]
+    return [lambda x: float(x.row[2 * x.m + locus.index])]
+
+
+def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False) -> Test | None:
+    """The test function of something to look for; None where it cannot be asked here.
+
+    Coefficients of third order are computed to a few digits with ``rough``.
+    """
+    plus, minus = at.plus, at.minus
+    if look.test == "quadratic":
+        return lambda x: _bend(x, plus)
+    if look.test == "cubic":
+        return lambda x: _forms(x, rough).cubic(-1.0).value
+    if look.test == "lyapunov":
+        return lambda x: _lyapunov(x, at.reference, rough)
+    if look.test == "plus":
+        return lambda x: x.singular_test(plus.left, plus.right)
+    if look.test == "minus":
+        return None if minus is None else lambda x: x.singular_test(minus.left, minus.right, flipped=True)
+    if look.test == "pair":
+        return lambda x: x.pair(at.reference)[0]
+    if look.test == "second-pair":
+        return None if np.isnan(at.second) else lambda x: x.pair(at.second)[0]
+    if look.test == "double":
+        return lambda x: x.two_nearest(look.value)
+    return lambda x: x.pair(at.reference)[1] - look.value
+
+
+def _bend(plane: Plane, null: Null) -> float:
+    """The quadratic coefficient of a fold, along the null vector that goes with the reference; NaN if it is not known."""
+    v, _ = plane.first.null(null.left, null.right)
+    forms = _forms(plane)
+    found = forms.quadratic(v)
+    return found.value if found.error <= UNSURE * forms.size_of_quadratic(v) else np.nan
+
+
+def _forms(plane: Plane, rough: bool = False) -> Forms:
+    place = plane.place
+    return Forms(plane.locus.at(place.q), place.u, place.p, rough)
+
+
+def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> float:
+    place = plane.pair(reference)[1]
+    if plane.flow:
+        if place <= 0.0:
+            return np.nan
+        return _forms(plane, rough).lyapunov(1j * np.sqrt(place))[0].value
+    if abs(place) >= 1.0:
+        return np.nan
+    return _forms(plane, rough).lyapunov(complex(place, np.sqrt(1.0 - place * place)))[0].value

@@ -1,0 +1,157 @@
+"""Responses to compare with: the bare oscillator, a tuned absorber of the same mass, and a plain friction damper.
+
+Of each the largest displacement of the oscillator under the same excitation, in closed form.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+KINDS = ("bare", "tuned", "friction")
+NAMES = {
+    "bare": "bare oscillator",
+    "tuned": "tuned absorber of the same mass",
+    "friction": "friction damper, no walls",
+}
+
+
+def bare(
+    frequency: ArrayLike, forcing: float, damping: float, mass_ratio: float, excitation: float = 1.0
+) -> np.ndarray:
+    """Amplitude of the oscillator alone, in half-widths.
+
+    q1'' + eps lambda q1' + q1 = e + chi eps lambda e',  e = eps G sin(Omega tau): a force of one amplitude for chi = 0.
+
+    Parameters
+    ----------
+    frequency : array_like
+        Omega.
+    forcing, damping, mass_ratio, excitation : float
+        G, lambda, eps and chi, as in `orbits.Coupled`.
+    """
+    omega = np.asarray(frequency, dtype=float)
+    drag = 1j * mass_ratio * damping * omega
+    return np.abs(mass_ratio * forcing * (1.0 + excitation * drag) / (1.0 - omega**2 + drag))
+
+
+def tuning(mass_ratio: float) -> tuple[float, float]:
+    """Den Hartog's tuned absorber on an undamped oscillator: frequency over that of the oscillator, and damping ratio.
+
+    f = 1/(1 + mu) makes the two fixed points of the response equally high; zeta^2 = 3 mu/(8 (1 + mu)^3) is the mean of the two values that
+    make one of them a maximum; zeta is c/(2 m omega_0). Source: J. P. Den Hartog, Mechanical Vibrations (1956), section 3.3.
+    """
+    return 1.0 / (1.0 + mass_ratio), math.sqrt(3.0 * mass_ratio / (8.0 * (1.0 + mass_ratio) ** 3))
+
+
+def fixed_points(mass_ratio: float) -> tuple[float, float]:
+    """The two frequencies at which the response of the tuned absorber does not depend on its damping (undamped oscillator).
+
+    Omega^2 = (1 -+ sqrt(mu/(2 + mu)))/(1 + mu), where the amplification of a force is sqrt(1 + 2/mu).
+    """
+    share = math.sqrt(mass_ratio / (2.0 + mass_ratio))
+    low, high = ((1.0 - share) / (1.0 + mass_ratio), (1.0 + share) / (1.0 + mass_ratio))
+    return math.sqrt(low), math.sqrt(high)
+
+
+def tuned(
+    frequency: ArrayLike,
+    forcing: float,
+    damping: float,
+    mass_ratio: float,
+    excitation: float = 1.0,
+    tuned_to: tuple[float, float] | None = None,
+) -> np.ndarray:
+    """Amplitude of the oscillator with a tuned absorber of mass ratio eps in place of the cavity, in half-widths.
+
+    Parameters
+    ----------
+    frequency : array_like
+    forcing, damping, mass_ratio, excitation : float
+        As for `bare`.
+    tuned_to : (float, float), optional
+        Frequency over the oscillator's, and damping coefficient over twice the absorber's mass times the oscillator's frequency;
+        Den Hartog's (`tuning`) by default.
+    """
+    omega = np.asarray(frequency, dtype=float)
+    f, zeta = tuning(mass_ratio) if tuned_to is None else tuned_to
+    link = f * f + 2.0j * zeta * omega  # of spring and damper, over the absorber's mass
+    carried = link / (link - omega**2)  # absorber's displacement over the oscillator's
+    drag = 1j * mass_ratio * damping * omega
+    stiffness = 1.0 - omega**2 + drag - mass_ratio * omega**2 * carried
+    return np.abs(mass_ratio * forcing * (1.0 + excitation * drag) / stiffness)
+
+
+def friction_damper(
+    frequency: ArrayLike,
+    forcing: float,
+    damping: float,
+    mass_ratio: float,
+    pull: float,
+    excitation: float = 1.0,
+) -> np.ndarray:
+    """Amplitude of the oscillator with a mass that slides or sticks on it, no walls, in half-widths.
+
+    While friction (`pull` = mu g) holds, both move as one. Beyond, the first harmonic of the friction force is taken: with speed v of
+    the oscillator and absorber's relative speed u, the absorber's equation gives its amplitude as (4/pi) pull/Omega and its phase by
+    u^2 = v^2 - that^2, so that the oscillator sees eps times a complex mass that depends on its amplitude (first order in the harmonics, as
+    in Den Hartog's one-term solution).
+    """
+    omega = np.atleast_1d(np.asarray(frequency, dtype=float))
+    force = np.abs(mass_ratio * forcing * (1.0 + 1j * excitation * mass_ratio * damping * omega))
+    drag = mass_ratio * damping * omega
+    stuck = force / np.abs(1.0 - (1.0 + mass_ratio) * omega**2 + 1j * drag)
+    found = stuck.copy()
+    own = (4.0 / math.pi) * pull  # first harmonic of friction, as an acceleration of the absorber
+    for i in np.flatnonzero(stuck * omega**2 > own):
+        found[i] = _sliding(float(omega[i]), float(force[i]), float(drag[i]), mass_ratio, own)
+    return found.reshape(np.shape(frequency))
+
+
+def _sliding(omega: float, force: float, drag: float, eps: float, own: float) -> float:
+    """The amplitude q that balances `force` while the mass slides: bisection on the largest root."""
+
+    def missing(q: float) -> float:
+        share = min(own / (q * omega**2), 1.0)
+        mass = 1.0 + eps * share**2
+        loss = drag + eps * omega**2 * share * math.sqrt(1.0 - share**2)
+        return q * math.hypot(1.0 - mass * omega**2, loss) - force
+
+    low = own / omega**2
+    high = max(2.0 * low, 1.0)
+    while missing(high) < 0.0:
+        high *= 2.0
+        if high > 1e12:
+            return math.inf
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if missing(middle) < 0.0 else (low, middle)
+    return high
+
+
+def reference(kind: str, model: Any, params: np.ndarray) -> np.ndarray:
+    """One of `KINDS` at parameter vectors (m, P) of a machine with an oscillator, in half-widths, shape (m,).
+
+    Raises
+    ------
+    ValueError
+        If there is no such kind.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"{kind!r} is no response to compare with; choose one of {', '.join(KINDS)}")
+    names = ("frequency", "forcing", "damping", "mass_ratio", "excitation")
+    found = np.empty(len(params))
+    for i, row in enumerate(params):
+        f, G, lam, eps, chi = (float(model.column(row, name)) for name in names)
+        if kind == "bare":
+            value = bare(f, G, lam, eps, chi)
+        elif kind == "tuned":
+            value = tuned(f, G, lam, eps, chi)
+        else:
+            pull = float(model.column(row, "friction") * model.column(row, "gravity"))
+            value = friction_damper(f, G, lam, eps, pull, chi)
+        found[i] = float(value)
+    return found

@@ -1,0 +1,119 @@
+"""Charts: loci none twice, points on them, regions, kept in files, resumed, from the command line."""
+
+import json
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.command.cli import app
+from contvines.journal import MemoryJournal
+
+
+def cubic(u, p):
+    return np.array([p.a + p.b * u[0] - u[0] ** 3])
+
+
+@pytest.fixture(scope="module")
+def graph():
+    problem = cv.AlgebraicProblem(cubic, [-1.2], {"a": -0.5, "b": 1.0}, parameter="a", spectrum="flow")
+    return cv.diagram(problem, over="a", within=(-1.0, 1.0), depth=0)
+
+
+@pytest.fixture(scope="module")
+def chart(graph):
+    return cv.chart(graph, over="b", within=(-0.5, 1.5))
+
+
+def test_two_folds_of_one_curve_are_one_locus(graph, chart):
+    assert len(graph.of_kind("fold")) == 2
+    assert [locus.kind for locus in chart.loci.values()] == ["fold"]
+    assert [point.kind for point in chart.points.values()] == ["cusp"]
+    assert chart.points["CP1"].on == [next(iter(chart.loci))]
+    assert chart.finished and chart.parameters == ("a", "b")
+
+
+def test_the_wedge_of_the_cusp_is_a_region_of_its_own(chart):
+    # area between a = -+ 2 (b/3)^(3/2) for 0 < b < 1.5, cut at |a| = 1, as a share of the rectangle 2 x 2
+    b = np.linspace(0.0, 1.5, 20001)
+    area = np.trapezoid(2 * np.minimum(2 * (b / 3) ** 1.5, 1.0), b) / 4.0
+    shares = sorted(region.share for region in chart.regions)
+    assert len(shares) == 2
+    assert shares[0] == pytest.approx(area, abs=0.01)
+
+
+def test_json_is_the_documented_one(chart):
+    data = json.loads(json.dumps(chart.to_dict()))
+    assert data["parameters"] == ["a", "b"]
+    (locus,) = data["loci"]
+    assert {"label", "kind", "values", "real", "ended"} <= set(locus)
+    assert len(locus["values"]) == len(locus["real"]) and len(locus["ended"]) == 2
+    (point,) = data["points"]
+    assert point["kind"] == "cusp" and set(point["value"]) == {"a", "b"}
+    assert {"label", "on", "coefficients", "real"} <= set(point)
+
+
+def test_a_chart_is_kept_in_a_file(chart, tmp_path):
+    chart.save(tmp_path / "cusp.vines")
+    other = cv.load(tmp_path / "cusp.vines")
+    assert json.dumps(other.to_dict()) == json.dumps(chart.to_dict())
+    assert str(other) == str(chart)
+
+
+def test_a_killed_chart_goes_on_where_it_stopped(graph, chart):
+    class Stop(Exception):
+        pass
+
+    def stop(progress):
+        if progress.loci:
+            raise Stop
+
+    journal = MemoryJournal()
+    with pytest.raises(Stop):
+        cv.chart(graph, over="b", within=(-0.5, 1.5), journal=journal, progress=stop)
+    assert journal.entries
+    recorded = set(journal.entries)
+    again = cv.chart(graph, over="b", within=(-0.5, 1.5), journal=journal)
+    assert recorded <= set(journal.entries)
+    assert np.allclose(
+        next(iter(again.loci.values())).values, next(iter(chart.loci.values())).values, atol=1e-10
+    )
+
+
+def test_a_chart_is_drawn(chart, tmp_path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    figure = chart.plot()
+    figure.savefig(tmp_path / "cusp.png")
+    assert figure.axes[0].get_xlabel() == "b"
+
+
+def test_command_line(tmp_path, monkeypatch, capsys):
+    from typer.testing import CliRunner
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(
+        '[model]\nname = "absorber"\nrestitution = 0.76\nfriction = 0.5\ngravity = 0.211\nmass_ratio = 0.006\n'
+        '[start]\nword = "LR"\nperiods = 1\namplitude = 0.55\n'
+        '[continue]\nparameter = "amplitude"\nwithin = [0.2, 0.8]\ndepth = 0\n'
+        '[chart]\nparameter = "friction"\nwithin = [0.4, 0.6]\n'
+    )
+    result = CliRunner().invoke(app, ["chart", "study.toml", "--plot", "chart.png"])
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "chart.png").exists() and (tmp_path / "study-chart.vines").exists()
+    shown = CliRunner().invoke(app, ["show", "study-chart.vines", "--json"])
+    data = json.loads(shown.output)
+    assert data["parameters"] == ["amplitude", "friction"]
+    assert {"fold", "symmetry-breaking"} <= {locus["kind"] for locus in data["loci"]}
+    assert any("LR" in region["words"] for region in data["regions"])
+    again = CliRunner().invoke(app, ["chart", "study.toml", "-q"])
+    assert again.exit_code == 0
+    result = CliRunner().invoke(
+        app, ["locus", "study.vines", "LP1", "--over", "gravity", "--within", "0.1", "0.3"]
+    )
+    assert result.exit_code == 0 and "fold" in result.output
+    bad = CliRunner().invoke(
+        app, ["locus", "study.vines", "LP9", "--over", "gravity", "--within", "0.1", "0.3"]
+    )
+    assert "LP9 is no label of it" in str(bad.exception)

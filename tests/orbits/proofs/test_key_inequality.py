@@ -1,0 +1,198 @@
+"""The step from an inequality to existence, derived a second time, and the linear algebra and derivatives beneath it."""
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import iv
+
+from orbits import Absorber
+from orbits.proofs.balls import ball, precision
+from orbits.proofs.elimination import Blocks, Singular, solve
+from orbits.proofs.enclosing import enclose, refine
+from orbits.proofs.equations import Motif, System
+from orbits.proofs.jets import Jet, exp, sin_cos, sqrt
+from orbits.proofs.obstacles import Obstacle
+
+
+class Polynomial(System):
+    """One unknown, one equation: a polynomial with given coefficients."""
+
+    def __init__(self, coefficients):
+        super().__init__(Motif("absorber", ("t",), (1,), 1, False, False), {})
+        self.coefficients, self.k = coefficients, 1
+
+    def prepare(self, extras):
+        return None
+
+    def block(self, i, shared, z, following, extras):
+        value = 0 * z[0] + self.coefficients[0]
+        for coefficient in self.coefficients[1:]:
+            value = value * z[0] + coefficient
+        return [value]
+
+    def closing(self, z, extras):
+        return list(z)
+
+
+def proved(coefficients, start):
+    with precision(160):
+        system = Polynomial([ball(str(c)) for c in coefficients])
+        z, e = refine(system, [[ball(start)]], [], 160)
+        return enclose(system, z, e, 160)
+
+
+@settings(max_examples=60, deadline=None)
+@given(root=st.integers(-50, 50), others=st.lists(st.integers(-50, 50), min_size=1, max_size=3))
+def test_simple_roots_are_enclosed_and_multiple_ones_refused(root, others):
+    coefficients = [int(c) for c in np.round(np.poly([root, *others]))]
+    if root in others:
+        with pytest.raises(Obstacle):
+            proved(coefficients, float(root))
+    else:
+        ((pair,),) = proved(coefficients, root + 1e-9).nodes
+        assert abs(mpmath.mpf(pair[0]) - root) <= mpmath.mpf(pair[1]) and float(pair[1]) < 1e-15
+
+
+def test_no_root_no_proof():
+    """x^2 + d has none for d > 0, however small."""
+    for small in ("1e-6", "1e-12", "1e-18"):
+        with pytest.raises(Obstacle), precision(160):
+            system = Polynomial([ball("1"), ball("0"), ball(small)])
+            enclose(system, [[ball("0.0000001")]], [], 160)
+
+
+def symmetric_equations():
+    """The half map of the symmetric orbit LR from w'' = -C sin Psi - a s at Omega = 1, integrated by sympy."""
+    psi, B, t, s, C, a, r = sympy.symbols("psi B t s C a r")
+    # leaving w = 1 in mode -: w' = C cos psi - B at the start
+    rate = C * sympy.cos(psi) - B + sympy.integrate(-C * sympy.sin(psi + s) + a, (s, 0, t))
+    w = 1 + sympy.integrate(rate, (t, 0, t))
+    end = {t: sympy.pi}
+    hit = sympy.simplify(w.subs(end) + 1)
+    # after the impact on the right B+ = v' + r w', and must be -B
+    leave = sympy.simplify((C * sympy.cos(psi + sympy.pi) + r * rate.subs(end)) + B)
+    return sympy.Matrix([hit, leave]), (psi, B), (C, a, r)
+
+
+def test_newton_kantorovich_by_hand_agrees_with_the_prover():
+    """Radii polynomial p(r) = Y + (Z1 - 1) r + Z2 r^2 < 0 (another theorem, other equations, other intervals).
+
+    With A near DF(m)^{-1}: Y >= |A F(m)|, Z1 >= |I - A DF(m)|, Z2 r >= |A (DF(x) - DF(m))| for |x - m| <= r, in the largest norm.
+    """
+    F, unknowns, symbols = symmetric_equations()
+    proof = (
+        Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+        .symmetric_orbit(amplitude=0.6)
+        .prove()
+    )
+    iv.dps = 60
+    numbers = [iv.mpf("0.6"), iv.mpf("1.006") * iv.mpf("0.5") * iv.mpf("0.211"), iv.mpf("0.76")]
+    arguments = (*unknowns, *symbols)
+    m = [iv.mpf(pair[0]) for pair in proof.nodes()[0]]
+
+    def at(expression, x):
+        names = {"sin": iv.sin, "cos": iv.cos, "pi": iv.pi, "mpf": iv.mpf}
+        return sympy.lambdify(arguments, expression, modules=[names, "mpmath"])(*x, *numbers)
+
+    f = at(list(F), m)
+    DF = at(F.jacobian(unknowns).tolist(), m)
+    with mpmath.workdps(60):
+        A = mpmath.matrix(2, 2)
+        J = mpmath.matrix([[mpmath.mp.make_mpf(DF[i][j]._mpi_[0]) for j in range(2)] for i in range(2)])
+        A = J**-1
+    A = [[iv.mpf(A[i, j]) for j in range(2)] for i in range(2)]
+    Y = max(abs(sum(A[i][j] * f[j] for j in range(2))).b for i in range(2))
+    Z1 = max(
+        sum(abs((1 if i == j else 0) - sum(A[i][k] * DF[k][j] for k in range(2))) for j in range(2)).b
+        for i in range(2)
+    )
+    wide = [x + iv.mpf([-1, 1]) * iv.mpf("1e-3") for x in m]
+    H = [at(sympy.hessian(part, unknowns).tolist(), wide) for part in F]
+    Z2 = max(
+        sum(abs(A[i][k]) * abs(H[k][j][l]) for k in range(2) for j in range(2) for l in range(2)).b
+        for i in range(2)
+    )
+    radius = iv.mpf("1e-20")
+    assert (Y + (Z1 - 1) * radius + Z2 * radius * radius).b < 0
+    # the orbit is within 1e-20 of the middle by this theorem, and within the prover's radius by the other
+    assert Y < 1e-30 and proof.radius < 1e-20
+
+
+# ------------------------------------------------------------------ beneath
+def random_system(random, length, k, m):
+    def block(*shape):
+        return random.normal(size=shape)
+
+    return (
+        block(length, k, k),
+        block(length, k, k),
+        block(length, k, m),
+        block(length, k),
+        block(m, k),
+        block(m, m),
+        block(m),
+    )
+
+
+@pytest.mark.parametrize("length", [1, 2, 3, 7])
+@pytest.mark.parametrize("m", [0, 1, 2])
+def test_elimination_encloses_the_dense_solution(length, m):
+    random = np.random.default_rng(length * 10 + m)
+    k = 2
+    A, D, E, b, rows, corner, c = random_system(random, length, k, m)
+    reads = [int(random.integers(length)) for _ in range(m)]
+    dense = np.zeros((length * k + m, length * k + m))
+    for i in range(length):
+        following = (i + 1) % length
+        dense[i * k : i * k + k, i * k : i * k + k] += A[i]
+        dense[i * k : i * k + k, following * k : following * k + k] += D[i]
+        dense[i * k : i * k + k, length * k :] = E[i]
+    for j in range(m):
+        dense[length * k + j, reads[j] * k : reads[j] * k + k] = rows[j]
+        dense[length * k + j, length * k :] = corner[j]
+    expected = np.linalg.solve(dense, np.concatenate([b.ravel(), c]))
+
+    def balls(array):
+        return [balls(part) for part in array] if np.ndim(array) else ball(float(array))
+
+    with precision(120):
+        system = Blocks(
+            balls(A),
+            balls(D),
+            balls(E),
+            balls(b),
+            [{reads[j]: balls(rows[j])} for j in range(m)],
+            balls(corner),
+            balls(c),
+        )
+        nodes, extras = solve(system)
+        found = np.array([float(v) for node in nodes for v in node] + [float(v) for v in extras])
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-10)
+
+
+def test_a_singular_system_is_refused():
+    one = [[ball("1"), ball("2")], [ball("2"), ball("4")]]
+    zero = [[ball("0")] * 2] * 2
+    with pytest.raises(Singular):
+        solve(Blocks([one], [zero], [[[], []]], [[ball("1"), ball("1")]], [], [], []))
+
+
+@settings(max_examples=40, deadline=None)
+@given(x=st.floats(0.1, 3.0), y=st.floats(0.1, 3.0))
+def test_derivatives_are_those_of_mpmath(x, y):
+    def f(u, v, functions):
+        sine, exponential, root = functions
+        return sine(u * v) / (1 + u * u) + exponential(-v) * root(u + v) - v / u
+
+    ours = (lambda z: sin_cos(z)[0], exp, sqrt)
+    with precision(120):
+        inner = f(Jet(Jet(ball(x), {0: ball("1")}), {0: ball("1")}), Jet(Jet(ball(y), {}), {}), ours)
+        first, second = inner.partials[0].value, inner.partials[0].partials[0]
+    theirs = (mpmath.sin, mpmath.exp, mpmath.sqrt)
+    with mpmath.workdps(40):
+        for order, value in ((1, first), (2, second)):
+            expected = mpmath.diff(lambda u: f(u, mpmath.mpf(y), theirs), mpmath.mpf(x), order)
+            assert float(value) == pytest.approx(float(expected), rel=1e-10, abs=1e-10)

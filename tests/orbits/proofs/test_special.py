@@ -1,0 +1,174 @@
+"""Special points: closed forms and brute-force roots inside the balls, borders from either side, pieces, the errata."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf, pi, sqrt
+
+import contvines as cv
+from orbits import Absorber, Coupled
+from orbits.proofs.checker import Refused, check
+from orbits.proofs.equations import Motif
+from orbits.proofs.merging import merged
+from orbits.proofs.obstacles import ProofError
+
+ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+ERRATA = Path(__file__).parents[3] / "examples" / "certificates" / "errata.json"
+
+
+@pytest.fixture(scope="module")
+def graph():
+    seed = ABSORBER.symmetric_orbit(amplitude=0.6)
+    return cv.diagram(seed, over="amplitude", within=(0.24, 0.9), depth=1)
+
+
+def value(proof):
+    middle, radius = proof.value
+    return mpf(middle), mpf(radius)
+
+
+def verified(proof):
+    check(json.loads(json.dumps(proof.certificate())))
+    return True
+
+
+def test_fold_and_symmetry_breaking_have_their_closed_forms(graph):
+    with mp.workdps(45):
+        r = mpf("0.76")
+        R, H = (1 - r) / (1 + r), pi / 2 * mpf("1.006") * mpf("0.5") * mpf("0.211")
+        for kind, below in (("fold", pi**2 + 4 * R**2), ("symmetry-breaking", pi**2 - 4)):
+            beta = (2 * pi - 4 * R * H) / below
+            expected = sqrt((1 - pi * beta / 2) ** 2 + (R * beta + H) ** 2)
+            (point,) = (p for p in graph.of_kind(kind) if p.branch == "B1")
+            proof = point.prove()
+            middle, radius = value(proof)
+            assert abs(middle - expected) < radius + mpf(10) ** -44
+            assert proof.radius < 1e-20 and proof.transversal and proof.real is True
+            assert verified(proof)
+
+
+def test_every_special_point_of_the_graph_is_proved_and_verified(graph):
+    proofs = graph.prove()
+    assert set(proofs) == set(graph.special)
+    for label, proof in proofs.items():
+        assert proof.existence and proof.radius <= 1e-10, label
+        assert proof.real is graph.special[label].real, label
+        assert verified(proof), label
+    assert "proved" in str(graph)
+    assert graph.to_dict()["proofs"]["SB1"]["existence"] is True
+
+
+def test_pure_sliding_begins_where_den_hartog_says():
+    with mp.workdps(45):
+        h = pi / 2 * mpf("1.006") * mpf("0.5") * mpf("0.211")
+        expected = h * sqrt(1 + 4 / pi**2)
+        orbit = ABSORBER.orbit("tt", 1, amplitude=float(expected))
+        problem = orbit.problem("amplitude", symmetric=True)
+        proof = problem.prove("stick", *orbit.seed(problem), margin=1)
+        middle, radius = value(proof)
+        assert abs(middle - expected) < radius + mpf(10) ** -44
+    assert proof.real is True
+
+
+# roots of a brute-force return map in 40 digits: tests/paper/test_windows.py
+THREE = {"fold": "1.0037342178", "period-doubling": "1.4125623672", "velocity-graze": "1.9824794254"}
+
+
+def test_the_window_of_three_impacts():
+    seed = ABSORBER.orbit("LRLt", 1, amplitude=1.2)
+    found = cv.diagram(seed, over="amplitude", within=(0.9, 2.1), depth=0)
+    for kind, known in THREE.items():
+        (point,) = (p for p in found.of_kind(kind) if abs(p.value - float(known)) < 1e-6)
+        proof = point.prove()
+        assert proof.existence and abs(value(proof)[0] - mpf(known)) < mpf("1e-10")
+
+
+def test_a_neimark_sacker_point_of_the_coupled_machine():
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, forcing=2.47, damping=1.0
+    )
+    orbit = machine.symmetric_orbit(frequency=1.02540971532)
+    problem = orbit.problem("frequency", symmetric=True)
+    proof = problem.prove("neimark-sacker", *orbit.seed(problem))
+    assert proof.existence and proof.radius <= 1e-10 and proof.real is True
+    assert verified(proof)
+    middle, _ = value(proof)
+    # the modulus of the pair changes sides there
+    sizes = [
+        max(abs(machine.symmetric_orbit(frequency=float(middle) + side).half_multipliers))
+        for side in (-1e-6, 1e-6)
+    ]
+    assert min(sizes) < 1.0 < max(sizes)
+
+
+def test_flights_that_have_shrunk_to_nothing_are_left_out():
+    motif = Motif("absorber", tuple("LtsuR"), (-1, 1, 0, 1, 1), 1, False, False)
+    nodes = np.array([[0.0, 1.0], [1.0, 0.2], [1.0, 0.2], [1.5, 0.2], [3.0, -1.0]])
+    shorter, rest, margin = merged(motif, nodes)
+    assert (shorter.events, shorter.modes, margin) == (tuple("LsuR"), (-1, 0, 1, 1), ("stick", 1))
+    assert rest[:, 0].tolist() == [0.0, 1.0, 1.5, 3.0]
+    assert merged(motif, nodes + np.array([[0], [0], [0.1], [0.1], [0.1]])) is None
+
+
+def test_an_ordinary_orbit_is_no_special_point(graph):
+    branch = graph["B1"]
+    i = int(np.argmin(np.abs(branch.values - 0.6)))
+    for kind in ("fold", "symmetry-breaking"):
+        proof = branch.problem.prove(kind, branch.points[i], float(branch.values[i]))
+        assert not proof.existence and proof.obstacles
+    with pytest.raises(ProofError, match="margin"):
+        branch.problem.prove("stick", branch.points[i], float(branch.values[i]))
+
+
+# ------------------------------------------------------------------ pieces
+def test_a_piece_of_the_symmetric_branch_is_stable_and_real(graph):
+    proof = graph.prove("B1", within=(0.58, 0.6))["B1"]
+    stable = [piece for piece in proof.pieces if piece.stable]
+    (piece,) = stable
+    assert piece.existence and piece.real is True
+    assert piece.covered == ("0.58", "0.6")
+    assert verified(proof)
+    wrong = json.loads(json.dumps(piece.certificate()))
+    for change in (
+        lambda c: c["covered"].__setitem__(1, "0.62"),
+        lambda c: c["tiles"].pop(1),
+        lambda c: c["claims"].__setitem__("stable", False),
+        lambda c: c["claims"].__setitem__("real", False),
+        lambda c: c["tiles"][0][2][0][0].__setitem__(2, "1e-12"),
+        lambda c: c["joints"].pop(),
+        lambda c: c["parameters"].__setitem__("restitution", "0.8"),
+    ):
+        copy = json.loads(json.dumps(wrong))
+        change(copy)
+        with pytest.raises(Refused):
+            check(copy)
+
+
+def test_a_piece_across_a_change_of_stability_is_not_proved_stable(graph):
+    problem = graph["B1"].problem
+    proof = problem.prove_branch(graph["B1"].points, graph["B1"].values, within=(0.70, 0.75))
+    for piece in proof.pieces:
+        if piece.stable is not False:  # the branch above the fold
+            assert not piece.existence and float(piece.covered[1]) < 0.7268358222815889
+
+
+# ------------------------------------------------------------------ the errata
+def test_the_certificates_of_the_errata():
+    made = json.loads(ERRATA.read_text())
+    claims = {name: (c["claims"]["real"], c["claims"]["stable"]) for name, c in made.items()}
+    assert claims == {
+        "doubling of the printed maps": (False, None),
+        "doubling of the machine": (True, None),
+        "pure sliding begins": (True, None),
+        "sliding above the printed bound": (False, True),
+        "stick-slip above the printed bound": (True, True),
+        "two periods at 0.986": (False, True),
+        "one period at 0.986": (True, True),
+    }
+    for certificate in made.values():
+        check(certificate)
+    square = {name: mpf(c["extras"][0][0]) ** 2 for name, c in made.items() if c["extras"]}
+    assert abs(square["doubling of the printed maps"] - mpf("0.86787")) < 5e-6
+    assert abs(square["doubling of the machine"] - mpf("1.128")) < 5e-4
