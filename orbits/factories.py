@@ -6,7 +6,7 @@ code that it names is run only with ``trust``.
 
 FACTORIES = {
     "orbits.problem:rebuild": "orbits.problem:rebuild",
-    "orbits.cycles.stuck_problem:rebuild": "orbits.cycles.stuck_problem:rebuild",
-    "orbits.stuck_problem:rebuild": "orbits.cycles.stuck_problem:rebuild",
+    "orbits.cycles.stuck_problem:rebuild": "orbits.problem:rebuild",
+    "orbits.stuck_problem:rebuild": "orbits.problem:rebuild",
     "orbits.machines.declared.stored:rebuild": "orbits.machines.declared.stored:rebuild",
 }

@@ -12,13 +12,17 @@ from typing import Any
 
 import numpy as np
 
+from orbits.borders.crossing import cross
+from orbits.borders.distance import SAME, distance
 from orbits.cycles import measures as measuring
-from orbits.cycles.identity import is_symmetric, root_orbit
-from orbits.cycles.kernels import assemble
-from orbits.cycles.margins import DURATION, FLIGHT, PER_NODE, border_kind, margin_name
-from orbits.elimination.block_cyclic import workspace
+from orbits.cycles.equations import equations
+from orbits.cycles.identity import canonical, is_symmetric, root_orbit
+from orbits.cycles.margins import DURATION, FLIGHT, border_kind, margin_name
+from orbits.doors import above
 from orbits.machines.base import Model
+from orbits.machines.building import build
 from orbits.machines.path import along
+from orbits.orbit import Orbit
 from orbits.protocol import Embedding, Symmetry
 from orbits.words import Word
 
@@ -57,57 +61,28 @@ class OrbitProblem:
         params: np.ndarray,
         symmetric: bool = False,
     ) -> None:
-        self.mirrored = model.has_mirror(np.asarray(params, dtype=float), parameter)
-        if symmetric and not self.mirrored:
-            raise ValueError(
-                f"the model {model.name!r} has no mirror image along {parameter}, so no symmetric orbits"
-            )
-        if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
-            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
-        if len(word) == 0:
-            raise ValueError("the empty word (absorber stuck) has no maps to solve")
+        params = np.array(params, dtype=float)
         self.model, self.word, self.periods = model, word, int(periods)
-        self.parameter, self.params, self.symmetric = (
-            parameter,
-            np.array(params, dtype=float),
-            bool(symmetric),
-        )
-        self.path = model.path(parameter, self.params)
-        length = len(word) // 2 if symmetric else len(word)
-        n = model.node
-        self.length, self.dimension = length, length * n
-        self.twist = -1.0 if symmetric else 1.0
-        self.shift = np.pi * self.periods * (1 if symmetric else 2)
-        self.loose = word.impact_free  # may be moved as a whole
-        self.pinned = 0 if not self.loose else (2 if symmetric else 1)
-        self.n_multipliers = n - 1 if self.loose else n
-        self.n_margins = PER_NODE * length
-        self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
-        self.period_shift = np.zeros(self.dimension)
-        self.period_shift[::n] = 2.0 * np.pi
-        own, law = self.params.copy(), model.law
-        self.data = (
-            word.codes[:length].copy(),
-            word.mode_codes[:length].copy(),
-            own,
-            self.path,
-            self.twist,
-            self.shift,
-            self.pinned,
-            model.place_of(parameter),
-            np.array(model.amounts(own), dtype=float) if len(law) else own,
-            law,
-        )
+        self.parameter, self.params, self.symmetric = parameter, params, bool(symmetric)
+        self.mirrored = model.has_mirror(params, parameter)
+        system = equations(model, word, self.periods, parameter, params, self.symmetric)
+        self.equations = system
+        self.length, self.dimension = system.length, system.dimension
+        self.twist, self.shift = system.twist, system.shift
+        self.loose, self.pinned = system.loose, system.pinned
+        self.n_multipliers, self.n_margins = system.n_multipliers, system.n_margins
+        self.path, self.data, self.period_shift = system.path, system.data, system.period_shift
+        self.flip_kind = "symmetry-breaking" if self.twist < 0.0 else "period-doubling"
 
     # ------------------------------------------------------------------ numerics
     @property
     def kernels(self) -> Any:
-        """linearise, bordered, inspect: the compiled functions of the model."""
-        return assemble(self.model)
+        """linearise, bordered, inspect: compiled, but for the empty word."""
+        return self.equations.kernels
 
     def workspace(self) -> tuple[np.ndarray, ...]:
         """Arrays for the kernels."""
-        return workspace(self.length, self.model.node, self.params.size)
+        return self.equations.workspace()
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -126,11 +101,11 @@ class OrbitProblem:
 
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
-        return along(self.path, self.params, p)
+        return self.equations.values(p)
 
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
-        return self.model.amount(self.parameter, params)
+        return self.equations.value(params)
 
     def smooth_margin(self, j: int) -> int:
         """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
@@ -142,23 +117,16 @@ class OrbitProblem:
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
-        spectrum = np.asarray(spectrum, dtype=complex)
-        return spectrum**2 if self.symmetric else spectrum
+        return self.equations.to_multipliers(spectrum)
 
     # ------------------------------------------------------------------ shapes
     def expand(self, u: np.ndarray) -> np.ndarray:
         """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N)."""
-        u = np.asarray(u, dtype=float)
-        nodes = u.reshape(*u.shape[:-1], self.length, self.model.node)
-        if not self.symmetric:
-            return nodes
-        image = -nodes
-        image[..., 0] = nodes[..., 0] + self.shift
-        return np.concatenate([nodes, image], axis=-2)
+        return self.equations.expand(u)
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""
-        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
+        return self.equations.reduce(nodes)
 
     # ------------------------------------------------------------------ symmetries and larger problems
     @cached_property
@@ -258,8 +226,6 @@ class OrbitProblem:
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
-        from orbits.borders.crossing import cross
-
         return cross(self, point)
 
     # ------------------------------------------------------------------ identity
@@ -269,8 +235,8 @@ class OrbitProblem:
         Rotations of the word, shifts by whole forcing periods, the mirror image and repetitions of a shorter orbit
         are one orbit.
         """
-        from orbits.cycles.identity import canonical
-
+        if not len(self.word):
+            return ("stuck", self.model.name), np.array(u, dtype=float)
         mirrored = self.model.has_mirror(self.values(p))
         return canonical(self.word, self.periods, self.expand(u), mirrored)
 
@@ -279,8 +245,6 @@ class OrbitProblem:
 
         At a border one motion has several words, so that `canonical` cannot tell.
         """
-        from orbits.borders.distance import SAME, distance
-
         if not isinstance(other, OrbitProblem):
             return False
         mirrored = self.model.has_mirror(self.values(p))
@@ -310,8 +274,6 @@ class OrbitProblem:
 
     def orbit(self, u: np.ndarray, p: float) -> Any:
         """The solution as an `orbits.orbit.Orbit`."""
-        from orbits.orbit import Orbit
-
         return Orbit(self.model, self.word, self.periods, self.expand(u), self.values(p))
 
     def witness(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
@@ -344,9 +306,12 @@ class OrbitProblem:
         self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
     ) -> Any:
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
-        from orbits.proofs.subjects import of_point
+        return above("of_point")(self, kind, u, p, margin, bits)
 
-        return of_point(self, kind, u, p, margin, bits)
+    def population(self, over: str | None = None) -> Any:
+        """Starts of this machine and what they settle on; see `orbits.attractors.population.Population`."""
+        over = over or self.parameter
+        return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
 
     @property
     def spelling(self) -> str:
@@ -361,15 +326,13 @@ class OrbitProblem:
         within: tuple[float, float] | None = None,
     ) -> Any:
         """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
-        from orbits.proofs.subjects import of_branch
-
-        return of_branch(self, points, values, marks, within)
+        return above("of_branch")(self, points, values, marks, within)
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
         return {
             "factory": "orbits.problem:rebuild",
-            "name": f"P_{self.word.impacts}^{self.periods}",
+            "name": f"P_{self.word.impacts}^{self.periods}" if len(self.word) else "stuck",
             "model": self.model.settings(),
             "word": self.spelling,
             "events": "".join(self.word.events),
@@ -386,9 +349,11 @@ class OrbitProblem:
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem:
     """The problem that `OrbitProblem.describe` described; it holds data only, so `trust` has no meaning here."""
-    from orbits.machines.catalogue import build
-
-    word = Word(tuple(description["events"]), tuple(description["modes"]), description["frictionless"])
+    word = Word(
+        tuple(description.get("events", "")),  # files of version 0.1 keep none for the absorber at rest
+        tuple(description.get("modes", ())),
+        bool(description.get("frictionless", False)),
+    )
     return OrbitProblem(
         build(description["model"]),
         word,

@@ -2,12 +2,46 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from orbits.problem import OrbitProblem
+from orbits.cycles.solution import Solution
+from orbits.machines.base import Model
+from orbits.words import Word
+
+
+class CycleProblem(Protocol):
+    """What borders ask of the problem of the cycles with one word (`orbits.problem.OrbitProblem`)."""
+
+    model: Model
+    word: Word
+    periods: int
+    parameter: str
+    params: np.ndarray
+    symmetric: bool
+    length: int
+    dimension: int
+    n_multipliers: int
+    n_margins: int
+    data: Any
+
+    @property
+    def spelling(self) -> str: ...
+
+    def workspace(self) -> Any: ...
+
+    def values(self, p: Any) -> np.ndarray: ...
+
+    def value(self, params: np.ndarray) -> float: ...
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray: ...
+
+    def expand(self, u: np.ndarray) -> np.ndarray: ...
+
+    def orbit(self, u: np.ndarray, p: float) -> Solution: ...
+
+    def sibling(self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Any: ...
 
 
 class Symmetry(NamedTuple):
@@ -30,7 +64,7 @@ class Embedding(NamedTuple):
 class Seed(NamedTuple):
     """Where the branch on the other side begins; `tangent` leads away from the border."""
 
-    problem: OrbitProblem
+    problem: CycleProblem
     u: np.ndarray
     p: float
     tangent: np.ndarray | None

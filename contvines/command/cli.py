@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import chart, design, look, prove, report, run, survey, sweep
+from contvines.command import basins, chart, design, look, prove, report, run, survey, sweep
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -50,6 +50,8 @@ def _options(
 app.command()(run.diagram)
 app.command()(run.trace)
 app.command()(run.switch)
+app.command()(run.atlas)
+app.command()(basins.basins)
 app.command()(chart.locus)
 app.command()(chart.chart)
 app.command()(look.show)

@@ -42,7 +42,7 @@ def checked_study(path: Path) -> "Study":
 
 def machine(study: "Study") -> Any:
     """The machine of a study, `[start]`'s overrides included."""
-    from orbits.machines.catalogue import build
+    from orbits.machines.building import build
 
     if study.machine is not None:
         return study.machine
@@ -97,6 +97,21 @@ def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
 
     asked = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
+
+
+def run_atlas(study: "Study", model: Any, **options: Any) -> "Graph":
+    """The atlas of a study's machine; options as for `contvines.atlas`."""
+    import contvines
+    from contvines.coexistence.population import population_of
+
+    fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
+    asked = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
+    return contvines.atlas(
+        population_of(model, study.parameter, **fixed),
+        within=study.within,
+        **study.atlas.model_dump(),
+        **{**asked, **options},
+    )
 
 
 def beside(path: Path, ending: str) -> Path:

@@ -31,6 +31,15 @@ TraceOutputOption = Annotated[
         help="Where to keep the branch; by default STUDY-trace.vines here.",
     ),
 ]
+AtlasOutputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "-o",
+        "--output",
+        metavar="FILE.vines",
+        help="Where to keep the graph; by default STUDY-atlas.vines here.",
+    ),
+]
 PlotOption = Annotated[
     Path | None,
     typer.Option("--plot", metavar="FILE.png", help="Draw the bifurcation diagram (png, pdf or svg)."),
@@ -47,10 +56,33 @@ def diagram(
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
+    look: Annotated[
+        bool,
+        typer.Option(
+            "--look/--no-look",
+            help="At the end, simulate a few starts and say in one line what they reach that is on no branch.",
+        ),
+    ] = True,
     compare: CompareOption = None,
 ) -> None:
     """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
-    _run("diagram", study, output, plot, quiet, x, y, compare)
+    _run("diagram", study, output, plot, quiet, x, y, compare, look)
+
+
+def atlas(
+    study: StudyArgument,
+    output: AtlasOutputOption = None,
+    plot: PlotOption = None,
+    quiet: QuietOption = False,
+    x: XOption = None,
+    y: YOption = None,
+) -> None:
+    """Everything that coexists: many simulated starts, and branches through all they reach.
+
+    [atlas] in the study says at how many values (or which), from how many
+    starts at each, drawn with which seed. An interrupted run goes on.
+    """
+    _run("atlas", study, output, plot, quiet, x, y)
 
 
 def trace(
@@ -117,8 +149,18 @@ def _run(
     x: str | None,
     y: str | None,
     compare: list[str] | None = None,
+    look: bool = False,
 ) -> None:
-    from contvines.command.compose import beside, check_place, checked_study, first_orbit, run_diagram, say
+    from contvines.command.compose import (
+        beside,
+        check_place,
+        checked_study,
+        first_orbit,
+        machine,
+        run_atlas,
+        run_diagram,
+        say,
+    )
     from contvines.command.measures import check_axes
     from contvines.store import Store
 
@@ -142,11 +184,20 @@ def _run(
             else:
                 say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
     if graph is None:
-        seed = first_orbit(study)
-        graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)
+        if command == "atlas":
+            graph = _continue(study, machine(study), command, target, fingerprint, quiet, run_atlas)
+        else:
+            seed = first_orbit(study)
+            graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)
         say(f"kept in {target}", quiet)
+    if command == "diagram" and look and not graph.attractors:
+        _look(graph, study, target)
     if not quiet:
         typer.echo(str(graph))
+    if command == "diagram" and graph.missing:
+        from contvines.coexistence.looking import told
+
+        say(told(graph, f"contvines atlas {path} adds what hangs together with it"), quiet)
     if plot is not None:
         _draw(graph, x, y, plot, compare)
         say(f"drawn in {plot}", quiet)
@@ -187,8 +238,30 @@ def _check_picture(path: Path) -> None:
     check_picture(path)
 
 
+def _look(graph: Any, study: Any, target: Path) -> None:
+    """A few simulated starts after a diagram; what they reach beside it is kept in the file."""
+    from contvines.coexistence.looking import look
+    from contvines.coexistence.population import population_of
+    from contvines.command.compose import loose, machine
+    from contvines.store import Store
+
+    model = machine(study)
+    if getattr(model, "population", None) is None:
+        return
+    fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
+    if look(graph, population_of(model, study.parameter, **fixed)):
+        with Store.open(target, write=True) as store:
+            store.checkpoint(graph)
+
+
 def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:
-    from contvines.command.compare import compared
     from contvines.plots.figures import save_figure
+
+    if graph.attractors:
+        from contvines.plots.atlas import plot_atlas
+
+        save_figure(plot_atlas(graph, x, y), path)
+        return
+    from contvines.command.compare import compared
 
     save_figure(compared(graph, compare, x, y), path)

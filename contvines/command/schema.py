@@ -96,6 +96,14 @@ class SweepSection(Section):
     max_period: Annotated[int, Field(ge=1, le=256)] = 16
 
 
+class AtlasSection(Section):
+    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed."""
+
+    values: Annotated[int, Field(ge=1, le=10_000)] | list[float] = 16
+    starts: Annotated[int, Field(ge=1, le=10_000_000)] = 256
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
 class ChartSection(Section):
     """`[chart]`, optional: the second parameter of `contvines chart`."""
 
@@ -122,6 +130,7 @@ class StudySections(Section):
     start: StartSection
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+    atlas: AtlasSection = AtlasSection()
     chart: ChartSection | None = None
     survey: SurveySection = SurveySection()
 

@@ -18,6 +18,7 @@ from contvines.command.physical_study import converted, is_physical
 from contvines.command.schema import (
     EXCITATION,
     PARAMETERS,
+    AtlasSection,
     ChartSection,
     StudyFile,
     StudySections,
@@ -52,7 +53,7 @@ class Study:
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
-    sweep : settings of the brute-force sweep.
+    sweep, atlas : settings of the brute-force sweep and of the atlas.
     chart : second parameter and its interval, of a chart.
     machine : a ready machine, where the study describes one that the catalogue does not have (a page).
     loose : parameters to hand to the ready machine with each orbit.
@@ -73,6 +74,7 @@ class Study:
     virtual: bool
     settings: dict[str, Any]
     sweep: SweepSection
+    atlas: AtlasSection = field(default_factory=AtlasSection)
     chart: ChartSection | None = None
     machine: Any = None
     loose: dict[str, float] = field(default_factory=dict)
@@ -107,7 +109,8 @@ class Study:
 
     def fingerprint(self, command: str = "diagram") -> str:
         """Digest of `describe()` and the command: two runs that must give the same graph share it."""
-        text = json.dumps({"command": command, **self.describe()}, sort_keys=True)
+        more = {"atlas": self.atlas.model_dump()} if command == "atlas" else {}
+        text = json.dumps({"command": command, **more, **self.describe()}, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -290,6 +293,7 @@ def _study(
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         sweep=file.sweep,
+        atlas=file.atlas,
         chart=file.chart,
         quantities=quantities,
         survey=file.survey,

@@ -40,7 +40,8 @@ def graph_beneath(path: Path, study: "Study") -> Any:
 
 def _graph_machine(graph: Any) -> dict[str, Any]:
     """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
-    from orbits.machines.catalogue import NAMES, build
+    from orbits.machines.building import build
+    from orbits.machines.catalogue import NAMES
 
     known = dict(graph.model)
     for branch in graph.branches.values():

@@ -44,7 +44,7 @@ class Closing:
             found = engine.solve(guess[:-1], guess[-1], self.border, float(np.dot(self.border, self.z)))
             if found is None:
                 continue
-            gap = np.abs(engine.join(found.u, found.p) - self.z) / (1.0 + np.abs(self.z))
+            gap = np.abs(engine.join(found.u, found.p) - self.z) / (engine.scale + np.abs(self.z))
             if gap.max() <= 1e-7 and engine.inner(found.tangent, self.start.tangent) > 0.0:
                 points, rest = chunk.cut(int(i) + 1), self.start
                 end = rest.u if self.shift is None else rest.u + turns[i] * self.shift[:-1]

@@ -18,9 +18,9 @@ TIGHT = 1e-12
 NO_ROW = np.zeros(1)
 
 
-def parameter_unit(within: tuple[float, float], p: float) -> float:
+def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) -> float:
     """Length of the parameter near p: the interval's, but an interval of silly width does not make neighbours the same."""
-    return min(within[1] - within[0], max(1.0, abs(p)))
+    return min(within[1] - within[0], max(scale, abs(p)))
 
 
 def problem_scale(problem: Any, within: tuple[float, float]) -> np.ndarray:
@@ -66,8 +66,14 @@ class Engine:
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
+        self.detection = str(getattr(problem, "detection", "") or problem.spectrum)
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem_scale(problem, self.within), float(getattr(problem, "noise", 0.0))
+        scales = getattr(problem, "scales", None)
+        self.rate = (
+            1.0 if scales is None or self.detection != "flow" else float(scales.rate)
+        )  # of one raw eigenvalue
+        self.row_sizes = np.ones(n) if scales is None else scales.rows
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
@@ -85,6 +91,14 @@ class Engine:
         self.at_parameter = np.zeros(n + 1)
         self.at_parameter[n] = 1.0
 
+    def parameter_unit(self, p: float) -> float:
+        """What differences of the parameter near p are compared with."""
+        return parameter_unit(self.within, p, float(self.scale[-1]))
+
+    def size(self, u: np.ndarray) -> float:
+        """1 + the largest unknown, in units of the scale."""
+        return 1.0 + float((np.abs(u) / self.scale[:-1]).max())
+
     # ------------------------------------------------------------------ metric
     def inner(self, a: np.ndarray, b: np.ndarray) -> float:
         """<a, b>."""
@@ -93,6 +107,11 @@ class Engine:
     def norm(self, a: np.ndarray) -> float:
         """Length of a vector."""
         return math.sqrt(max(self.inner(a, a), 0.0))
+
+    def amplitude(self, a: np.ndarray) -> float:
+        """Length of a unit vector as normal forms measure it; 1 where the metric does."""
+        own = getattr(self.problem, "amplitude", None)
+        return 1.0 if own is None else float(own(a))
 
     def unit(self, a: np.ndarray) -> np.ndarray:
         """The vector scaled to length 1."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..continuation.engine import Engine, Solved, parameter_unit
+from ..continuation.engine import Engine, Solved
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .kinds import BORDERS
 from .locate import Root, locate, locate_singular
@@ -16,6 +16,7 @@ from .scan import FLAT, MARGIN
 from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
+FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
@@ -38,8 +39,10 @@ class Examiner:
     def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
         self.engine = engine
         problem = engine.problem
-        self.kind = problem.spectrum
-        self.symmetries = [SymmetryTest(s, engine.n, problem.period_shift) for s in problem.symmetries]
+        self.kind = engine.detection
+        self.symmetries = [
+            SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
+        ]
         self.users = {name: user_function(engine, f) for name, f in (user_functions or {}).items()}
 
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
@@ -67,6 +70,8 @@ class Examiner:
                 elif not _near(root.position, [e.position for e in folds] + met):
                     if self._turns_back(segment, root):
                         folds.append(self._located(root, "fold", 0))
+                    elif self._regular(root.point):
+                        folds.append(self._located(root, "astray", 0))
                     else:
                         crossings.append(self._located(root, "branch-point", k))
         outside = (after - before) @ np.array([1, 1, 2])
@@ -99,18 +104,29 @@ class Examiner:
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
         ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
-        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * parameter_unit(
-            self.engine.within, segment.a.p
-        ):
+        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * self.engine.parameter_unit(segment.a.p):
             return []
         root = locate(segment, lambda point: float(point.tangent[-1]))
         if root is None or not root.continuous:
             return []
         return [] if _near(root.position, met, 0.02) else [self._located(root, "fold", 0)]
 
+    def _regular(self, point: Solved) -> bool:
+        """Whether the branch is alone at a point where a multiplier passes +1: the segment has led from one to another.
+
+        Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
+        """
+        engine = self.engine
+        if abs(point.tangent[-1]) > STATIONARY * engine.parameter_unit(point.p):
+            return False
+        engine.residual(point.u, point.p)
+        side = np.append(engine.row_sizes * np.random.default_rng(7).standard_normal(engine.n), 0.0)
+        image = engine.apply_inverse(engine.weights * point.tangent, side)
+        return bool(np.isfinite(image).all() and engine.norm(image) < FAR)
+
     def _turns_back(self, segment: Segment, root: Root) -> bool:
         """Whether the parameter has an extremum where a multiplier passes +1, though the ends do not tell."""
-        unit = parameter_unit(self.engine.within, root.point.p)
+        unit = self.engine.parameter_unit(root.point.p)
         if abs(root.point.tangent[-1]) > STATIONARY * unit:
             return False
         reach = min(BESIDE, 0.5 * root.position, 0.5 * (1.0 - root.position)) or BESIDE

@@ -21,7 +21,8 @@ LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbou
 def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
 
-    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part.
+    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part; where only branch points are looked
+    for ("real"), the first of these.
     """
     result = np.zeros((len(spectrum), 3), dtype=np.int64)
     real = spectrum.imag == 0.0
@@ -32,6 +33,8 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
             real & (spectrum.real < -1.0 - PAST),
             upper & (np.abs(spectrum) > 1.0 + PAST),
         )
+    elif kind == "real":
+        columns = (real & (spectrum.real > PAST),)
     elif kind == "flow":
         columns = (real & (spectrum.real > PAST), np.zeros_like(real), upper & (spectrum.real > PAST))
     else:
@@ -54,7 +57,7 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
             return -LIMIT
         # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
         # as it does in conservative systems
-        place = 0.0 if kind == "flow" else (-1.0 if name == "minus" else 1.0)
+        place = 0.0 if kind != "map" else (-1.0 if name == "minus" else 1.0)
         return -min(float(np.abs(spectrum[spectrum.imag != 0.0] - place).min()), LIMIT)
     value = float(values[k - 1])
     if kind == "map":
@@ -63,12 +66,15 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
 
 
 class SymmetryTest:
-    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period.
+    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 
     T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks.
     """
 
-    def __init__(self, symmetry: Any, n: int, period_shift: np.ndarray | None) -> None:
+    def __init__(
+        self, symmetry: Any, n: int, period_shift: np.ndarray | None, scale: np.ndarray | None = None
+    ) -> None:
+        self.scale = None if scale is None or (scale == 1.0).all() else scale
         self.symmetry, self.kind = symmetry, symmetry.kind
         self.shift = (
             None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
@@ -98,7 +104,7 @@ class SymmetryTest:
         if self.shift is not None:
             turns = np.round(gap @ self.shift / (self.shift @ self.shift))
             gap = gap - turns[:, None] * self.shift
-        return gap
+        return gap if self.scale is None else gap / self.scale
 
     def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Derivative of T at u applied to v."""

@@ -10,11 +10,10 @@ The branch is then traced again from the point before the gap, with shorter step
 
 from __future__ import annotations
 
-from ..continuation.engine import parameter_unit
 from .located import Located, Role
 from .segment import Segment
 
-SHORTEST = 1e-6  # two branches whose gap is narrower than this cannot be told from a branch point
+SHORTEST = 3e-7  # two branches whose gap is narrower than this cannot be told from a branch point
 INEXACT = 1e-9  # special points are located far better than this wherever there is one
 BESIDE = 1e-3  # distance from a singular point at which signs can be trusted
 
@@ -38,9 +37,11 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
 
 
 def _inexact(segment: Segment, event: Located) -> bool:
-    unit = parameter_unit(segment.engine.within, event.point.p)
-    size = 1.0 + float(abs(event.point.u).max())
-    return event.error > 10.0 * INEXACT * unit or event.point.residual > INEXACT * size
+    unit = segment.engine.parameter_unit(event.point.p)
+    size = segment.engine.size(event.point.u)
+    return (
+        event.kind == "astray" or event.error > 10.0 * INEXACT * unit or event.point.residual > INEXACT * size
+    )
 
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:

@@ -108,7 +108,7 @@ def locate_singular(
         found = _interpolated(segment, test, rough, width)
         if found is not None:
             root, residual = found
-            score = max(root.error, residual / (1.0 + float(np.abs(root.point.u).max())))
+            score = max(root.error, residual / segment.engine.size(root.point.u))
             if score < best_score:
                 best, best_score = root, score
             if score < 1e-14:

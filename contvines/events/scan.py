@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..continuation.engine import Engine, parameter_unit
+from ..continuation.engine import Engine
 from . import functions
 from .functions import PAST, SymmetryTest
 
@@ -27,8 +27,8 @@ APART = 1e-6  # parts that a symmetry changes below this are zero
 # what a segment may hold, as bits
 FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED, HUMP = 1, 2, 4, 8, 16, 32, 64, 128
 
-NONE, MAP, FLOW = 0, 1, 2
-KINDS = {"none": NONE, "map": MAP, "flow": FLOW}
+NONE, MAP, FLOW, REAL = 0, 1, 2, 3
+KINDS = {"none": NONE, "map": MAP, "flow": FLOW, "real": REAL}
 
 
 def mark_segments(
@@ -60,7 +60,7 @@ def mark_segments(
     first_margin : int
         Columns of `rows` before this one are multipliers as (re, im) pairs.
     kind : int
-        NONE, MAP or FLOW.
+        NONE, MAP, FLOW or REAL (real eigenvalues tell branch points; there is no stability).
     real : bool
         Whether the branch has positive margins.
     flat : float
@@ -116,6 +116,8 @@ def mark_segments(
                     plus += re > PAST
                 else:
                     pairs += im > 0.0 and re > PAST
+            elif kind == REAL:
+                plus += im == 0.0 and re > PAST
         before_that, before = before, damping
         if kind == MAP:
             damping = -math.log(outermost) if outermost > 0.0 else np.inf
@@ -173,7 +175,7 @@ def mark_segments(
             if real and dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length):
                 flags[i - 2] |= SHALLOW
                 flags[i - 1] |= SHALLOW
-            if kind != NONE and first_margin > 0 and dips(before_that, before, damping, short, length):
+            if kind in (MAP, FLOW) and first_margin > 0 and dips(before_that, before, damping, short, length):
                 flags[i - 2] |= DAMPED
                 flags[i - 1] |= DAMPED
         short = length
@@ -245,11 +247,12 @@ class Scanner:
 
     def __init__(self, engine: Engine, symmetries: list[SymmetryTest]) -> None:
         self.engine = engine
-        self.kind = KINDS[engine.problem.spectrum]
+        self.kind = KINDS[engine.detection]
         self.mark = _compiled() if engine.problem.kernels.compiled else mark_segments
         columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
-        affine = [test.affine for test in symmetries if test.affine is not None]
-        self.left_out = [test for test in symmetries if test.affine is None]
+        plain = (engine.scale[:-1] == 1.0).all()
+        affine = [test.affine for test in symmetries if test.affine is not None and plain]
+        self.left_out = [test for test in symmetries if test.affine is None or not plain]
         shape = (len(affine), columns)
         self.orders = np.array([order[:columns] for order, _, _ in affine], np.int64).reshape(shape)
         self.images = np.array([signs[:columns] for _, signs, _ in affine], float).reshape(shape)
@@ -279,7 +282,7 @@ class Scanner:
             2 * engine.m,
             self.kind,
             bool(real),
-            FLAT * parameter_unit(engine.within, float(values[0])),
+            FLAT * engine.parameter_unit(float(values[0])),
             float(engine.weights[0]),
             float(engine.weights[-1]),
             self.orders,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..continuation.chunk import Chunk
-from ..continuation.engine import Engine, Solved, parameter_unit
+from ..continuation.engine import Engine, Solved
 from .dips import before_border, below_zero
 from .examine import Examiner, changes
 from .leaps import leap
@@ -95,6 +95,7 @@ class Watch(Examiner):
             leaping = leap(segment, found)
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
+            found = [e for e in found if e.kind != "astray"]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
@@ -129,7 +130,7 @@ class Watch(Examiner):
         not at its ends."""
         if bits & MEETING:
             bits &= ~DAMPED  # a branch that comes back to a symmetry is marginal there: no point to cut it at
-        side = np.sign(segment.a.tangent[-1]) / parameter_unit(self.engine.within, segment.a.p)
+        side = np.sign(segment.a.tangent[-1]) / self.engine.parameter_unit(segment.a.p)
         tests = {
             SHALLOW: lambda point: float(self.engine.smallest_margin(point.row)),
             HUMP: lambda point: float(side * point.tangent[-1]),

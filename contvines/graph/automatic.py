@@ -64,29 +64,46 @@ def diagram(
         raise ValueError(
             f"within = None: give the interval of {problem.parameter}, for example within=(0.2, 1.3)"
         )
-    if not (isinstance(depth, int) and depth >= 0):
-        raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
-    settings = Settings.of(settings)
     description = problem.describe()
     model = description.get("model") or {"name": description.get("name", type(problem).__name__)}
-    graph = Graph(
-        parameter=problem.parameter,
-        model=dict(model) if isinstance(model, Mapping) else {"name": model},
-        within=check_interval(within),
-        settings={**settings.to_dict(), "depth": depth, "virtual": virtual},
-    )
-    run = Run(
-        graph,
-        settings,
-        NullJournal() if journal is None else journal,
-        depth,
-        virtual,
-        user_functions,
-        progress,
+    about = dict(model) if isinstance(model, Mapping) else {"name": model}
+    run = new_run(
+        problem.parameter, about, within, depth, virtual, user_functions, journal, progress, settings
     )
     begin(run, problem, u, p)
     work(run)
-    return graph
+    return run.graph
+
+
+def new_run(
+    parameter: str,
+    model: dict[str, Any],
+    within: tuple[float, float],
+    depth: int,
+    virtual: bool,
+    user_functions: Mapping[str, Any] | None,
+    journal: Any,
+    progress: Callable[[Progress], None] | None,
+    settings: Settings | Mapping[str, Any] | None,
+) -> Run:
+    """A run with an empty graph.
+
+    Raises
+    ------
+    ValueError
+        If the interval, the depth or a setting will not do.
+    """
+    if not (isinstance(depth, int) and depth >= 0):
+        raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
+    chosen = Settings.of(settings)
+    graph = Graph(
+        parameter=parameter,
+        model=model,
+        within=check_interval(within),
+        settings={**chosen.to_dict(), "depth": depth, "virtual": virtual},
+    )
+    kept = NullJournal() if journal is None else journal
+    return Run(graph, chosen, kept, depth, virtual, user_functions, progress)
 
 
 @hinting

@@ -204,6 +204,8 @@ def tie_borders(run: Run) -> None:
             near = abs(other.value - point.value) <= 1e-9 * max(1.0, abs(point.value))
             if not (near and other.kind in BORDERS and other.real and other.branch != point.branch):
                 continue
+            if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):
+                continue  # its branch was reached through the other one: this is the far end of a very short branch
             if other.problem is not None and alike(point.u, point.value, other.problem, other.u):
                 run.merge(label, other.label)
                 run.connect(other.label, other.branch, point.branch)

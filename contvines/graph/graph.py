@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..events.kinds import PREFIXES
 from ..hints import did_you_mean
+from .attractor import Attractor
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,6 +87,8 @@ class Graph:
     message: str = ""
     complete: bool = True
     proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
+    attractors: list[Attractor] = field(default_factory=list)
+    missing: list[Attractor] = field(default_factory=list)
 
     def __getitem__(self, label: str) -> Any:
         if label in self.special:
@@ -176,6 +179,8 @@ class Graph:
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],
             **({"proofs": self._claims()} if self.proofs else {}),
+            **({"attractors": [a.to_dict() for a in self.attractors]} if self.attractors else {}),
+            **({"missing": [a.to_dict() for a in self.missing]} if self.missing else {}),
         }
 
     def _claims(self) -> dict[str, Any]:
@@ -205,6 +210,12 @@ class Graph:
                 note=switch.note,
             )
         return network
+
+    def merge(self, other: Graph) -> dict[str, str]:
+        """Add what another graph of the same problem has beside it; see :func:`contvines.coexistence.merging.merge`."""
+        from ..coexistence.merging import merge
+
+        return merge(self, other)
 
     def to_pandas(self) -> Any:
         """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""

@@ -13,8 +13,12 @@ from ..continuation.engine import Engine
 SAME = 1e-6
 
 
-def same_vector(a: np.ndarray, b: np.ndarray, tolerance: float = SAME) -> bool:
-    """Equal up to the tolerance, relative to 1 + largest entry."""
+def same_vector(
+    a: np.ndarray, b: np.ndarray, tolerance: float = SAME, scale: np.ndarray | None = None
+) -> bool:
+    """Equal up to the tolerance, relative to 1 + largest entry, in units of a scale of the entries."""
+    if scale is not None and a.shape == b.shape and not (scale[:-1] == 1.0).all():
+        a, b = a / scale[: len(a)], b / scale[: len(a)]
     return a.shape == b.shape and bool(
         np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0))
     )
@@ -54,15 +58,15 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
         guess = _at_value(branch, engine, int(i), p)
         here, near = engine.problem.canonical(guess, p)
-        if here == key and not same_vector(near, vector, 0.1):
+        if here == key and not same_vector(near, vector, 0.1, engine.scale):
             continue
         found = engine.at_value(guess, p)
         if found is None:
-            if here == key and same_vector(near, vector, 1e-4):
+            if here == key and same_vector(near, vector, 1e-4, engine.scale):
                 return True
             continue
         here, near = engine.problem.canonical(found.u, p)
-        if here == key and same_vector(near, vector):
+        if here == key and same_vector(near, vector, SAME, engine.scale):
             return True
     return False
 
@@ -72,9 +76,9 @@ def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, 
     if branch.closed:
         return False
     for i in (0, -1):
-        if abs(branch.values[i] - p) <= SAME * (1.0 + abs(p)):
+        if abs(branch.values[i] - p) <= SAME * (engine.scale[-1] + abs(p)):
             here, near = engine.problem.canonical(branch.points[i], float(branch.values[i]))
-            if here == key and same_vector(near, vector, 1e-5):
+            if here == key and same_vector(near, vector, 1e-5, engine.scale):
                 return True
     return False
 
@@ -105,6 +109,8 @@ def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
     return at(0.5 * (low + high))[:-1]
 
 
-def same_form(one: tuple[Hashable, np.ndarray], other: tuple[Hashable, np.ndarray]) -> bool:
+def same_form(
+    one: tuple[Hashable, np.ndarray], other: tuple[Hashable, np.ndarray], scale: np.ndarray | None = None
+) -> bool:
     """Whether two canonical forms, as problems return them, are of one solution."""
-    return one[0] == other[0] and same_vector(one[1], other[1])
+    return one[0] == other[0] and same_vector(one[1], other[1], SAME, scale)

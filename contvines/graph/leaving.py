@@ -22,6 +22,11 @@ from .run import Run
 OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
 
+FAMILY = (
+    "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
+    "give the problem conditions= that pick one of them"
+)
+
 
 def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """Queue the branches that leave a special point, as far as the depth allows."""
@@ -84,10 +89,15 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             transcritical = abs(departure.slope) > 0.1 * run.unit(point.value) * departure.amplitude
             if point.criticality is None and not transcritical:
                 point.criticality, point.coefficient = criticality(
-                    departure.curvature, speed, flip=name == "minus"
+                    departure.curvature / target.amplitude(departure.direction) ** 2,
+                    speed,
+                    flip=name == "minus",
                 )
             elif transcritical:
                 run.remark(point.label, "transcritical")
+            if departure.family:
+                run.remark(point.label, FAMILY)
+                continue
             if depth + 1 > run.depth:
                 continue
             run.queue.append(

@@ -148,8 +148,12 @@ def _known(
         return None
     if kind in BORDERS and at_end and pending.kind is Origin.BORDER and pending.point is not None:
         source = run.graph.special[pending.point]
-        if abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p) and may_be_one(
-            problem, point.u, point.p, source
+        gaps = np.abs(branch.values[[0, -1]] - source.value)
+        home = abs(source.value - point.p) <= gaps.min()  # the other end is a border of its own, however near
+        if (
+            home
+            and abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p)
+            and may_be_one(problem, point.u, point.p, source)
         ):
             return source.label
     if kind in BORDERS and at_end:
@@ -175,7 +179,7 @@ def _known(
         if kind == "user" and known.name != event.name:
             continue
         form = problem.canonical(point.u, point.p) if form is None else form
-        if same_form(form, run.form(known)):
+        if same_form(form, run.form(known), engine.scale):
             return known.label
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree

@@ -13,11 +13,12 @@ from ..branches.branch import Branch
 from ..branches.ending import Ending
 from ..branches.special_point import SpecialPoint
 from ..problems.registry import UnknownFactory, rebuild
+from .attractor import Attractor
 from .graph import Graph, Switch
 
 Entry = tuple[str, str, dict[str, Any]]
 
-_MEMBERS = ("branches", "special", "switches", "proofs")
+_MEMBERS = ("branches", "special", "switches", "proofs", "attractors", "missing")
 
 
 def graph_entries(graph: Graph) -> Iterator[Entry]:
@@ -29,6 +30,9 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
         yield "special", point.label, _content(point)
     for label, proof in graph.proofs.items():
         yield "proof", label, proof
+    for kind, entries in (("attractor", graph.attractors), ("missing", graph.missing)):
+        for number, attractor in enumerate(entries):
+            yield kind, str(number), attractor.to_dict()
     for i, switch in enumerate(graph.switches):
         yield "switch", str(i), {f.name: getattr(switch, f.name) for f in fields(switch)}
 
@@ -66,6 +70,8 @@ def graph_from_entries(
         graph.special[label] = SpecialPoint(problem=branch.problem if branch else None, **content)
     graph.switches += [Switch(**content) for content in entries.get("switch", {}).values()]
     graph.proofs.update(entries.get("proof", {}))
+    graph.attractors = [Attractor(**content) for content in entries.get("attractor", {}).values()]
+    graph.missing = [Attractor(**content) for content in entries.get("missing", {}).values()]
     return graph
 
 

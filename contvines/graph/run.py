@@ -81,6 +81,8 @@ class Run:
 
     def unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with: see :func:`parameter_unit`."""
+        for _, engine, _ in self.engines.values():
+            return engine.parameter_unit(p)
         return parameter_unit(self.graph.within, p)
 
     def engine(self, problem: Any) -> tuple[Engine, Watch]:

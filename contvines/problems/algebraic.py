@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from copy import copy
 from typing import Any
 
 import numpy as np
 
-from .dense import KERNELS, DenseWork, dense_workspace
+from . import sparse
+from .callables import CallableProblem
+from .conditions import Conditions
 from .derivatives import Differentiated
-from .images import image_map
+from .images import image_map, images_of, smallest_image
+from .outputs import Outputs
 from .parameters import ParameterSet
-from .protocol import ProblemDefaults, Symmetry
-from .registry import find_callables
+from .pieces import Pieces
+from .protocol import Seed, Symmetry
+from .registry import addresses, find_callables
+from .scales import given_scale
+from .spectra import WATCHED, reference_of, watched, without_roundoff
 
 
-class AlgebraicProblem(ProblemDefaults):
+class AlgebraicProblem(CallableProblem):
     """Solutions of F(u, p) = 0, or equilibria of u' = F(u, p).
 
     Parameters
     ----------
     F : callable
-        (u of shape (N,), p) -> N numbers.
+        (u of shape (N,), p) -> N numbers. It sees u read-only. With ``switches`` it has a third argument.
     u0 : array_like, shape (N,) or scalar
         A start; it need not be exact.
     p0 : float, or mapping of str to float
@@ -30,7 +35,9 @@ class AlgebraicProblem(ProblemDefaults):
     parameter : str
         Name of the parameter that varies; of several the first one, if it is left out.
     jacobian : callable, optional
-        (u, p) -> dF/du of shape (N, N). Else the complex step, where F allows it, or sixth-order differences.
+        (u, p) -> dF/du of shape (N, N): an array, a matrix of ``scipy.sparse`` in any format, or a LinearOperator, which is never
+        factorised. Else the complex step, where F allows it, or differences with an error estimate. It is compared with
+        differences of F at the start and at every special point.
     derivative : callable, or mapping of str to callable, optional
         (u, p) -> dF/dp of shape (N,); of several parameters by name.
     spectrum : {"none", "flow"}
@@ -40,11 +47,28 @@ class AlgebraicProblem(ProblemDefaults):
         of the two mirror images is traced.
     name : str, optional
         For tables.
+    scale : float or array_like of shape (N,), optional
+        What counts as large in each unknown; learned from the start and the branch if it is left out.
+    symmetries : sequence of callables, matrices or permutations, optional
+        Further images of u that solve the same equations: generators of a finite group. Of equivalent branches one is traced.
+    conditions : sequence of callables, optional
+        (u, p) -> number, zero on the solutions wanted: one for each continuous symmetry, such as a phase condition.
+    switches : mapping of str to callable, optional
+        (u, p) -> number whose sign selects a piece of F. F is then called as F(u, p, sign) with a mapping from the names to
+        +1 or -1, must be smooth for fixed signs, and must not look at the switches itself.
+    leading : int
+        How many eigenvalues of a sparse or matrix-free Jacobian are computed for spectrum "flow".
+    shift : float
+        Those nearest to this one.
+    preconditioner : callable, optional
+        (u, p) -> LinearOperator or array that is nearly the inverse of dF/du, for a matrix-free Jacobian.
+    outputs : mapping of str to callable, optional
+        (u, p) -> number: measures of your own, for tables, pictures and exports.
 
     Raises
     ------
     ValueError
-        If F does not return N finite numbers at the start.
+        If F does not return N finite numbers at the start, or a given derivative disagrees with it.
     """
 
     def __init__(
@@ -58,90 +82,184 @@ class AlgebraicProblem(ProblemDefaults):
         spectrum: str = "none",
         mirror: Any = None,
         name: str = "algebraic",
+        scale: Any = None,
+        symmetries: Sequence[Any] = (),
+        conditions: Sequence[Callable] = (),
+        switches: Mapping[str, Callable] | None = None,
+        leading: int = 10,
+        shift: float = 0.0,
+        preconditioner: Callable | None = None,
+        outputs: Mapping[str, Callable] | None = None,
     ) -> None:
         if spectrum not in ("none", "flow"):
             raise ValueError(f'spectrum = {spectrum!r} must be "none" or "flow"; for maps use MapProblem')
-        self.u0 = np.array(u0, dtype=float).reshape(-1)
+        if not (isinstance(leading, int) and leading >= 1):
+            raise ValueError(f"leading = {leading!r} must be a whole number of at least 1")
+        start = np.array(u0, dtype=float).reshape(-1)
         self.values = ParameterSet(p0, parameter)
         self.spectrum, self.name = spectrum, name
-        self.dimension = len(self.u0)
-        self.n_multipliers = self.dimension if spectrum == "flow" else 0
-        value = np.asarray(F(self.u0.copy(), self.values.at(self.p0)), dtype=float).reshape(-1)
-        if len(value) != self.dimension:
-            raise ValueError(
-                f"F returns {len(value)} numbers for {self.dimension} unknowns; as many are needed"
-            )
-        if not np.all(np.isfinite(value)):
-            raise ValueError(f"F is not finite at the start u0 = {self.u0}, {self.parameter} = {self.p0}")
-        self.functions = Differentiated(F, jacobian, derivative, self.u0, self.values)
-        self.given_mirror = mirror
-        self.mirror = None if mirror is None else image_map(mirror, self.dimension)
+        self.node = len(start)
+        self.leading, self.shift, self.preconditioner = leading, float(shift), preconditioner
+        self.pieces = Pieces(switches, self.values, start[None, :])
+        self.given = {
+            "F": F,
+            "jacobian": jacobian,
+            "derivative": derivative,
+            "mirror": mirror,
+            "preconditioner": preconditioner,
+        }
+        self.functions = Differentiated(*self._wrapped(self.pieces), start, self.values)
+        self.outputs = Outputs(outputs, self.values)
+        self.mirror = None if mirror is None else image_map(mirror, self.node)
+        self.symmetric = len(symmetries) > 0
+        generators = [image_map(s, self.node, "symmetries") for s in symmetries]
         if self.mirror is not None:
-            self.symmetries = (Symmetry("symmetry-breaking", self.mirror),)
-        self.kernels = KERNELS
+            generators.append(self.mirror)
+        self.images = images_of(generators, self.node)
+        self.conditions = Conditions(list(conditions), self.functions, start) if conditions else None
+        self.u0 = start if self.conditions is None else self.conditions.extended(start)
+        self.dimension = len(self.u0)
+        self.given_scale = given_scale(scale, self.node)
+        if self.given_scale is not None and self.conditions is not None:
+            self.given_scale = np.append(self.given_scale, np.ones(self.conditions.count))
+        self.n_margins = self.pieces.count
         self.data = self
+        self._check_start(start)
+        self._find_structure(start)
+        self._find_symmetries()
         self.describe()  # its callables are known by their addresses from now on
 
-    @property
-    def parameter(self) -> str:
-        """Name of the parameter that varies."""
-        return self.values.varying
+    def _find_structure(self, start: np.ndarray) -> None:
+        dense = self.functions.find_structure(start) == "dense"
+        if self.spectrum == "flow":
+            self.n_multipliers = self.node if dense else min(self.leading, self.node)
+            if dense and self.conditions is not None:
+                self.n_multipliers = self.node - self.conditions.count
+        elif dense and self.dimension <= WATCHED:
+            self.n_multipliers, self.detection = self.dimension, "real"
+        if not dense and self.conditions is not None:
+            raise ValueError(
+                "conditions need a Jacobian that is an array; put them into F, with an unknown each"
+            )
 
-    @property
-    def parameters(self) -> dict[str, float]:
-        """All parameters by name; of the one that varies the value at the start."""
-        return dict(self.values.values)
+    def _find_symmetries(self) -> None:
+        found = []
+        if self.mirror is not None:
+            found.append(Symmetry("symmetry-breaking", self._on_unknowns(self.mirror)))
+        self.symmetries = tuple(found)
 
-    @property
-    def p0(self) -> float:
-        """Value of the varying parameter at the start."""
-        return self.values.start
+    def _on_unknowns(self, image: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
+        if self.conditions is None:
+            return image
+        return lambda u: np.append(image(u[: self.node]), u[self.node :])
 
-    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> AlgebraicProblem:
-        """The same equations with another parameter varying, and with other values of some parameters.
+    # ------------------------------------------------------------------ numerics
+    def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, Any, np.ndarray]:
+        """F, dF/du, dF/dp."""
+        f = self.functions
+        if self.preconditioner is not None:
+            self.inverse = self.preconditioner(u, self.values.at(p))
+        if self.conditions is not None:
+            return self.conditions.equations(u, p, f, self.values)
+        return f.value(u, p), f.jacobian(u, p), f.derivative(u, p)
 
-        Cheap: nothing is evaluated.
-        """
-        other = copy(self)
-        other.values = self.values.against(parameter, values)
-        other.functions = self.functions.against(other.values)
-        other.data = other
+    def preconditioner_at(self) -> Any:
+        """The user's approximation of the inverse of dF/du where the equations were evaluated last, or None."""
+        return getattr(self, "inverse", None)
+
+    def raw_spectrum(self, work: Any) -> np.ndarray:
+        """Eigenvalues of dF/du, in units of the typical rate; those watched for branch points, where there is no spectrum."""
+        if not self.n_multipliers:
+            return np.zeros(0)
+        if self.detection == "real":
+            if self.reference is None:
+                rows = np.ones(self.dimension) if self.scales is None else self.scales.rows
+                units = np.ones(self.dimension) if self.scales is None else self.scales.unknowns
+                self.reference = reference_of(work.jacobian, rows, units)
+            return watched(work.jacobian, self.reference)
+        rate = 1.0 if self.scales is None else self.scales.rate
+        return self._eigenvalues(work) / rate
+
+    def _eigenvalues(self, work: Any) -> np.ndarray:
+        if self.functions.structure != "dense":
+            return sparse.leading(work, self.n_multipliers, self.shift)
+        if self.conditions is not None:
+            return self.conditions.eigenvalues(work.jacobian)
+        return without_roundoff(np.linalg.eigvals(work.jacobian))
+
+    def rates(self, work: Any) -> list[float]:
+        """Median size of the eigenvalues, for spectrum "flow"."""
+        if self.spectrum != "flow":
+            return []
+        sizes = np.abs(self._eigenvalues(work))
+        sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
+        return [float(np.median(sizes))] if len(sizes) else []
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Eigenvalues in the unit of time of the equations."""
+        if self.spectrum == "none":
+            return np.zeros((*spectrum.shape[:-1], 0), dtype=complex)
+        return np.asarray(spectrum, dtype=complex) * (1.0 if self.scales is None else self.scales.rate)
+
+    # ------------------------------------------------------------------ pieces
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray:
+        """Switches with the signs of the piece: positive inside."""
+        return self.pieces.margins(u[None, : self.node], p)
+
+    def margin_kind(self, j: int) -> str:
+        """Every border of a piece is a switch."""
+        return "switch"
+
+    def beyond(self, point: Any) -> list[Seed]:
+        """The solution of the piece on the other side of a switch."""
+        return self.pieces.beyond(self, point)
+
+    def with_pieces(self, pieces: Pieces) -> AlgebraicProblem:
+        """The same problem in another piece."""
+        other = self.against(self.parameter)
+        other.pieces, other.functions = pieces, self.functions.of(*self._wrapped(pieces))
+        other.reference = None
         return other
 
-    def workspace(self) -> DenseWork:
-        """Arrays for the kernels."""
-        return dense_workspace(self.dimension)
-
-    def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """F, dF/du, dF/dp."""
-        return self.functions.value(u, p), self.functions.jacobian(u, p), self.functions.derivative(u, p)
-
-    def raw_spectrum(self, work: DenseWork) -> np.ndarray:
-        """Eigenvalues of dF/du (none for spectrum "none")."""
-        return np.linalg.eigvals(work.jacobian) if self.n_multipliers else np.zeros(0)
-
+    # ------------------------------------------------------------------ identity and measures
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
-        """Of u and its mirror image the one that comes first in dictionary order."""
+        """Of u and its images the one that comes first in dictionary order."""
         u = np.asarray(u, dtype=float)
-        if self.mirror is not None:
-            image = self.mirror(u)
-            different = np.flatnonzero(np.abs(image - u) > 1e-7 * (1.0 + np.abs(u)))
-            if len(different) and image[different[0]] < u[different[0]]:
-                u = image
-        return ("algebraic", self.dimension), u
+        key = ("algebraic", self.dimension, self.pieces.key)
+        if not self.images:
+            return key, u
+        scale = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
+        best = smallest_image(u[: self.node], self.images, scale)
+        return key, best if self.conditions is None else np.append(best, u[self.node :])
 
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """The user's own measures, norm, and the unknowns."""
+        return (*self.outputs.names, "norm", *(f"u{i}" for i in range(self.node)))
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures for an array of solutions."""
+        u = np.atleast_2d(u)[:, : self.node]
+        own = self.outputs.measures([name for name in names if name in self.outputs.names], u, p)
+        return {**super().measures([name for name in names if name not in own], u, p), **own}
+
+    # ------------------------------------------------------------------ files
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again if F can be imported."""
-        where, importable = self.functions.addresses(mirror=self.given_mirror)
+        where, importable = addresses(self.given)
+        plain = not (self.symmetric or self.conditions or self.pieces.count or self.outputs.names)
         return {
             "name": self.name,
             "parameter": self.parameter,
             "spectrum": self.spectrum,
-            "u0": self.u0.tolist(),
+            "u0": self.u0[: self.node].tolist(),
             "p0": self.values.given(),
+            "scale": None if self.given_scale is None else self.given_scale[: self.node].tolist(),
+            "leading": self.leading,
+            "shift": self.shift,
             "callables": where,
-            "factory": "contvines.problems.algebraic:from_description" if importable else None,
-        }
+            "factory": "contvines.problems.algebraic:from_description" if importable and plain else None,
+        } | ({"word": self.pieces.word} if self.pieces.count else {})
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AlgebraicProblem | None:
@@ -149,13 +267,14 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Alg
     functions = find_callables(description["callables"], trust)
     if functions is None:
         return None
-    F = functions.pop("F")
+    more = {key: description[key] for key in ("scale", "leading", "shift") if key in description}
     return AlgebraicProblem(
-        F,
+        functions.pop("F"),
         description["u0"],
         description["p0"],
         parameter=description["parameter"],
         spectrum=description["spectrum"],
         name=description["name"],
+        **more,
         **functions,
     )

@@ -6,8 +6,13 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.linalg import get_lapack_funcs
 
+from .functions import NotEvaluable
 from .protocol import Kernels
+
+# solves and hands out the factors (scipy's getrs starts threads for the smallest matrices)
+(FACTORISE_AND_SOLVE,) = get_lapack_funcs(("gesv",), dtype=np.float64)
 
 
 class DenseWork(NamedTuple):
@@ -23,55 +28,93 @@ class DenseWork(NamedTuple):
 def dense_workspace(n: int) -> DenseWork:
     """Arrays for n equations."""
     return DenseWork(
-        np.zeros(n), np.zeros((n, n)), np.zeros(n), np.zeros((n + 1, n + 1)), np.zeros((n + 1, 2))
+        np.zeros(n),
+        np.zeros((n, n)),
+        np.zeros(n),
+        np.zeros((n + 1, n + 1), order="F"),
+        np.zeros((n + 1, 2), order="F"),
     )
 
 
+def workspace(problem: Any) -> DenseWork:
+    """Arrays for a problem."""
+    return dense_workspace(problem.dimension)
+
+
+def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
+    """Largest change of each equation when an unknown changes by its scale."""
+    return (np.abs(work.jacobian) * scale).max(axis=1)
+
+
 def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
-    """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays."""
+    """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
+    scales = getattr(data, "scales", None)
     with np.errstate(all="ignore"):
         try:
             work.residual[:], work.jacobian[:], work.derivative[:] = data.equations(u, p)
+        except NotEvaluable as error:
+            data.trouble = str(error)
+            return math.inf
         except (ArithmeticError, ValueError, np.linalg.LinAlgError):
             return math.inf
-        size = float(np.abs(work.residual).max())
-        if not (np.isfinite(work.jacobian).all() and np.isfinite(work.derivative).all()):
-            return math.inf
-    return size if size == size else math.inf
+        sizes = np.abs(work.residual)
+        size = float((sizes if scales is None else sizes / scales.rows).max())
+        # a sum is finite if its terms are, but for an overflow, which would not do either
+        total = float(work.jacobian.sum() + work.derivative.sum())
+    return size if size - size == 0.0 and total - total == 0.0 else math.inf
 
 
 def bordered(
     data: Any, work: DenseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
-    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant."""
+    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant.
+
+    One factorisation, of the matrix with columns in units of the scales and rows made equally large.
+    """
     size = len(work.residual)
     matrix, sides = work.matrix, work.sides
+    scales = getattr(data, "scales", None)
     matrix[:size, :size] = work.jacobian
     matrix[:size, size] = work.derivative
     matrix[size] = border
-    sides[:size, 0] = -work.residual
-    sides[size, 0] = n
-    sides[:size, 1] = 0.0
-    sides[size, 1] = 1.0
-    try:
-        solution = np.linalg.solve(matrix, sides)
-        sign = float(np.linalg.slogdet(matrix)[0])
-    except np.linalg.LinAlgError:
-        left, values, right = np.linalg.svd(matrix)
-        values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
-        with np.errstate(all="ignore"):
+    units = None
+    if scales is not None:
+        units = scales.joined()
+        matrix *= units
+    with np.errstate(all="ignore"):
+        rows = np.abs(matrix).max(axis=1)
+        rows[~(rows > 0.0)] = 1.0
+        matrix /= rows[:, None]
+        sides[:size, 0] = -work.residual
+        sides[size, 0] = n
+        sides[:size, 1] = 0.0
+        sides[size, 1] = 1.0
+        sides /= rows[:, None]
+        factors, pivots, solution, singular = FACTORISE_AND_SOLVE(matrix, sides)
+        diagonal = factors.diagonal()
+        if not singular:
+            swaps = int((pivots != np.arange(size + 1)).sum())
+            sign = -1.0 if (int((diagonal < 0.0).sum()) + swaps) % 2 else 1.0
+        else:
+            left, values, right = np.linalg.svd(matrix)
+            values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
             solution = right.T @ ((left.T @ sides) / values[:, None])
-        sign = 0.0
+            sign = 0.0
+        if units is not None:
+            solution = solution * units[:, None]
     step[:] = solution[:, 0]
     tangent[:] = solution[:, 1]
     return sign
 
 
 def inspect(data: Any, u: np.ndarray, p: float, work: DenseWork, row: np.ndarray) -> None:
-    """Raw spectrum of the linearisation; dense problems have no margins."""
+    """Raw spectrum of the linearisation, then the margins of problems that have any."""
     spectrum = data.raw_spectrum(work)
-    row[0 : 2 * len(spectrum) : 2] = spectrum.real
-    row[1 : 2 * len(spectrum) : 2] = spectrum.imag
+    m = 2 * len(spectrum)
+    row[0:m:2] = spectrum.real
+    row[1:m:2] = spectrum.imag
+    if len(row) > m:
+        row[m:] = data.margins(u, p)
 
 
 def matrix(data: Any, work: DenseWork) -> np.ndarray:

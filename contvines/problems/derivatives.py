@@ -1,40 +1,23 @@
-"""Derivatives of Python callables: complex step where the callable allows it, else sixth-order differences."""
+"""A user's equations with their derivatives: given ones, the complex step where the function allows it, else differences."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from copy import copy
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from .differences import Difference, along, bend, noise_of
+from .functions import NotEvaluable, UserFunction
 from .parameters import ParameterSet
-from .registry import address
 
 COMPLEX_STEP = 1e-40
-STEP = 6e-3  # roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
-# sixth-order central difference: weights of f(x + k h) - f(x - k h), Fornberg, Math. Comp. 51 (1988) 699, table 1
-WEIGHTS = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
-
-
-def along(f: Callable[[float], np.ndarray], scale: float) -> np.ndarray:
-    """Derivative at 0 of a function of one real variable, by sixth-order central differences.
-
-    Parameters
-    ----------
-    f : callable
-        t -> ndarray.
-    scale : float
-        Size of the variable that t shifts; the step is ``STEP`` times it. Where f cannot be evaluated that far away,
-        second-order differences with a step of 1e-6 are used.
-    """
-    h = STEP * scale
-    total = sum(w * (f(k * h) - f(-k * h)) for k, w in enumerate(WEIGHTS, start=1))
-    derivative = np.asarray(total) / h
-    if np.all(np.isfinite(derivative)):
-        return derivative
-    h = 1e-6 * scale
-    return (f(h) - f(-h)) / (2.0 * h)
+SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
+AGREE = 1e-6  # relative difference at which a derivative counts as wrong
+EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
+PATIENCE = 0.5  # seconds that measuring lengths may take
 
 
 class Differentiated:
@@ -45,12 +28,30 @@ class Differentiated:
     f : callable
         (u of shape (n,), p) -> n numbers.
     jacobian : callable, optional
-        (u, p) -> (n, n).
+        (u, p) -> (n, n): an array, a sparse matrix or a LinearOperator.
     derivative : callable, optional
         (u, p) -> (n,), with respect to p; of several parameters a mapping of such callables by name.
     u : ndarray, shape (n,)
-        Where the complex step is tried, and compared with differences, before it is trusted.
+        Where f is measured: lengths over which it bends, noise, whether the complex step works.
     parameters : ParameterSet
+    name : str
+        Of f, for messages.
+
+    Attributes
+    ----------
+    lengths : ndarray, shape (n,)
+        Over which f bends in each unknown; where it does not, the unknown's size, or 1.
+    bends : ndarray of bool, shape (n,)
+        Where it does.
+    noise : ndarray, shape (n,)
+        Standard deviation of each entry of f beyond roundoff.
+    error : float
+        Estimated relative error of the last derivatives.
+
+    Raises
+    ------
+    ValueError
+        If f, or a given derivative, will not do at u; the sentence says why.
     """
 
     def __init__(
@@ -60,84 +61,310 @@ class Differentiated:
         derivative: Callable | Mapping[str, Callable] | None,
         u: np.ndarray,
         parameters: ParameterSet,
+        name: str = "F",
     ) -> None:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
-        self.parameters = parameters
-        p = parameters.start
-        self.complex_step = (
-            self._complex_step_works(u, p) if jacobian is None or derivative is None else False
+        self.parameters, self.name = parameters, name
+        self.structure = "dense"
+        self.rows = 0  # numbers that f returns, where these are not as many as unknowns
+        self._bind()
+        p, n = parameters.start, len(u)
+        begin = perf_counter()
+        value = self.checked_value(u, p)
+        cost = perf_counter() - begin
+        self.noise, self.error, self.complex_step = np.zeros(n), 0.0, False
+        self.parameter_lengths: dict[str, float] = {}
+        self._measure_lengths(u, p, cost)
+        self._measure_noise(u, p, value)
+        if jacobian is None or not self._gives_derivative:
+            self.complex_step = self._complex_step_works(u, p)
+
+    def _bind(self) -> None:
+        given = self.given_derivative
+        if isinstance(given, Mapping):
+            given = given.get(self.parameters.varying)
+        self._value = UserFunction(self.f, self.name, self.parameters)
+        self._jacobian = (
+            None
+            if self.given_jacobian is None
+            else UserFunction(self.given_jacobian, "jacobian", self.parameters)
         )
+        self._derivative = None if given is None else UserFunction(given, "derivative", self.parameters)
+        self._gives_derivative = given is not None
 
     def against(self, parameters: ParameterSet) -> Differentiated:
         """The same callable with other parameters."""
         other = copy(self)
         other.parameters = parameters
+        other._bind()
         return other
+
+    def of(
+        self, f: Callable, jacobian: Callable | None, derivative: Any, name: str | None = None, rows: int = 0
+    ) -> Differentiated:
+        """The same measurements for a similar callable.
+
+        Parameters
+        ----------
+        f, jacobian, derivative : callables
+        name : str, optional
+        rows : int
+            How many numbers f returns, if not one for each unknown.
+        """
+        other = copy(self)
+        other.f, other.given_jacobian, other.given_derivative = f, jacobian, derivative
+        other.name, other.rows = name or self.name, rows
+        if rows:
+            other.noise = np.zeros(rows)
+        other._bind()
+        return other
+
+    def find_structure(self, u: np.ndarray) -> str:
+        """ "dense", "sparse" or "operator": what a given Jacobian is at the start; remembered as ``structure``."""
+        if self._jacobian is not None:
+            matrix = as_matrix(self._jacobian.raw(u, self.parameters.start), len(u))
+            self.structure = (
+                "sparse" if hasattr(matrix, "tocsc") else "operator" if hasattr(matrix, "matvec") else "dense"
+            )
+        return self.structure
+
+    # ------------------------------------------------------------------ values
+    def checked_value(self, u: np.ndarray, p: float) -> np.ndarray:
+        """f(u, p), or a ValueError that says what is wrong with it at a start."""
+        where = f"at the start {self._where(u, p)}"
+        try:
+            with np.errstate(all="ignore"):
+                value = self._value(u, p)
+        except NotEvaluable as error:
+            raise ValueError(f"{error}, {where}") from error
+        if len(value) != len(u):
+            raise ValueError(
+                f"{self.name} returns {len(value)} numbers for {len(u)} unknowns; as many are needed"
+            )
+        if not np.all(np.isfinite(value)):
+            raise ValueError(f"{self.name} is not finite {where}")
+        return value
+
+    def _where(self, u: np.ndarray, p: float) -> str:
+        return f"u0 = {np.array2string(u, threshold=6)}, {self.parameters.varying} = {p:.10g}"
 
     def value(self, u: np.ndarray, p: float) -> np.ndarray:
         """f(u, p) as float array."""
-        return np.asarray(self.f(u, self.parameters.at(p)), dtype=float).reshape(-1)
+        return self._value(u, p)
 
-    def jacobian(self, u: np.ndarray, p: float) -> np.ndarray:
-        """df/du, shape (n, n)."""
+    def jacobian(self, u: np.ndarray, p: float) -> Any:
+        """df/du, shape (n, n), as an array, or as it was given if that is sparse or a LinearOperator."""
         n = len(u)
-        if self.given_jacobian is not None:
-            return np.asarray(self.given_jacobian(u, self.parameters.at(p)), dtype=float).reshape(n, n)
-        result = np.empty((n, n))
+        if self._jacobian is not None:
+            self.error = 0.0
+            return as_matrix(self._jacobian.raw(u, p), n)
+        result, worst = np.empty((self.rows or n, n)), 0.0
         for j in range(n):
-            direction = np.zeros(n)
-            direction[j] = 1.0
             if self.complex_step:
-                result[:, j] = self._imaginary(u + 1j * COMPLEX_STEP * direction, p)
+                shifted = u.astype(complex)
+                shifted[j] += 1j * COMPLEX_STEP
+                result[:, j] = np.imag(self._value(shifted, p)) / COMPLEX_STEP
             else:
-                result[:, j] = along(lambda t, d=direction: self.value(u + t * d, p), 1.0 + abs(u[j]))
+                found = self._column(u, p, j)
+                result[:, j] = found.value
+                size = np.abs(found.value).max()
+                worst = max(worst, float(found.error.max() / size)) if size > 0.0 else worst
+        self.error = worst
         return result
+
+    def _column(self, u: np.ndarray, p: float, j: int) -> Difference:
+        def shifted(t: float) -> np.ndarray:
+            moved = u.copy()
+            moved[j] += t
+            return self._value(moved, p)
+
+        return along(shifted, float(self.lengths[j]), self.noise)
 
     def derivative(self, u: np.ndarray, p: float) -> np.ndarray:
         """df/dp, shape (n,)."""
-        given = self.given_derivative
-        if isinstance(given, Mapping):
-            given = given.get(self.parameters.varying)
-        if given is not None:
-            return np.asarray(given(u, self.parameters.at(p)), dtype=float).reshape(-1)
+        if self._derivative is not None:
+            return self._derivative(u, p)
         if self.complex_step:
-            return self._imaginary(u.astype(complex), p + 1j * COMPLEX_STEP)
-        return along(lambda t: self.value(u, p + t), 1.0 + abs(p))
+            return np.imag(self._value(u.astype(complex), complex(p, COMPLEX_STEP))) / COMPLEX_STEP
+        found = along(lambda t: self._value(u, p + t), self._parameter_length(u, p), self.noise)
+        size = np.abs(found.value).max()
+        if size > 0.0:
+            self.error = max(self.error, float(found.error.max() / size))
+        return found.value
 
-    def addresses(self, **others: Any) -> tuple[dict[str, Any], bool]:
-        """Where the callables can be found again, by name, and whether all of them can."""
-        given = {
-            "F": self.f,
-            "jacobian": self.given_jacobian,
-            "derivative": self.given_derivative,
-            **others,
-        }
-        where: dict[str, Any] = {}
-        flat: list[tuple[Callable, str | None]] = []
-        for key, f in given.items():
-            if isinstance(f, Mapping):
-                where[key] = {name: address(part) for name, part in f.items()}
-                flat += [(part, where[key][name]) for name, part in f.items()]
-            elif f is not None and not callable(f):
-                where[key] = np.asarray(f).tolist()
+    # ------------------------------------------------------------------ what f is like
+    def _parameter_length(self, u: np.ndarray, p: float) -> float:
+        name = self.parameters.varying
+        if name not in self.parameter_lengths:
+            found = bend(self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0)
+            self.parameter_lengths[name] = found or abs(p) or 1.0
+        return self.parameter_lengths[name]
+
+    def _quietly(self, line: Callable[[float], np.ndarray], n: int) -> Callable[[float], np.ndarray]:
+        """The function with NaN where it cannot be evaluated."""
+
+        def value(t: float) -> np.ndarray:
+            try:
+                return line(t)
+            except NotEvaluable:
+                return np.full(n, np.nan)
+
+        return value
+
+    def _measure_lengths(self, u: np.ndarray, p: float, cost: float) -> None:
+        n = len(u)
+        self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
+        self.bends = np.zeros(n, dtype=bool)
+        largest = float(np.abs(u).max()) or 1.0
+        each = n <= EACH
+        tries = 9 if (n if each else 1) * 39 * cost < PATIENCE else 2
+
+        def line(direction: np.ndarray) -> Callable[[float], np.ndarray]:
+            return self._quietly(lambda t: self._value(u + t * direction, p), n)
+
+        with np.errstate(all="ignore"):
+            if each:
+                for j in range(n):
+                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries)
+                    if found is not None:
+                        self.lengths[j], self.bends[j] = found, True
             else:
-                where[key] = None if f is None else address(f)
-                flat += [] if f is None else [(f, where[key])]
-        return where, all(found is not None for _, found in flat)
+                direction = np.where(u == 0.0, largest, u)
+                found = bend(line(direction / np.abs(direction).max()), largest, tries)
+                self.lengths[:] = largest if found is None else found
+                self.bends[:] = found is not None
 
-    def _imaginary(self, u: np.ndarray, p: complex) -> np.ndarray:
-        return np.imag(np.asarray(self.f(u, self.parameters.at(p))).reshape(-1)) / COMPLEX_STEP
+    def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
+        direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))
+        line = self._quietly(lambda t: self._value(u + t * direction, p), len(u))
+        with np.errstate(all="ignore"):
+            noise = noise_of(line, 1e-6)
+            change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
+            rough = noise > SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
+        if np.isfinite(noise).all() and np.isfinite(change).all():
+            self.noise = np.where(rough, noise, 0.0)
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
+        """Whether imaginary parts are derivatives: compared with differences along a direction beside the start."""
         rng = np.random.default_rng(0)
-        u = u + 1e-3 * rng.standard_normal(len(u))
-        direction, slope = rng.standard_normal(len(u)), 0.7
+        u = u + 1e-3 * self.lengths * rng.standard_normal(len(u))
+        direction = self.lengths * rng.standard_normal(len(u))
+        slope = 0.7 * self._parameter_length(u, p)
         try:
             with np.errstate(all="ignore"):
-                exact = self._imaginary(u + 1j * COMPLEX_STEP * direction, p + 1j * COMPLEX_STEP * slope)
-                near = along(lambda t: self.value(u + t * direction, p + t * slope), 0.1)
-        except (TypeError, ValueError, AttributeError):
+                shifted = self._value(u + 1j * COMPLEX_STEP * direction, complex(p, COMPLEX_STEP * slope))
+                exact = np.imag(shifted) / COMPLEX_STEP
+                near = along(lambda t: self._value(u + t * direction, p + t * slope), 0.5, self.noise)
+        except NotEvaluable:
             return False
-        return bool(
-            np.all(np.isfinite(exact)) and np.all(np.abs(exact - near) <= 1e-6 * (1.0 + np.abs(near).max()))
+        if len(exact) != len(u) or not np.isfinite(exact).all():
+            return False
+        rows = np.abs(near.value) + 1e-9 * np.abs(near.value).max(initial=0.0)
+        return bool(np.all(np.abs(exact - near.value) <= AGREE * rows + 10.0 * near.error))
+
+    # ------------------------------------------------------------------ checks
+    def disagreement(self, u: np.ndarray, p: float) -> str | None:
+        """A sentence on where given derivatives disagree with differences of f at a point; None if they do not.
+
+        One random direction tells; entries are looked at one by one only if it does.
+        """
+        with np.errstate(all="ignore"):
+            try:
+                return self._wrong_jacobian(u, p) or self._wrong_derivative(u, p)
+            except NotEvaluable:
+                return None
+
+    def _wrong_derivative(self, u: np.ndarray, p: float) -> str | None:
+        if self._derivative is None:
+            return None
+        given = self._derivative(u, p)
+        if len(given) != len(u):
+            return f"derivative returns {len(given)} numbers for {len(u)} equations"
+        near = along(lambda t: self._value(u, p + t), self._parameter_length(u, p), self.noise)
+        gap = (
+            np.abs(given - near.value)
+            - AGREE * np.maximum(np.abs(given), np.abs(near.value))
+            - 10.0 * near.error
         )
+        gap -= 1e-9 * np.abs(near.value).max()
+        if not np.isfinite(near.value).all() or not (gap > 0.0).any():
+            return None
+        i = int(np.argmax(gap))
+        return (
+            f"derivative disagrees with {self.name} in row {i}: it says {given[i]:.10g}, "
+            f"differences of {self.name} say {near.value[i]:.10g}, at {self.parameters.varying} = {p:.10g}"
+        )
+
+    def _wrong_jacobian(self, u: np.ndarray, p: float) -> str | None:
+        if self._jacobian is None:
+            return None
+        n = len(u)
+        matrix = as_matrix(self._jacobian.raw(u, p), n)
+        direction = self.lengths * np.random.default_rng(4).uniform(0.5, 1.0, n) * (-1.0) ** np.arange(n)
+        near = along(lambda t: self._value(u + t * direction, p), 0.3, self.noise)
+        if not np.isfinite(near.value).all():
+            return None
+        product = matrix @ direction
+        rows = np.abs(near.value)
+        if hasattr(matrix, "toarray") or isinstance(matrix, np.ndarray):
+            rows = np.maximum(rows, np.asarray(abs(matrix) @ np.abs(direction)).reshape(-1))
+        gap = np.abs(product - near.value) - AGREE * rows - 10.0 * near.error
+        if np.isfinite(product).all() and not (gap > 1e-9 * rows.max()).any():
+            return None
+        i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))
+        where = f"at {self.parameters.varying} = {p:.10g}"
+        entry = self._wrong_entry(matrix, u, p, i)
+        if entry is None:
+            return f"jacobian disagrees with differences of {self.name} in row {i}, {where}"
+        j, given, found = entry
+        turned = ""
+        if (
+            isinstance(matrix, np.ndarray)
+            and (np.abs(matrix.T @ direction - near.value) <= AGREE * rows + 10.0 * near.error).all()
+        ):
+            turned = "; it seems to be transposed"
+        return (
+            f"jacobian disagrees with {self.name} in row {i}, column {j}: it says {given:.10g}, "
+            f"differences of {self.name} say {found:.10g}, {where}{turned}"
+        )
+
+    def _wrong_entry(self, matrix: Any, u: np.ndarray, p: float, i: int) -> tuple[int, float, float] | None:
+        """Of a row the entry that is most wrong: its column, the given number and the one by differences."""
+        n = len(u)
+        if isinstance(matrix, np.ndarray):
+            row = matrix[i]
+        elif hasattr(matrix, "tocsr"):
+            row = np.asarray(matrix.tocsr()[[i]].todense()).reshape(-1)
+        else:
+            return None
+        columns = range(n) if n <= 400 else [int(j) for j in np.flatnonzero(row)]
+        worst, result = 0.0, None
+        for j in columns:
+            found = float(self._column(u, p, j).value[i])
+            gap = abs(found - row[j]) * self.lengths[j]
+            if not gap <= worst:
+                worst, result = gap, (j, float(row[j]), found)
+        return result
+
+
+def as_matrix(given: Any, n: int) -> Any:
+    """What a user's jacobian returned, as a float array, a sparse matrix or a LinearOperator of shape (n, n).
+
+    Raises
+    ------
+    NotEvaluable
+        If it is none, or has another shape.
+    """
+    if hasattr(given, "tocsc") or hasattr(given, "matvec"):
+        if given.shape != (n, n):
+            raise NotEvaluable(f"jacobian returns shape {given.shape}; ({n}, {n}) is needed")
+        return given
+    try:
+        matrix = np.array(given, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise NotEvaluable(f"jacobian returns no matrix of numbers: {error}") from error
+    if matrix.shape != (n, n):
+        if matrix.size == 1 == n:
+            return matrix.reshape(1, 1)
+        raise NotEvaluable(f"jacobian returns shape {matrix.shape}; ({n}, {n}) is needed")
+    return matrix

@@ -39,3 +39,49 @@ def image_map(symmetry: Any, n: int, name: str = "mirror") -> Callable[[np.ndarr
         f"{name} must be a function of u, a matrix of shape ({n}, {n}) or a permutation of 0 to {n - 1}; "
         f"this one has shape {matrix.shape}"
     )
+
+
+def images_of(
+    generators: list[Callable[[np.ndarray], np.ndarray]], n: int, most: int = 400
+) -> list[Callable]:
+    """All elements, but for the identity, of the finite group that some images generate.
+
+    Parameters
+    ----------
+    generators : list of callable
+    n : int
+    most : int
+        Larger groups are refused.
+
+    Raises
+    ------
+    ValueError
+        If there are more elements than `most`: the group is not finite, or too large to be listed.
+    """
+    probe = np.modf(np.sqrt(2.0) * np.arange(1.0, n + 1.0))[0]
+    known, elements = [probe], []
+    todo = list(generators)
+    while todo:
+        element = todo.pop()
+        image = element(probe)
+        if any(np.abs(image - other).max() < 1e-9 for other in known):
+            continue
+        known.append(image)
+        elements.append(element)
+        if len(elements) > most:
+            raise ValueError(
+                f"symmetries generate more than {most} images; give generators of a finite group"
+            )
+        todo += [lambda u, f=element, g=g: g(f(u)) for g in generators]
+    return elements
+
+
+def smallest_image(u: np.ndarray, images: list[Callable], scale: np.ndarray) -> np.ndarray:
+    """Of u and its images the first in dictionary order; differences at roundoff do not count."""
+    best = u
+    for image in images:
+        other = image(u)
+        different = np.flatnonzero(np.abs(other - best) > 1e-7 * (scale + np.abs(best)))
+        if len(different) and other[different[0]] < best[different[0]]:
+            best = other
+    return best

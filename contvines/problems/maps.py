@@ -9,17 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from .dense import KERNELS, DenseWork, dense_workspace
+from .callables import CallableProblem
 from .derivatives import Differentiated
 from .images import image_map
+from .outputs import Outputs
 from .parameters import ParameterSet
-from .protocol import Embedding, ProblemDefaults, Symmetry
-from .registry import find_callables
+from .pieces import Pieces
+from .protocol import Embedding, Seed, Symmetry
+from .registry import addresses, find_callables
+from .scales import given_scale
+from .spectra import without_roundoff
 
 SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
 
 
-class MapProblem(ProblemDefaults):
+class MapProblem(CallableProblem):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
 
     Parameters
@@ -34,14 +38,21 @@ class MapProblem(ProblemDefaults):
         Length n of the cycle.
     parameter : str
     jacobian, derivative : callable, optional
-        (x, p) -> df/dx of shape (d, d), df/dp of shape (d,). Else the complex step, where f allows it, or sixth-order
-        differences.
+        (x, p) -> df/dx of shape (d, d), df/dp of shape (d,) (of several parameters a mapping by name). Else the complex
+        step, where f allows it, or differences with an error estimate. They are compared with differences of f.
     mirror : callable, matrix or permutation, optional
         x -> R x with f(R x, p) = R f(x, p). Bifurcations to less symmetric cycles are symmetry breakings, of two mirror
         images one is traced.
     name : str
     dimension : int, optional
         d, where u0 leaves it open (a flat u0 of n d numbers is otherwise read with d = len(u0) / n).
+    scale : float or array_like of shape (d,), optional
+        What counts as large in each coordinate; learned from the start and the branch if it is left out.
+    switches : mapping of str to callable, optional
+        (x, p) -> number whose sign selects a piece of f. f is then called as f(x, p, sign) with a mapping from the names to +1
+        or -1, must be smooth for fixed signs, and must not look at the switches itself.
+    outputs : mapping of str to callable, optional
+        (x, p) -> number at the first point of the cycle: measures of your own.
 
     Raises
     ------
@@ -64,6 +75,9 @@ class MapProblem(ProblemDefaults):
         name: str = "map",
         dimension: int | None = None,
         mirror: Any = None,
+        scale: Any = None,
+        switches: Mapping[str, Callable] | None = None,
+        outputs: Mapping[str, Callable] | None = None,
     ) -> None:
         if not (isinstance(cycle, (int, np.integer)) and cycle >= 1):
             raise ValueError(f"cycle = {cycle!r} must be a whole number of at least 1")
@@ -77,31 +91,45 @@ class MapProblem(ProblemDefaults):
         else:
             d = int(dimension)
         self.values = ParameterSet(p0, parameter)
-        self.cycle, self.name = int(cycle), name
-        value = np.asarray(f(flat[:d].copy(), self.values.at(self.p0)), dtype=float).reshape(-1)
-        if len(value) != d or not np.all(np.isfinite(value)):
-            raise ValueError(f"the map must return {d} finite numbers for {d} at the start, not {value}")
+        self.cycle, self.name, self.node = int(cycle), name, d
+        self.pieces = Pieces(switches, self.values, flat[None, :d])
+        self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
+        self.functions = Differentiated(*self._wrapped(self.pieces), flat[:d], self.values, "the map")
+        if self.functions.find_structure(flat[:d]) != "dense":
+            raise ValueError(
+                "the jacobian of a map must be an array; use AlgebraicProblem for f(x, p) - x with sparse ones"
+            )
         if len(flat) == d and cycle > 1:
-            nodes = [flat]
-            for _ in range(cycle - 1):
-                nodes.append(np.asarray(f(nodes[-1], self.values.at(self.p0)), dtype=float).reshape(-1))
-            flat = np.concatenate(nodes)
+            flat = self._iterated(flat)
         if len(flat) != d * cycle:
             raise ValueError(
                 f"u0 has {len(flat)} numbers; a {cycle}-cycle of points with {d} needs {d * cycle}"
             )
         self.u0 = flat
-        self.node = d
         self.dimension = d * self.cycle
         self.n_multipliers = d
-        self.functions = Differentiated(f, jacobian, derivative, flat[:d], self.values)
-        self.kernels = KERNELS
+        self.pieces = Pieces(switches, self.values, flat.reshape(-1, d))
+        self.functions = self.functions.of(*self._wrapped(self.pieces))
+        self.n_margins = self.pieces.count
+        self.outputs = Outputs(outputs, self.values)
+        self.node_scale = given_scale(scale, d)
+        self.given_scale = None if self.node_scale is None else np.tile(self.node_scale, self.cycle)
         self.data = self
-        self.given_mirror = mirror
         self.mirror = None if mirror is None else image_map(mirror, d)
+        self._check_start(flat[:d])
         self._find_symmetries()
         self.describe()  # its callables are known by their addresses from now on
 
+    def _iterated(self, first: np.ndarray) -> np.ndarray:
+        """The points of a cycle from its first one; each in the piece in which it lies."""
+        nodes = [first]
+        for _ in range(self.cycle - 1):
+            self.pieces = Pieces(self.pieces.given, self.values, nodes[-1][None, :])
+            functions = self.functions.of(*self._wrapped(self.pieces))
+            nodes.append(functions.checked_value(nodes[-1], self.p0))
+        return np.concatenate(nodes)
+
+    # ------------------------------------------------------------------ relatives
     def _find_symmetries(self) -> None:
         """Images of a cycle that solve the same equations: half a cycle on, mirrored, and both at once."""
         even = self.cycle % 2 == 0
@@ -112,33 +140,36 @@ class MapProblem(ProblemDefaults):
                 found.append(Symmetry("symmetry-breaking", lambda u: self._mirrored(self._shift_by_half(u))))
         self.symmetries = tuple(found)
 
-    @property
-    def parameter(self) -> str:
-        """Name of the parameter that varies."""
-        return self.values.varying
+    def _own(self) -> MapProblem:
+        super()._own()
+        self._find_symmetries()
+        return self
 
     @property
-    def parameters(self) -> dict[str, float]:
-        """All parameters by name; of the one that varies the value at the start."""
-        return dict(self.values.values)
+    def lengths(self) -> np.ndarray:
+        """Length over which the map bends in each unknown."""
+        return np.tile(self.functions.lengths, self.cycle)
 
     @property
-    def p0(self) -> float:
-        """Value of the varying parameter at the start."""
-        return self.values.start
+    def bends(self) -> np.ndarray:
+        """Whether it bends in each unknown at all."""
+        return np.tile(self.functions.bends, self.cycle)
 
-    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> MapProblem:
-        """The same cycles with another parameter varying, and with other values of some parameters."""
+    def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
+        """The same map's cycles of another length, or in other pieces; scales are kept."""
         other = copy(self)
-        other.values = self.values.against(parameter, values)
-        other.functions = self.functions.against(other.values)
-        other.data = other
-        other._find_symmetries()
-        return other
-
-    def workspace(self) -> DenseWork:
-        """Arrays for the kernels."""
-        return dense_workspace(self.dimension)
+        other.values = self.values.against(self.parameter, {self.parameter: p})
+        other.u0 = np.array(u, dtype=float)
+        other.dimension = len(other.u0)
+        other.cycle = other.dimension // self.node
+        other.pieces = pieces
+        other.functions = self.functions.against(other.values).of(*self._wrapped(pieces))
+        other.n_margins = pieces.count
+        if self.node_scale is not None:
+            other.given_scale = np.tile(self.node_scale, other.cycle)
+        if self.scales is not None:
+            other.scales = self.scales.head(self.node).tiled(other.cycle)
+        return other._own()
 
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Residual f(x_i) - x_{i+1}, its Jacobian and parameter derivative."""
@@ -149,6 +180,7 @@ class MapProblem(ProblemDefaults):
         derivative = np.empty((n, d))
         jacobian = np.zeros((n, d, n, d))
         for i in range(n):
+            self.pieces.current = i
             residual[i] = self.functions.value(nodes[i], p) - following[i]
             jacobian[i, :, i, :] = self.functions.jacobian(nodes[i], p)
             derivative[i] = self.functions.derivative(nodes[i], p)
@@ -160,7 +192,7 @@ class MapProblem(ProblemDefaults):
         n, d = self.cycle, self.node
         jacobian.reshape(n, d, n, d)[n - 1, :, 0, :] -= 2.0 * sign * np.eye(d)
 
-    def raw_spectrum(self, work: DenseWork) -> np.ndarray:
+    def raw_spectrum(self, work: Any) -> np.ndarray:
         """Multipliers: eigenvalues of the product of the Jacobians along the cycle."""
         n, d = self.cycle, self.node
         blocks = work.jacobian.reshape(n, d, n, d)
@@ -170,7 +202,33 @@ class MapProblem(ProblemDefaults):
             if n == 1:
                 step = step + np.eye(d)
             product = step @ product
-        return np.linalg.eigvals(product)
+        return without_roundoff(np.linalg.eigvals(product))
+
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray:
+        """Switches with the signs of the pieces: positive inside."""
+        return self.pieces.margins(np.asarray(u).reshape(self.cycle, self.node), p)
+
+    def margin_kind(self, j: int) -> str:
+        """Every border of a piece is a switch."""
+        return "switch"
+
+    def beyond(self, point: Any) -> list[Seed]:
+        """The cycles on the other side of a switch."""
+        return self.pieces.beyond(self, point)
+
+    def with_pieces(self, pieces: Pieces) -> MapProblem:
+        """The same cycles in other pieces."""
+        return self._with_cycle(self.u0, self.p0, pieces)
+
+    def doubled_with(self, pieces: Pieces) -> MapProblem:
+        """The cycles of twice the length in given pieces."""
+        return self._with_cycle(np.tile(self.u0, 2), self.p0, pieces)
+
+    def cycle_through(self, points: np.ndarray, p: float) -> MapProblem:
+        """The problem of the cycles with as many points as given, shape (n, d), with its start there."""
+        return self._with_cycle(
+            np.asarray(points, dtype=float).reshape(-1), p, self.pieces.repeated(len(points), 1)
+        )
 
     def _shift_by_half(self, u: np.ndarray) -> np.ndarray:
         return np.roll(u, self.dimension // 2)
@@ -179,39 +237,29 @@ class MapProblem(ProblemDefaults):
         assert self.mirror is not None
         return np.concatenate([self.mirror(x) for x in np.asarray(u, dtype=float).reshape(-1, self.node)])
 
-    def _sibling(self, u: np.ndarray, p: float, cycle: int) -> MapProblem:
-        return MapProblem(
-            self.functions.f,
-            u,
-            self.values.against(self.parameter, {self.parameter: p}).given(),
-            cycle,
-            self.parameter,
-            self.functions.given_jacobian,
-            self.functions.given_derivative,
-            self.name,
-            self.node,
-            self.given_mirror,
-        )
-
     def _root(self, u: np.ndarray) -> tuple[MapProblem, np.ndarray]:
         half = 0.5 * (u[: self.dimension // 2] + u[self.dimension // 2 :])
-        return self._sibling(half, self.p0, self.cycle // 2), half
+        return self._with_cycle(half, self.p0, self.pieces.repeated(1, self.cycle // 2)), half
 
-    def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """The points of the shortest cycle of which u is a repetition, and the difference at which points are one."""
+    def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The points of the shortest cycle of which u is a repetition, and the differences at which points are one."""
         nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
-        scale = SAME * (1.0 + float(np.abs(nodes).max()))
+        own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
+        scale = SAME * (own + np.abs(nodes).max(axis=0))
         root = next(
             r
             for r in range(1, n + 1)
-            if n % r == 0 and np.abs(nodes - np.roll(nodes, r, axis=0)).max() <= scale
+            if n % r == 0 and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
         )
         return nodes[:root], scale
 
     def root(self, u: np.ndarray, p: float) -> tuple[MapProblem, np.ndarray] | None:
         """The problem of the shortest cycle of which u is a repetition, and its points; None if u is no repetition."""
         nodes, _ = self._shortest(u)
-        return None if len(nodes) == self.cycle else (self._sibling(nodes, p, len(nodes)), nodes.reshape(-1))
+        if len(nodes) == self.cycle:
+            return None
+        flat = nodes.reshape(-1)
+        return self._with_cycle(flat, p, self.pieces.repeated(1, len(nodes))), flat
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
@@ -221,31 +269,36 @@ class MapProblem(ProblemDefaults):
             return []
         doubled = np.tile(u, 2)
         direction = np.append(np.tile(tangent[:-1], 2), tangent[-1])
-        return [Embedding(self._sibling(doubled, p, 2 * self.cycle), doubled, direction, kind)]
+        return [Embedding(self._with_cycle(doubled, p, self.pieces.repeated(2)), doubled, direction, kind)]
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
         """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
         nodes, scale = self._shortest(u)
-        root = len(nodes)
+        root, n = len(nodes), self.cycle
+        signs = self.pieces.signs.reshape(n, -1)
         forms = [nodes]
         if self.mirror is not None:
             forms.append(self._mirrored(nodes.reshape(-1)).reshape(root, self.node))
         turned = [np.roll(form, -first, axis=0).reshape(-1) for form in forms for first in range(root)]
-        return ("cycle", root, self.node), min(turned, key=_in_order(scale))
+        pieces = min(tuple(np.roll(signs, -first, axis=0).reshape(-1).tolist()) for first in range(n))
+        return ("cycle", root, self.node, pieces), min(turned, key=_in_order(np.tile(scale, root)))
 
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Mean, smallest and largest of each coordinate over the cycle, and the coordinates of its first point."""
         names = [f"{what}{j}" for what in ("x", "mean", "min", "max") for j in range(self.node)]
-        return ("norm", *names)
+        return (*self.outputs.names, "norm", *names)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures for an array of solutions."""
         nodes = np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)
-        result = {}
+        own = [name for name in names if name in self.outputs.names]
+        result = self.outputs.measures(own, nodes[:, 0], p)
         for name in names:
             if name not in self.measure_names:
                 raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
+            if name in own:
+                continue
             what = name.rstrip("0123456789")
             j = int(name[len(what) :] or 0)
             if what == "norm":
@@ -262,6 +315,12 @@ class MapProblem(ProblemDefaults):
             return None
         return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
 
+    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
+        """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
+        from ..coexistence.maps import MapPopulation
+
+        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
+
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""
         return np.array(u).reshape(self.cycle, self.node)
@@ -269,23 +328,27 @@ class MapProblem(ProblemDefaults):
     def replay(self, u: np.ndarray, p: float) -> float:
         """Largest distance after iterating each point of the cycle once."""
         nodes = np.asarray(u).reshape(self.cycle, self.node)
-        images = np.array([self.functions.value(x, p) for x in nodes])
+        images = self.equations(np.asarray(u, dtype=float), p)[0].reshape(nodes.shape) + np.roll(
+            nodes, -1, axis=0
+        )
         return float(np.abs(images - np.roll(nodes, -1, axis=0)).max())
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""
-        where, importable = self.functions.addresses(mirror=self.given_mirror)
+        where, importable = addresses(self.given)
+        plain = not (self.pieces.count or self.outputs.names)
         return {
             "name": self.name,
-            "word": f"{self.cycle}-cycle",
+            "word": f"{self.cycle}-cycle" + (f" {self.pieces.word}" if self.pieces.count else ""),
             "periods": self.cycle,
             "cycle": self.cycle,
             "dimension": self.node,
             "parameter": self.parameter,
             "u0": self.u0.tolist(),
             "p0": self.values.given(),
+            "scale": None if self.node_scale is None else self.node_scale.tolist(),
             "callables": where,
-            "factory": "contvines.problems.maps:from_description" if importable else None,
+            "factory": "contvines.problems.maps:from_description" if importable and plain else None,
         }
 
 
@@ -303,11 +366,12 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Map
         description["parameter"],
         name=description["name"],
         dimension=description["dimension"],
+        scale=description.get("scale"),
         **functions,
     )
 
 
-def _in_order(scale: float) -> Any:
+def _in_order(scale: np.ndarray) -> Any:
     """A key of dictionary order, in which differences at roundoff do not count."""
 
     def compare(a: np.ndarray, b: np.ndarray) -> int:

@@ -30,7 +30,8 @@ The contract, in words:
    ``matrix(data, work) -> ndarray``
        F_u as it stands in ``work``, shape (N, N); always plain Python, for normal forms at single points.
 3. ``data`` and ``workspace()`` are the opaque first and last arguments of the kernels.
-4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none".
+4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none". A problem without one
+   may still have real eigenvalues watched for branch points: ``detection`` is then "real".
    ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
 5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
    vector which are the same for solutions that are one and the same thing. ``root(u, p)`` returns the smaller problem
@@ -208,6 +209,7 @@ class ProblemDefaults:
 
     parameter = "p"
     spectrum = "none"
+    detection = ""
     flip_kind = "period-doubling"
     n_multipliers = 0
     n_margins = 0

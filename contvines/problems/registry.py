@@ -102,6 +102,27 @@ def address(f: Callable) -> str | None:
     return where
 
 
+def addresses(given: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
+    """Where callables can be found again, by role, and whether all of them can.
+
+    Parameters
+    ----------
+    given : mapping of role to callable, mapping of callables, array (a mirror given as a matrix) or None
+    """
+    where: dict[str, Any] = {}
+    found: list[str | None] = []
+    for role, f in given.items():
+        if isinstance(f, Mapping):
+            where[role] = {name: address(part) for name, part in f.items()}
+            found += where[role].values()
+        elif f is not None and not callable(f):
+            where[role] = [list(map(float, row)) if hasattr(row, "__len__") else int(row) for row in f]
+        else:
+            where[role] = None if f is None else address(f)
+            found += [] if f is None else [where[role]]
+    return where, all(place is not None for place in found)
+
+
 def find_callables(where: Any, trust: bool) -> dict[str, Any] | None:
     """The callables whose addresses a description holds; None where one of them is not at hand.
 

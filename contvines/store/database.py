@@ -205,7 +205,8 @@ class Store:
         """
         from contvines.graph.persistence import graph_from_entries
 
-        kinds = ("graph", "branch", "special", "switch", "proof", "chart", "locus", "plane-point", "region")
+        kinds = ("graph", "branch", "special", "switch", "proof", "attractor", "missing")
+        kinds += ("chart", "locus", "plane-point", "region")
         entries = {kind: dict(self.entries(kind)) for kind in kinds}
         try:
             if entries["chart"]:

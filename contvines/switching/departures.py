@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
 
+KERNEL = 4  # null vectors that are followed at most
+EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
+MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
 
 
@@ -32,6 +36,8 @@ class Departure:
         p = p0 + curvature * amplitude^2 (from the even part, extrapolated to zero amplitude).
     slope : float
         p = p0 + slope * amplitude (zero where ``back`` is an image of ``ahead``).
+    family : bool
+        The solutions are a continuous family, moved into one another by a continuous symmetry: none of them is isolated.
     """
 
     problem: Any
@@ -42,24 +48,28 @@ class Departure:
     amplitude: float
     curvature: float
     slope: float
+    family: bool = False
 
 
-def null_vectors(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> list[np.ndarray]:
+def null_vectors(
+    engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray, singular: float = SINGULAR
+) -> list[np.ndarray]:
     """Null vectors of [[F_u, F_p], [tangent]]: images of random vectors under its inverse, made orthonormal in the metric.
 
     One application of the inverse is enough: the matrix is singular to roundoff. (Its eigenvectors are not asked for:
     iterating with a matrix this far from normal need not converge to the null vector.)
 
-    The tangent of the branch itself is excluded by the last row. Usually there is one; two where two multipliers cross
-    at once; none where (u, p) is not a branch point.
+    The tangent of the branch itself is excluded by the last row. Usually there is one; several (up to four) where several
+    multipliers cross at once; none where (u, p) is not a branch point.
     """
     engine.residual(u, p)
     border = engine.weights * tangent
     rng = np.random.default_rng(3)
     found: list[np.ndarray] = []
     first = 0.0
-    for _ in range(min(3, engine.n)):
-        side = np.append(rng.standard_normal(engine.n), 0.0)
+    for _ in range(min(KERNEL + 1, engine.n)):
+        random = rng.standard_normal(engine.n)
+        side = np.append(engine.row_sizes * random, 0.0)
         image = engine.apply_inverse(border, side)
         size = float(np.abs(image).max())
         if not np.isfinite(size):
@@ -67,21 +77,22 @@ def null_vectors(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -
         image = image / size
         for other in found * 2:
             image = image - engine.inner(image, other) * other
-        growth = size * engine.norm(image) / engine.norm(side)
+        growth = size * engine.norm(image) / float(np.sqrt((random**2).mean()))
         first = max(first, growth)
-        if growth < 1.0 / SINGULAR or growth < 1e-9 * first:
+        if growth < 1.0 / singular or growth < 1e-9 * first:
             break
-        found.append(_oriented(engine.unit(image)))
-    return found[:2]
+        found.append(_oriented(engine, engine.unit(image)))
+    return found[:KERNEL]
 
 
-def _oriented(vector: np.ndarray) -> np.ndarray:
+def _oriented(engine: Engine, vector: np.ndarray) -> np.ndarray:
     """The vector or its opposite: the first of its large entries is negative.
 
     The inverse of a matrix that is singular to roundoff leaves the sign to chance, and with it which of two mirror images a
     diagram follows.
     """
-    large = np.abs(vector[:-1]) > 0.3 * np.abs(vector[:-1]).max()
+    sizes = np.abs(vector[:-1]) / engine.scale[:-1]
+    large = sizes > 0.3 * sizes.max()
     return -vector if large.any() and vector[int(np.argmax(large))] > 0.0 else vector
 
 
@@ -114,13 +125,25 @@ def departures(
     """
     if directions is None:
         directions = null_vectors(engine, u, p, tangent)
-    if len(directions) == 2:
-        return _double(engine, u, p, tangent, amplitude, one_sided, directions)
+    if len(directions) > 1:
+        return _multiple(engine, u, p, tangent, amplitude, one_sided, directions)
     found = [_depart(engine, u, p, tangent, amplitude, one_sided, direction) for direction in directions]
     return [departure for departure in found if departure is not None]
 
 
-def _double(
+def _starts(k: int) -> np.ndarray:
+    """Unit vectors of k numbers all round, one of each opposite pair: sums and differences of axes, then others between."""
+    if k == 2:
+        angles = np.arange(16) * np.pi / 16
+        return np.column_stack([np.cos(angles), np.sin(angles)])
+    plain = [np.array(signs, dtype=float) for signs in product((1.0, 0.0, -1.0), repeat=k) if any(signs)]
+    plain = [v for v in plain if v[np.flatnonzero(v)[0]] > 0.0]
+    more = np.random.default_rng(8).standard_normal((20 * k, k))
+    both = np.vstack([plain, more])
+    return both / np.linalg.norm(both, axis=1, keepdims=True)
+
+
+def _multiple(
     engine: Engine,
     u: np.ndarray,
     p: float,
@@ -129,13 +152,13 @@ def _double(
     one_sided: bool,
     directions: list[np.ndarray],
 ) -> list[Departure]:
-    """Two null vectors: starts all round the circle that they span, and at the parameter values found on the way."""
+    """Several null vectors: starts all round the sphere that they span, and at the parameter values found on the way."""
     z = engine.join(u, p)
     found: list[tuple[np.ndarray, float]] = []
 
     def search(offsets: list[float]) -> None:
-        for t in np.arange(16) * np.pi / 16:
-            start = np.cos(t) * directions[0] + np.sin(t) * directions[1]
+        for share in _starts(len(directions)):
+            start = share @ np.array(directions)
             for offset in offsets:
                 point = _at(engine, z, start, amplitude, offset)
                 if point is None:
@@ -152,11 +175,19 @@ def _double(
     curvatures = [curvature for _, curvature in found]
     search(sorted({c * amplitude**2 * share for c in curvatures for share in (0.7, 1.4, -1.0)}))
     result = []
-    for direction, curvature in found[:8]:
+    for direction, curvature in found[:MOST]:
         departure = _depart(engine, u, p, tangent, amplitude, one_sided, direction, curvature)
-        if departure is not None:
-            result.append(departure)
+        if departure is None:
+            continue
+        if _in_a_family(engine, departure.ahead):
+            return [replace(departure, family=True)]
+        result.append(departure)
     return result
+
+
+def _in_a_family(engine: Engine, point: Solved) -> bool:
+    """Whether a point off the branch point is singular, too: one of a continuous family of equivalent solutions."""
+    return len(null_vectors(engine, point.u, point.p, point.tangent, EXACTLY)) > 0
 
 
 def _at(

@@ -3,14 +3,15 @@
 At a period doubling or symmetry breaking with critical multiplier m(p) the bifurcating branch is p = p0 + p2 s^2 with s the
 amplitude along the critical vector: the Lyapunov-Schmidt reduction, carried out numerically by solving at fixed small
 amplitudes and extrapolating to zero (:mod:`contvines.switching.departures`). Comparing with the normal forms
-(Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 4.5 and 7.4; xi has unit rms over the unknowns)
+(Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 4.5 and 7.4). The critical vector q has q.q = 1, over
+the unknowns of an algebraic problem, over the first point of a map's cycle; orbits of machines have unit rms over theirs:
 
     flip        xi -> m xi + c xi^3,  m near -1:   c = p2 d|m|/dp     supercritical for c > 0
     pitchfork   xi -> m xi + a xi^3,  m near +1:   a = -p2 dm/dp      supercritical for a < 0
     flow        xi' = m xi + a xi^3,  m near 0:    a = -p2 dm/dp      supercritical for a < 0
 
 In words: supercritical when the bifurcating branch lives where the known one has lost the stability that it had.
-A fold has p = p0 + a s^2 with s the arclength in the metric of the continuation; its coefficient is a.
+A fold has p = p0 + a s^2 with s the amplitude along q; its coefficient is a.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
             return None
         tests = [crossing(engine.spectrum(end.row), kind, name, k) for end in ends if end is not None]
         slopes.append((tests[0] - tests[1]) / (ends[0].p - ends[1].p))
-    return float((4.0 * slopes[1] - slopes[0]) / 3.0)
+    return float((4.0 * slopes[1] - slopes[0]) / 3.0) * engine.rate
 
 
 def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str | None, float | None]:
@@ -72,11 +73,11 @@ def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str 
 
 
 def fold_coefficient(engine: Engine, point: Solved) -> float | None:
-    """a in p = p0 + a s^2 along the branch through a fold."""
+    """a in p = p0 + a s^2 along the branch through a fold, s the amplitude along the critical vector."""
     slopes = []
     for step in (STEP, 0.5 * STEP):
         ahead, back = _beside(engine, point, step), _beside(engine, point, -step)
         if ahead is None or back is None:
             return None
         slopes.append((ahead.p + back.p - 2.0 * point.p) / (2.0 * step**2))
-    return float((4.0 * slopes[1] - slopes[0]) / 3.0)
+    return float((4.0 * slopes[1] - slopes[0]) / 3.0) / engine.amplitude(point.tangent) ** 2

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from orbits.cycles.cycle import Cycle
+from orbits.doors import above
 from orbits.machines.stepping import Machine
 from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import LETTERS
@@ -100,8 +102,8 @@ class Attractor:
         return self.letters if self.periods else ""
 
     @property
-    def orbit(self) -> Any:
-        """The attractor as an `orbits.orbit.Orbit`, ready for continuation.
+    def cycle(self) -> Cycle:
+        """The attractor as plain data, with the word that its events read.
 
         A motion without impacts is moved so that the mean of its w is 0, which continuation pins.
 
@@ -110,16 +112,18 @@ class Attractor:
         ValueError
             If the attractor is not periodic or has persistent contact, which no word describes.
         """
-        from orbits.orbit import Orbit
-
         word = self.word
         if word is None:
             raise ValueError(
                 f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits"
             )
-        return Orbit(
-            self.model, word, self.periods, centred(self.codes, self.nodes, self._mass_ratio), self.params
-        )
+        nodes = centred(self.codes, self.nodes, self._mass_ratio)
+        return Cycle(self.model, word, self.periods, nodes, self.params)
+
+    @property
+    def orbit(self) -> Any:
+        """The attractor as an `orbits.orbit.Orbit`, ready for continuation; see `cycle`."""
+        return above("Orbit").of(self.cycle)
 
     @property
     def _mass_ratio(self) -> float:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
+from orbits.machines.states import state_of
 from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS, V
 from orbits.simulation.driver import collect
-from orbits.simulation.return_map import state_of
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 FIRST = 4096

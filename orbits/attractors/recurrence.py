@@ -10,9 +10,10 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import lasting
 from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate
+from orbits.machines.states import nodes_of
 from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
 from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
-from orbits.simulation.return_map import cyclic_distance, nodes_of
+from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
@@ -139,9 +140,8 @@ def _comes_to_rest(engine: Machine, params: np.ndarray, state: np.ndarray) -> bo
 
 def _will_slip(model: Any, params: np.ndarray) -> bool:
     """Whether friction cannot hold the absorber once the oscillator has settled."""
-    from orbits.cycles.stuck import StuckOrbit
-
-    return not StuckOrbit.of(model, params).real
+    reserve = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params)))
+    return bool(reserve <= -1e-9)
 
 
 class _Window:

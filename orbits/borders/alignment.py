@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.orbit import Orbit
-from orbits.problem import OrbitProblem
+from orbits.cycles.solution import Solution
 from orbits.protocol import Seed
 
 
-def read_alike(seed: Seed, before: Orbit) -> Seed:
+def read_alike(seed: Seed, before: Solution) -> Seed:
     """The seed, its orbit read from the event that corresponds to the first event of the orbit before the border."""
-    if not isinstance(seed.problem, OrbitProblem):
+    if not len(seed.problem.word):
         return seed
     orbit = seed.problem.orbit(seed.u, seed.p)
     places = _first_event(orbit, before)
@@ -36,7 +35,7 @@ def read_alike(seed: Seed, before: Orbit) -> Seed:
     return seed._replace(problem=problem, u=problem.reduce(nodes), tangent=tangent)
 
 
-def _first_event(orbit: Orbit, before: Orbit) -> int:
+def _first_event(orbit: Solution, before: Solution) -> int:
     """The event at the phase of the old first one, of its kind if there is one; never a slip."""
     letters = orbit.word.events
     wanted = before.word.events[0]

@@ -11,16 +11,20 @@ from typing import Any
 
 import numpy as np
 
+from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.distance import CLOSE, distance, tends_to
 from orbits.borders.neighbours import REAL, SIZES, Grown, grown, margins_of, proposals, turned
 from orbits.borders.rewriting import edits_at
-from orbits.borders.sticking import FOLLOWED, to_rest
+from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
+from orbits.cycles.identity import canonical, is_symmetric
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
-from orbits.orbit import Orbit
-from orbits.problem import OrbitProblem
-from orbits.protocol import Seed
+from orbits.cycles.solution import Solution
+from orbits.machines.catalogue import stepper
+from orbits.machines.states import state_of
+from orbits.protocol import CycleProblem, Seed
+from orbits.starts.find import polish
 
 ROUNDS = 8  # up to so many rounds of a cycle are joined to one at a border
 NEARER = (
@@ -31,12 +35,12 @@ NEARER = (
 )  # parts of the way from the border at which a simulated orbit is solved for again
 
 
-def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
+def cross(problem: CycleProblem, point: Any) -> list[Seed]:
     """Seeds of the branches on the other side of a border.
 
     Parameters
     ----------
-    problem : OrbitProblem
+    problem : CycleProblem
     point : special point
         With `u`, `value`, `tangent` and `margin_index`.
 
@@ -45,6 +49,8 @@ def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
     list of Seed
         Usually one; empty if neither the local rules nor the simulator find an orbit there.
     """
+    if not len(problem.word):
+        return from_rest(problem, point)
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
     if rest:
@@ -69,13 +75,13 @@ def cross(problem: OrbitProblem, point: Any) -> list[Seed]:
     return [read_alike(seed, before) for seed in seeds]
 
 
-def _followed(orbit: Orbit) -> bool:
+def _followed(orbit: Solution) -> bool:
     return orbit.margin >= REAL and orbit.replay() < FOLLOWED
 
 
 def _simplest(
-    problem: OrbitProblem, orbit: Orbit, u: np.ndarray, tangent: np.ndarray | None
-) -> tuple[OrbitProblem, np.ndarray, np.ndarray | None]:
+    problem: CycleProblem, orbit: Solution, u: np.ndarray, tangent: np.ndarray | None
+) -> tuple[CycleProblem, np.ndarray, np.ndarray | None]:
     """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
     root = orbit.root()
     if root.periods == problem.periods and root.symmetric == problem.symmetric:
@@ -84,7 +90,7 @@ def _simplest(
     return smallest, smallest.reduce(root.nodes), None
 
 
-def _onwards(problem: OrbitProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
+def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     """Where the simpler orbits, on whose border a branch of less symmetry ends, go on themselves."""
     at_border, residual = _solved_at(problem, u, p)
     if not residual < 1e-10:
@@ -97,7 +103,7 @@ def _onwards(problem: OrbitProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
             return
 
 
-def _solved_at(problem: OrbitProblem, guess: np.ndarray, p: float) -> tuple[np.ndarray, float]:
+def _solved_at(problem: CycleProblem, guess: np.ndarray, p: float) -> tuple[np.ndarray, float]:
     """Solution at a parameter value, and its residual."""
     border = np.zeros(problem.dimension + 1)
     border[-1] = 1.0
@@ -109,7 +115,7 @@ def _solved_at(problem: OrbitProblem, guess: np.ndarray, p: float) -> tuple[np.n
     return u, float(residual)
 
 
-def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
+def _escapes(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
     """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
 
     A round is a whole cycle, or half a symmetric one. A change in every other round breaks the symmetry or doubles the
@@ -138,7 +144,7 @@ def _escapes(problem: OrbitProblem, u: np.ndarray, p: float, index: int) -> Iter
             )
 
 
-def _repeated(problem: OrbitProblem, orbit: Orbit, rounds: int) -> tuple[OrbitProblem, Orbit]:
+def _repeated(problem: CycleProblem, orbit: Solution, rounds: int) -> tuple[CycleProblem, Solution]:
     """The border orbit over some rounds, and the problem of the orbits with that many."""
     if problem.symmetric and rounds % 2:
         whole = orbit.repeat(rounds)  # an odd number of halves, and their mirror image
@@ -148,7 +154,7 @@ def _repeated(problem: OrbitProblem, orbit: Orbit, rounds: int) -> tuple[OrbitPr
 
 
 def _grown_in(
-    wider: OrbitProblem, whole: Orbit, p: float, index: int, unit: int, rounds: int, changed: int
+    wider: CycleProblem, whole: Solution, p: float, index: int, unit: int, rounds: int, changed: int
 ) -> tuple[Grown, str] | None:
     """The orbit in which the first rounds, as many as `changed`, go through the change."""
     choices = [edits_at(whole, index + PER_NODE * unit * number, unit) for number in range(changed)]
@@ -159,7 +165,7 @@ def _grown_in(
     return None
 
 
-def _escape(problem: OrbitProblem, rounds: int) -> str:
+def _escape(problem: CycleProblem, rounds: int) -> str:
     if rounds == 2:
         return f"the {'symmetry breaks' if problem.symmetric else 'period doubles'} at the border"
     if problem.symmetric and rounds % 2 == 0:
@@ -167,7 +173,7 @@ def _escape(problem: OrbitProblem, rounds: int) -> str:
     return f"at the border the period becomes {rounds} times as long"
 
 
-def _real_side(problem: OrbitProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
+def _real_side(problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
     """Sign of the parameter's change from the border into the branch's real part.
 
     Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
@@ -189,17 +195,11 @@ def _real_side(problem: OrbitProblem, u: np.ndarray, p: float, tangent: np.ndarr
 
 
 def _simulated(
-    problem: OrbitProblem, u: np.ndarray, p: float
-) -> Iterator[tuple[OrbitProblem, np.ndarray, float, None, str]]:
+    problem: CycleProblem, u: np.ndarray, p: float
+) -> Iterator[tuple[CycleProblem, np.ndarray, float, None, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
-    from orbits.attractors.recurrence import settle
-    from orbits.cycles.identity import canonical, is_symmetric
-    from orbits.simulation.driver import machine
-    from orbits.simulation.return_map import state_of
-    from orbits.starts.find import polish
-
     orbit = problem.orbit(u, p)
-    engine = machine(problem.model.name)
+    engine = stepper(problem.model.name)
     here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
     place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
     for side in (1.0, -1.0):
@@ -213,7 +213,7 @@ def _simulated(
         attractor = settle(problem.model, engine, params, state, 60.0, max(2 * problem.periods, 4), 1e-6, 0)
         if attractor.word is None or not attractor.nodes.size:
             continue
-        found = polish(attractor.orbit)
+        found = polish(Solution.of(attractor.cycle))
         if found is None or found.periods % problem.periods:
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
@@ -232,7 +232,7 @@ def _simulated(
         yield other, v, q, None, "the simulator goes on"
 
 
-def _nearer(problem: OrbitProblem, u: np.ndarray, q: float, p: float) -> Orbit:
+def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solution:
     """The orbit at q, followed towards the border at p as far as it can be solved for."""
     found = problem.orbit(u, q)
     for part in NEARER:

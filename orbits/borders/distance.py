@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from orbits.orbit import Orbit
+from orbits.cycles.solution import Solution
 
 SAME = 1e-5  # motions whose w differs by less are one
 CLOSE = 0.05  # largest difference in w between a border orbit and one that goes on from it, wherever that is measured
@@ -18,7 +18,7 @@ PER_PERIOD = 400  # instants in a forcing period
 COARSE = 40  # every so many of them are compared first
 
 
-def tends_to(border: Orbit, near: Orbit, further: Orbit) -> bool:
+def tends_to(border: Solution, near: Solution, further: Solution) -> bool:
     """Whether orbits tend to a border orbit, measured twice: `further` is the same orbit at some distance from `near`.
 
     An orbit that is only similar keeps its distance.
@@ -27,7 +27,7 @@ def tends_to(border: Orbit, near: Orbit, further: Orbit) -> bool:
     return close < ALIKE or (close < CLOSE and close < SHRINKS * distance(border, further))
 
 
-def distance(one: Orbit, other: Orbit, mirror: bool = False) -> float:
+def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
     """Largest difference in w at equal phases, modulo whole periods of the forcing, and the mirror image if asked for.
 
     Where one of them hits no wall its mean position is free, and left out.
@@ -49,7 +49,7 @@ def _largest(gap: np.ndarray, free: bool) -> float:
     return float(0.5 * np.ptp(gap)) if free else float(np.abs(gap).max())
 
 
-def position(orbit: Orbit, phase: np.ndarray) -> np.ndarray:
+def position(orbit: Solution, phase: np.ndarray) -> np.ndarray:
     """w at some phases of the forcing: cubics between instants at which w and w' are known."""
     path = orbit.sample(400 * orbit.periods)
     ahead = path["phase"] - path["phase"][0]

@@ -11,8 +11,8 @@ from orbits.borders.distance import tends_to
 from orbits.borders.rewriting import Edit, applied, edits_at
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
-from orbits.orbit import Orbit
-from orbits.problem import OrbitProblem
+from orbits.cycles.solution import Solution
+from orbits.protocol import CycleProblem
 from orbits.words import Word
 
 REAL = -1e-9  # smallest margin of a real orbit
@@ -30,7 +30,7 @@ STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is clo
 GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 
-def margins_of(problem: OrbitProblem, u: np.ndarray, p: float) -> np.ndarray:
+def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution."""
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
     assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
@@ -38,8 +38,8 @@ def margins_of(problem: OrbitProblem, u: np.ndarray, p: float) -> np.ndarray:
 
 
 def turned(
-    problem: OrbitProblem, u: np.ndarray, p: float, index: int
-) -> tuple[OrbitProblem, np.ndarray, int]:
+    problem: CycleProblem, u: np.ndarray, p: float, index: int
+) -> tuple[CycleProblem, np.ndarray, int]:
     """The same border read from another event, so that what changes does not straddle the end of the word."""
     place, column = divmod(index, PER_NODE)
     letter = problem.word.events[place]
@@ -54,7 +54,7 @@ def turned(
 class Grown(NamedTuple):
     """An orbit next to the border, of a branch that begins at it; `tangent` leads away."""
 
-    problem: OrbitProblem
+    problem: CycleProblem
     u: np.ndarray
     p: float
     tangent: np.ndarray
@@ -70,8 +70,8 @@ class _Held(NamedTuple):
 
 
 def proposals(
-    problem: OrbitProblem, u: np.ndarray, p: float, index: int
-) -> Iterator[tuple[OrbitProblem, np.ndarray, float, np.ndarray, str]]:
+    problem: CycleProblem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the local rules propose."""
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
@@ -95,8 +95,8 @@ def _overlap(a: Edit, b: Edit) -> bool:
 
 
 def grown(
-    problem: OrbitProblem,
-    orbit: Orbit,
+    problem: CycleProblem,
+    orbit: Solution,
     p: float,
     edits: list[Edit],
     ways: tuple[tuple[float, ...], ...] = SIZES,
@@ -131,7 +131,7 @@ def grown(
 
 
 def _climb(
-    other: OrbitProblem, guess: np.ndarray, first: int, change: Edit, p: float, sizes: tuple[float, ...]
+    other: CycleProblem, guess: np.ndarray, first: int, change: Edit, p: float, sizes: tuple[float, ...]
 ) -> list[_Held]:
     """Solve with what grows beyond the border held at each of the sizes in turn, as long as that converges."""
     found: list[_Held] = []
@@ -146,7 +146,7 @@ def _climb(
 
 
 def _hold(
-    other: OrbitProblem, guess: np.ndarray, q: float, first: int, change: Edit, p: float, wanted: float
+    other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Edit, p: float, wanted: float
 ) -> _Held | None:
     """Solve with what grows beyond the border at p held at a size."""
     n, size = other.model.node, other.dimension
@@ -178,7 +178,7 @@ def _hold(
 
 
 def _begins_at(
-    border: Orbit, other: OrbitProblem, first: int, change: Edit, p: float, found: list[_Held]
+    border: Solution, other: CycleProblem, first: int, change: Edit, p: float, found: list[_Held]
 ) -> bool:
     """Whether the solutions, from large to small, are real ones that tend to the border orbit.
 
@@ -204,7 +204,7 @@ def _begins_at(
     return tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p))
 
 
-def _outwards(other: OrbitProblem, first: int, change: Edit, p: float, found: list[_Held]) -> Iterator[_Held]:
+def _outwards(other: CycleProblem, first: int, change: Edit, p: float, found: list[_Held]) -> Iterator[_Held]:
     """The solutions from small to large, and on to larger sizes."""
     yield from found[-2::-1]
     held: _Held | None = found[0]
@@ -214,7 +214,7 @@ def _outwards(other: OrbitProblem, first: int, change: Edit, p: float, found: li
             yield held
 
 
-def _beside(other: OrbitProblem, guess: np.ndarray, p: float, orbit: Orbit) -> Grown | None:
+def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
     kernels, work = assemble(other.model), other.workspace()
@@ -248,7 +248,7 @@ def _beside(other: OrbitProblem, guess: np.ndarray, p: float, orbit: Orbit) -> G
     return found
 
 
-def _along(other: OrbitProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
+def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
     kernels, work = assemble(other.model), other.workspace()
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from orbits.cycles.margins import EVENT, FLIGHT, PER_NODE, WALL
-from orbits.cycles.sampling import flight, lengths, slowest
-from orbits.orbit import Orbit
+from orbits.cycles.sampling import flight, slowest
+from orbits.cycles.solution import Solution
 from orbits.words import Word
 
 SHORT = 1e-4  # phase of a stick, or between a turn and the stick after it, that is about to vanish
@@ -51,12 +51,12 @@ class Edit:
     note: str
 
 
-def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
+def edits_at(orbit: Solution, index: int, unit: int | None = None) -> list[Edit]:
     """The edits that margin `index` may ask for at the border orbit, the likeliest first.
 
     Parameters
     ----------
-    orbit : Orbit
+    orbit : Solution
         The border orbit, over its whole cycle.
     index : int
         Index of the vanishing margin, four per node.
@@ -116,7 +116,7 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
     return []
 
 
-def _stick(orbit: Orbit, place: int) -> list[Edit]:
+def _stick(orbit: Solution, place: int) -> list[Edit]:
     """A stick that vanishes, or that is about to be preceded by a turn."""
     word, node = orbit.word, orbit.nodes[place]
     before, out = word.modes[place - 1], word.modes[place + 1]
@@ -140,7 +140,7 @@ def _stick(orbit: Orbit, place: int) -> list[Edit]:
     return [turned]  # the stick still lasts: what vanishes is the reserve of friction where it begins
 
 
-def _wall(orbit: Orbit, place: int) -> list[Edit]:
+def _wall(orbit: Solution, place: int) -> list[Edit]:
     """A turn or stick that reaches a wall: an impact of vanishing speed takes its place."""
     word, node = orbit.word, orbit.nodes[place]
     wall, side = _nearer(orbit, node[1])
@@ -160,13 +160,13 @@ def _wall(orbit: Orbit, place: int) -> list[Edit]:
     ]
 
 
-def _nearer(orbit: Orbit, w: float) -> tuple[str, int]:
+def _nearer(orbit: Solution, w: float) -> tuple[str, int]:
     """The nearer wall and the direction in which it is reached."""
     left, right = orbit.model.walls(orbit.params)
     return ("L", 1) if left - w < w - right else ("R", -1)
 
 
-def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
+def _frictionless(orbit: Solution, place: int, column: int) -> list[Edit]:
     if column == FLIGHT:  # it touches the wall just where it begins or ends if an impact there vanishes
         places = (place, (place + 1) % len(orbit.word))
         soft = [k for k in places if abs(orbit.events.rate_post[k]) < NO_SPEED]
@@ -176,7 +176,7 @@ def _frictionless(orbit: Orbit, place: int, column: int) -> list[Edit]:
         return [Edit(place, place + 1, (), (), orbit.nodes[:0], "margin", "an impact vanishes")]
     if column != FLIGHT:
         return []
-    ahead = np.linspace(0.0, float(lengths(orbit)[place]), 20002)[1:-1]
+    ahead = np.linspace(0.0, float(orbit.durations[place]), 20002)[1:-1]
     path = flight(orbit, place, ahead)
     inner = np.flatnonzero(np.diff(np.sign(path[:, 1])) != 0)
     if not inner.size:

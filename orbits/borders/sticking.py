@@ -7,21 +7,20 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.distance import CLOSE
-from orbits.problem import OrbitProblem
-from orbits.protocol import Seed
+from orbits.cycles.solution import Solution
+from orbits.protocol import CycleProblem, Seed
+from orbits.starts.find import StartError, find
 
 FOLLOWED = 1e-6  # largest replay error of a seed
 
 
-def from_rest(problem: Any, point: Any) -> list[Seed]:
+def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     """The stick-slip motion just beyond the slip of a stuck one: closed form, or what the simulator finds."""
-    from orbits.starts.find import StartError, find
-
     p = float(point.value)
     for distance in (1e-4, 1e-3):
         for side in (1.0, -1.0):
             q = p * (1.0 + side * distance)
-            if problem.orbit(problem_response(problem, q), q).real:
+            if Solution.at_rest(problem.model, problem.values(q)).real:
                 continue
             values = dict(
                 zip(problem.model.parameter_names, (float(x) for x in problem.values(q)), strict=True)
@@ -30,8 +29,9 @@ def from_rest(problem: Any, point: Any) -> list[Seed]:
                 orbit = find(problem.model, "ss", 1, None, values)
             except (StartError, ValueError):
                 continue
-            other = orbit.problem(problem.parameter)
-            u, q = orbit.seed(other)
+            half = orbit.symmetric and orbit.model.has_mirror(orbit.params, problem.parameter)
+            other = problem.sibling(orbit.word, orbit.periods, half, orbit.params)
+            u, q = other.reduce(orbit.nodes), other.value(orbit.params)
             if orbit.real and np.ptp(orbit.sample()["w"]) < CLOSE and orbit.replay() < FOLLOWED:
                 sign = np.zeros(other.dimension + 1)
                 sign[-1] = side
@@ -40,26 +40,19 @@ def from_rest(problem: Any, point: Any) -> list[Seed]:
     return []
 
 
-def problem_response(problem: Any, p: float) -> np.ndarray:
-    """Unknowns of the stuck motion at parameter value `p`."""
-    return np.linalg.solve(*problem.model.rest.equations(problem.values(p)))
-
-
-def to_rest(problem: OrbitProblem, point: Any) -> list[Seed]:
+def to_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
-    from orbits.cycles.stuck import StuckOrbit
-
     if sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []
     p = float(point.value)
     for side in (-1.0, 1.0):
         q = p * (1.0 + side * 1e-7)
-        orbit = StuckOrbit.of(problem.model, problem.values(q))
-        beyond = StuckOrbit.of(problem.model, problem.values(p * (1.0 - side * 1e-7)))
+        orbit = Solution.at_rest(problem.model, problem.values(q))
+        beyond = Solution.at_rest(problem.model, problem.values(p * (1.0 - side * 1e-7)))
         if orbit.margin > 0.0 > beyond.margin:
-            other = orbit.problem(problem.parameter)
+            other = problem.sibling(orbit.word, 1, orbit.symmetric, orbit.params)
             direction = np.zeros(other.dimension + 1)
             direction[-1] = side
             note = "the slips vanish: persistence, the absorber is stuck"
-            return [Seed(other, orbit.u, q, direction, "border", note, True)]  # type: ignore[arg-type]
+            return [Seed(other, other.reduce(orbit.nodes), q, direction, "border", note, True)]
     return []

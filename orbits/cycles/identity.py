@@ -28,6 +28,8 @@ def root_orbit(word: Word, periods: int, nodes: np.ndarray) -> tuple[Word, int, 
 
 def is_symmetric(word: Word, periods: int, nodes: np.ndarray, tolerance: float = SAME) -> bool:
     """Whether the orbit equals its mirror image after half its period."""
+    if not len(word):
+        return True
     if not (word.mirror_symmetric_halves and periods % 2 == 1):
         return False
     half = len(word) // 2

@@ -41,6 +41,8 @@ class Margin:
 def margin_name(word: Word, index: int) -> str:
     """What margin `index` of an orbit with this word watches; see `Margin`."""
     place, column = divmod(index, PER_NODE)
+    if not len(word):
+        return "stick"  # the reserve of friction
     letter = word.events[place % len(word)]
     if column == FLIGHT:
         if word.modes[place % len(word)] == 0 and not word.frictionless:

@@ -9,113 +9,16 @@ different periods compare (and branches of doubled orbits begin where they leave
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from orbits.machines.base import Model
+from orbits.machines.events import EventTable as EventTable
+from orbits.machines.events import contacts, event_table, parameter
+from orbits.machines.measures import ANGLES as ANGLES
+from orbits.machines.measures import COMMON, KINDS, MEANS, names
 from orbits.words import Word
-
-COMMON = (
-    "B",
-    "B_post",
-    "B_pre",
-    "B_mean",
-    "C2",
-    "phase",
-    "impact_speed",
-    "impact_speed_min",
-    "impact_loss",
-    "friction_loss",
-    "max_abs_w",
-)
-
-ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
-ENERGIES = (  # per period of the orbit
-    "impact_loss",
-    "friction_loss",
-    "input_work",
-    "damping_loss",
-    "force_work",
-    "grounded_damping_loss",
-)
-MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
-
-
-@dataclass(frozen=True)
-class EventTable:
-    """What happens at each event; all arrays have shape (m, L).
-
-    Attributes
-    ----------
-    phase : float array
-        Psi, radians from the start of the forcing.
-    w, rate_post, rate_pre : float array
-        Relative position, relative velocity after and before the event.
-    B_post, B_pre : float array
-        Absolute velocity of the absorber times 1 + eps, v' - w', after and before the event.
-    v, v_rate : float array
-        Cavity coordinate v and its rate.
-    """
-
-    phase: np.ndarray
-    w: np.ndarray
-    rate_post: np.ndarray
-    rate_pre: np.ndarray
-    B_post: np.ndarray
-    B_pre: np.ndarray
-    v: np.ndarray
-    v_rate: np.ndarray
-
-
-KINDS = {
-    "B": "velocity",
-    "B_post": "velocity",
-    "B_pre": "velocity",
-    "B_mean": "velocity",
-    "C2": "area",
-    "phase": "angle",
-    "impact_speed": "velocity",
-    "impact_speed_min": "velocity",
-    "max_abs_w": "length",
-    "max_abs_q1": "length",
-    "amplitude": "length",
-    "v_phase": "angle",
-    **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
-}
-"""What kind of quantity each measure is, where it is more than a number."""
-
-
-def parameter(model: Model, params: np.ndarray, name: str) -> np.ndarray:
-    """Column `name` of the parameter vectors, shape (m, 1)."""
-    return params[:, model.parameter_names.index(name)][:, None]
-
-
-def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray) -> EventTable:
-    """Positions and velocities at all events, from nodes (m, L, n) and parameter vectors (m, P)."""
-    phase = nodes[:, :, 0]
-    v, v_rate = model.cavity_motion(nodes, params)
-    hits, walls, r = contacts(model, word, params)
-    w = np.where(hits, walls, nodes[:, :, 1])
-    rate_post = np.where(hits, v_rate - nodes[:, :, 1], 0.0)
-    rate_pre = np.where(hits, -rate_post / r, 0.0)
-    return EventTable(phase, w, rate_post, rate_pre, v_rate - rate_post, v_rate - rate_pre, v, v_rate)
-
-
-def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Which events are impacts, shape (L,), and their walls' places and coefficients of restitution, shape (m, L)."""
-    left = np.array([letter == "L" for letter in word.events], dtype=bool)
-    hits = left | np.array([letter == "R" for letter in word.events], dtype=bool)
-    (at_left, at_right), (by_left, by_right) = model.walls(params), model.restitutions(params)
-    walls = np.where(left, at_left[:, None], at_right[:, None])
-    return hits, walls, np.where(left, by_left[:, None], by_right[:, None])
-
-
-def names(model: Model) -> tuple[str, ...]:
-    """Measures that orbits of this machine have."""
-    known = COMMON + model.own_measures
-    return known + tuple(mean for mean, name in MEANS.items() if name in known)
 
 
 def measure(
@@ -151,6 +54,8 @@ def dimensionless(
     for name in wanted:
         if name not in known:
             raise KeyError(f"measure {name!r} is unknown; choose one of {', '.join(known)}")
+    if not len(word):
+        return {name: _at_rest(model, name, params) for name in wanted}
     m = nodes.shape[0]
     table = event_table(model, word, nodes, params)
     hits = np.array([letter in "LR" for letter in word.events])
@@ -193,3 +98,12 @@ def dimensionless(
                 "impact_speed_min": speed.min(axis=1),
             }[name]
     return result
+
+
+def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
+    """A measure of the absorber at rest; velocities at impacts are not a number."""
+    name = MEANS.get(name, name)  # its period is the forcing's
+    if name in ("impact_loss", "friction_loss", "impact_speed", "impact_speed_min", "max_abs_w"):
+        return np.zeros(len(params))
+    rest = model.rest
+    return np.array([rest.measure(name, row, np.linalg.solve(*rest.equations(row))) for row in params])

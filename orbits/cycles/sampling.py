@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from orbits.simulation.driver import machine
-from orbits.simulation.return_map import state_of
-
-if TYPE_CHECKING:
-    from orbits.orbit import Orbit
+from orbits.cycles.cycle import Cycle
+from orbits.machines.catalogue import stepper
+from orbits.machines.states import state_of
 
 
-def flight(orbit: Orbit, segment: int, ahead: np.ndarray) -> np.ndarray:
+def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
     """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
-    engine = machine(orbit.model.name)
+    engine = stepper(orbit.model.name)
     state = state_of(
         engine,
         orbit.params,
@@ -30,18 +26,12 @@ def flight(orbit: Orbit, segment: int, ahead: np.ndarray) -> np.ndarray:
     return out
 
 
-def lengths(orbit: Orbit) -> np.ndarray:
-    """Duration of each segment in radians of the forcing phase, shape (L,)."""
-    phases = orbit.nodes[:, 0]
-    return np.diff(np.append(phases, phases[0] + 2.0 * np.pi * orbit.periods))
-
-
-def sample(orbit: Orbit, points: int = 400) -> dict[str, np.ndarray]:
+def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
     """Positions and velocities over one period, events included with both their velocities.
 
     Parameters
     ----------
-    orbit : Orbit
+    orbit : Cycle
     points : int
         About how many points; at least two per segment.
 
@@ -51,8 +41,10 @@ def sample(orbit: Orbit, points: int = 400) -> dict[str, np.ndarray]:
         ``tau`` (dimensionless time from the first event), ``phase``, ``w``, ``w_rate``, ``v``, ``v_rate``, the absolute
         positions in units of b ``cavity`` (q1) and ``absorber`` (q2), and ``segment`` (index of the event before).
     """
+    if not len(orbit.word):
+        return _at_rest(orbit, points)
     columns: dict[str, list[np.ndarray]] = {name: [] for name in ("phase", "state", "segment")}
-    durations = lengths(orbit)
+    durations = orbit.durations
     total = 2.0 * np.pi * orbit.periods
     for segment, duration in enumerate(durations):
         count = max(2, round(points * duration / total))
@@ -76,9 +68,22 @@ def sample(orbit: Orbit, points: int = 400) -> dict[str, np.ndarray]:
     }
 
 
-def slowest(orbit: Orbit, segment: int) -> tuple[float, np.ndarray]:
+def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:
+    """The same of the absorber that rides with its cavity."""
+    phase = np.linspace(0.0, 2.0 * np.pi, points)
+    eps, omega, rest = orbit.parameters["mass_ratio"], orbit.parameters["frequency"], orbit.model.rest
+    v, v_rate = rest.cavity_motion(orbit.params, np.linalg.solve(*rest.equations(orbit.params)), phase)
+    nothing = np.zeros_like(phase)
+    place = v / (1.0 + eps)
+    return {
+        "tau": phase / omega, "phase": phase, "w": nothing, "w_rate": nothing, "v": v, "v_rate": v_rate,
+        "cavity": place, "absorber": place, "segment": np.zeros(points, int),
+    }  # fmt: skip
+
+
+def slowest(orbit: Cycle, segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
-    length = float(lengths(orbit)[segment])
+    length = float(orbit.durations[segment])
     mode = orbit.word.modes[segment]
     ahead = np.linspace(0.0, length, 402)[1:-1]
     speed = mode * flight(orbit, segment, ahead)[:, 1]

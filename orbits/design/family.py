@@ -14,7 +14,6 @@ import numpy as np
 
 from orbits.attractors import find_attractor
 from orbits.attractors.sweep import measures
-from orbits.cycles.stuck import StuckOrbit
 from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.starts.find import StartError, find, polish
@@ -29,7 +28,7 @@ def settled(model: Model, params: np.ndarray) -> Any:
     values: dict[str, Any] = dict(zip(model.parameter_names, (float(value) for value in params)))
     found = find_attractor(model, max_period=8, **values)
     if found.kind == "stuck":
-        return StuckOrbit.of(model, params)
+        return Orbit.at_rest(model, params)
     if found.word is None or not found.nodes.size:
         return None
     orbit = found.orbit

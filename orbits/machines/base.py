@@ -28,12 +28,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.path import single
 from orbits.machines.rest import Rest
 
 if TYPE_CHECKING:
-    from orbits.orbit import Orbit
     from orbits.words import Word
 
 
@@ -206,6 +206,12 @@ class Model:
             "w_rate": generator.uniform(-2.0, 2.0),
         }
 
+    def population(self, over: str | None = None, **parameters: float) -> Any:
+        """Many starts and what they settle on; see `orbits.attractors.population.Population`."""
+        from orbits.attractors.population import Population
+
+        return Population(self, over or self.default_parameter, parameters)
+
     def measure_own(
         self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
     ) -> dict[str, np.ndarray]:
@@ -218,11 +224,9 @@ class Model:
         periods: int = 1,
         guess: Sequence[Sequence[float]] | np.ndarray | None = None,
         **parameters: Any,
-    ) -> Orbit:
+    ) -> Any:
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
-        from orbits.starts.find import find
-
-        return find(self, word, periods, guess, parameters)
+        return above("find")(self, word, periods, guess, parameters, made=above("Orbit"))
 
     # ------------------------------------------------------------------ the parameter that varies
     @property

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import copyreg
 import importlib
-from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from orbits.machines.base import Model
 from orbits.machines.parameters import ParameterError
+from orbits.machines.stepping import Machine
 
 PLACES = {
     "absorber": ("orbits.machines.absorber.machine", "Absorber"),
@@ -32,16 +34,6 @@ def model_class(name: str) -> type[Model]:
     return getattr(importlib.import_module(module), place)
 
 
-def build(settings: Mapping[str, Any]) -> Model:
-    """The machine with these settings, `name` among them (see `Model.settings`)."""
-    values = dict(settings)
-    if values.pop("units", None):
-        from orbits.machines.physical import physical
-
-        return physical(str(values.pop("name")), values, bool(values.pop("unusual", False)))
-    return model_class(str(values.pop("name")))(**values)
-
-
 def usual(name: str) -> tuple[Model, dict[str, float]]:
     """A machine with usual values, and those of the parameters that are given with each orbit."""
     chosen = model_class(name)
@@ -49,3 +41,28 @@ def usual(name: str) -> tuple[Model, dict[str, float]]:
     settings = {entry.name: entry.example for entry in chosen.table if entry.name in own}
     given = {entry.name: entry.example for entry in chosen.table if entry.name not in own}
     return chosen(**settings), given
+
+
+@cache
+def stepper(name: str) -> Machine:
+    """The compiled stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
+    chosen = model_class(name)
+    kernels = chosen.stepper()
+    return Machine(
+        name,
+        kernels.STATE,
+        kernels.ROW,
+        kernels.launch,
+        kernels.advance,
+        kernels.sample,
+        kernels.works,
+        kernels.energies,
+        chosen.walls,
+    )
+
+
+def _by_name(machine: Machine) -> tuple[Any, tuple[str]]:
+    return stepper, (machine.name,)
+
+
+copyreg.pickle(Machine, _by_name)  # compiled functions are looked up again

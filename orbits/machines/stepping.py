@@ -76,8 +76,3 @@ class Machine:
     works: Callable
     energies: Callable
     walls: Callable[[np.ndarray], tuple[Any, Any]]
-
-    def __reduce__(self):
-        from orbits.simulation.driver import machine
-
-        return machine, (self.name,)

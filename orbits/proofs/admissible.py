@@ -118,11 +118,14 @@ def conditions(
         following = motif.after(i, nodes)
         flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
         phases = (nodes[i][0], following[0])
-        for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights.friction):
+        for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights):
             if zero.event != i or not _vanishes(condition, zero):
                 yield condition
         if zero.event != i or zero.name != "stop":
             yield Condition("duration", i, phases[1] - phases[0])
+            if zero.event == i and zero.phase is not None:  # else it would be no border of this flight
+                yield Condition("touch", i, zero.phase - phases[0])
+                yield Condition("touch", i, phases[1] - zero.phase)
             yield from _in_flight(motif, i, flight, phases, flights, zero)
 
 
@@ -132,27 +135,30 @@ def _vanishes(condition: Condition, zero: Zero) -> bool:
     return condition.name == name and (name not in ("wall", "stick") or condition.side == zero.side)
 
 
-def _at_event(motif: Motif, i: int, here: Any, node: Sequence[Any], friction: Any) -> Iterator[Condition]:
+def _at_event(
+    motif: Motif, i: int, here: Any, node: Sequence[Any], machine: Shaken | Coupled
+) -> Iterator[Condition]:
     letter = motif.events[i]
     if letter in WALLS:
         # w'- = -w'+/r: approaching before is leaving after
         yield Condition("approach", i, -WALLS[letter] * here.w1)
         return
     for side in (1, -1):
-        yield Condition("wall", i, 1 - side * node[1], side=side)
+        yield Condition("wall", i, machine.room[side] - side * node[1], side=side)
+    mode = motif.modes[i]
     if letter == "t":
-        yield Condition("turn", i, -motif.incoming(i) * here.push - friction)
+        yield Condition("turn", i, mode * here.push - machine.limit[mode])
     elif letter == "s":
         for side in (1, -1):
-            yield Condition("stick", i, friction - side * here.push, side=side)
+            yield Condition("stick", i, machine.limit[side] - side * here.push, side=side)
     else:
-        yield Condition("slip", i, motif.modes[i] * here.push1)
+        yield Condition("slip", i, mode * here.push1)
 
 
 def _in_flight(
     motif: Motif, i: int, flight: Flight, phases: tuple[Any, Any], machine: Shaken | Coupled, zero: Zero
 ) -> Iterator[Condition]:
-    friction, pace = machine.friction, 1 / machine.omega
+    pace = 1 / machine.omega
     letter, mode = motif.events[i], motif.modes[i]
     arrival, after = motif.arrival(i)
     following = (i + 1) % len(motif)
@@ -162,7 +168,7 @@ def _in_flight(
 
             def room(phase: Any, side: int = side) -> Rates:
                 m = flight(phase)
-                return 1 - side * m.w, -side * m.w1, -side * m.w2, -side * m.w3
+                return machine.room[side] - side * m.w, -side * m.w1, -side * m.w2, -side * m.w3
 
             graze = zero.name == "approach"
             start = 0 if letter != wall else 2 if graze and zero.event == i else 1
@@ -174,7 +180,7 @@ def _in_flight(
 
             def hold(phase: Any, side: int = side) -> Rates:
                 m = flight(phase)
-                return friction - side * m.push, -side * m.push1, None, None
+                return machine.limit[side] - side * m.push, -side * m.push1, None, None
 
             held = zero.name == "stick" and zero.event == i and side == zero.side
             touch = touching if zero.name == "hold" and zero.side == side else None

@@ -10,8 +10,8 @@ import mpmath
 
 iv: Any = mpmath.iv
 WALL, ZERO, MIRROR = {"L": 1, "R": -1}, (0, 0, 0), {"L": "R", "R": "L"}
-OWN = {"absorber": "amplitude restitution", "coupled": "forcing damping restitution excitation",
-       "cavity": "amplitude restitution_left restitution_right slope"}
+OWN = {"absorber": "amplitude restitution friction", "coupled": "forcing damping restitution excitation friction",
+       "cavity": "amplitude slope " + " ".join(f"{name}_{s}" for name in ("restitution", "friction", "distance") for s in ("left", "right"))}
 FITS = {"L": ((1,), (-1,)), "R": ((-1,), (1,)), "t": ((1, -1), (1, -1)), "s": ((1, -1), (0,)), "u": ((0,), (1, -1))}
 
 class Refused(ValueError):
@@ -65,10 +65,10 @@ def motion(p, letter, mode, x, phase):
     if not letter:
         X, Y = (C, 0) if C else response(p, e + 1)[:2]
         return A(0), (X * s + Y * c) * (A(1) if C else e + 1)
-    t, w0, s0, c0 = (phase - x[0]) / om + T, A(WALL[letter]) if letter in WALL else x[1], x[0].f("sin"), x[0].f("cos")
+    t, w0, s0, c0 = (phase - x[0]) / om + T, p["d", WALL[letter]] * WALL[letter] if letter in WALL else x[1], x[0].f("sin"), x[0].f("cos")
     if C:
         b = x[1] if letter in WALL else C * om * c0
-        return (w0 + C * s - C * s0 - b * t + (p["bias"] - p["limit"] * mode) * t * t / 2 if mode else w0), C * s
+        return (w0 + C * s - C * s0 - b * t + (p["bias"] - p["a", mode] * mode) * t * t / 2 if mode else w0), C * s
     k1, pull = (x[1] if letter in WALL else x[3]) / (e + 1), p["friction"] * p["gravity"] * mode
     X, Y, al, be = response(p, A(1) if mode else e + 1)
     z, u = (x[2] + e * w0) / (e + 1) + e * pull - X * s0 - Y * c0, x[3] - e * k1 if letter in WALL else k1
@@ -77,9 +77,12 @@ def motion(p, letter, mode, x, phase):
     k = (x[2] - w0) / (e + 1) + k1 * t + pull * t * t / 2
     return (q - k, q + e * k) if mode else (w0, q * (e + 1) - e * w0)
 
-def finish(p):  # friction's limit a, and the bias by the slope
-    weight, tilt = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", A(0))
-    return p | {"limit": weight * p["friction"] * tilt.f("cos"), "bias": weight * tilt.f("sin") * -1}
+def finish(p):  # the bias by the slope; friction's limit a and the wall's distance d on either side
+    weight, tilt, p = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", A(0)), p | {("a", 0): A(0)}
+    for s, side in ((1, "_left"), (-1, "_right")):
+        p["a", s] = weight * (p["friction" + side] if "slope" in p else p["friction"]) * tilt.f("cos")
+        p["d", s] = p["distance" + side] if "slope" in p else A(1)
+    return p | {"bias": weight * tilt.f("sin") * -1}
 
 def closed(c, x, angle=None):  # the first node as it must be after the last flight, its directions times the multiplier
     out, one = [], iv.mpf(1)
@@ -103,8 +106,8 @@ def equations(c, p, z, e, shift=1):
         y = node(i + 1) if i + 1 < len(z) else closed(c, node(0, shift), ext[1] if k == 3 * n else None)
         (w, v), wall = motion(p, letter, c["signs"][i], node(i), y[0]), c["letters"][i + 1]
         r = p.get("restitution", p.get("restitution_left" if wall == "L" else "restitution_right"))
-        out += [w.rate(0) - WALL[wall], v.rate(1) + r * w.rate(1) - y[1]] if wall in WALL else [
-            v.rate(2) + p["bias"] - p["limit"] * c["signs"][i + 1] if wall == "u" else w.rate(1), w.rate(0) - y[1]]
+        out += [w.rate(0) - p["d", WALL[wall]] * WALL[wall], v.rate(1) + r * w.rate(1) - y[1]] if wall in WALL else [
+            v.rate(2) + p["bias"] - p["a", c["signs"][i + 1]] * c["signs"][i + 1] if wall == "u" else w.rate(1), w.rate(0) - y[1]]
         out += [v.rate(0) - y[2], v.rate(1) - y[3]] if n == 4 else []
     rows = [{v: x for (_, f, v), x in row.c.items() if f == d} for row in out for d in range(k // n or 1)]
     if "normal" in c:
@@ -113,9 +116,9 @@ def equations(c, p, z, e, shift=1):
     if "border" not in c: return rows
     (name, i, side), x = c["border"], node(c["border"][1])
     w, v = motion(p, c["events"][i:i + 1], c["signs"][i], x, ext[1] if len(e) > 1 else x[0])
-    push = p["limit"] - (v.rate(2) + p["bias"]) * side
+    push = p["a", side] - (v.rate(2) + p["bias"]) * side
     out = {"flight": [w.rate(1), w.rate(2)], "hold": [push, v.rate(3)], "slip": [v.rate(3)], "approach": [w.rate(1)], "rest": [v.rate(3), push],
-           "reversal": [w.rate(0) * side - 1, w.rate(1)], "wall": [w.rate(0) * side - 1]}.get(name, [push])
+           "reversal": [w.rate(0) * side - p["d", side], w.rate(1)], "wall": [w.rate(0) * side - p["d", side]]}.get(name, [push])
     return rows + [{v: x for (_, _, v), x in row.c.items()} for row in out]
 
 def solve(rows, order):
@@ -147,7 +150,7 @@ def exists(c, p, z, e):
 
 def conditions(c, p, z, name, event, side, touch):
     """Inequalities (name, event, number) and (name, event, (f and its rates, first, last, zeros at start and end, touching phase))."""
-    a, frame, signs = p["limit"](), [[A(v) for v in node] for node in z], c["signs"]
+    (a, d), frame, signs = ({s: p[name, s]() for s in (1, -1)} for name in "ad"), [[A(v) for v in node] for node in z], c["signs"]
     def ws(ph, i, s): return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
     def push(ph, i):
         v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
@@ -156,18 +159,19 @@ def conditions(c, p, z, name, event, side, touch):
         mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
         last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
         P = push(first, i)
-        tests = [("approach", 0, ws(first, i, -WALL[letter])[1])] if letter in WALL else [("wall", s, 1 - z[i][1] * s) for s in (1, -1)]
-        tests += {"t": [("turn", 0, -c["before"][i] * P[0] - a)], "u": [("slip", 0, mode * P[1])],
-                  "s": [("stick", s, a - P[0] * s) for s in (1, -1)]}.get(letter, [])
+        tests = [("approach", 0, ws(first, i, -WALL[letter])[1])] if letter in WALL else [("wall", s, d[s] - z[i][1] * s) for s in (1, -1)]
+        tests += {"t": [("turn", 0, mode * P[0] - a.get(mode, 0))], "u": [("slip", 0, mode * P[1])],
+                  "s": [("stick", s, a[s] - P[0] * s) for s in (1, -1)]}.get(letter, [])
         yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
         if here == "stop": continue
         yield "duration", i, last - first
+        if event == i and touch is not None: yield from (("touch", i, touch - first), ("touch", i, last - touch))
         for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
             if c["frictionless"]:
-                f: Any = lambda ph, i=i, s=s: [v + (k == 0) for k, v in enumerate(ws(ph, i, -s))]  # noqa: E731
+                f: Any = lambda ph, i=i, s=s: [v + (k == 0) * d[s] for k, v in enumerate(ws(ph, i, -s))]  # noqa: E731
                 kind, start, end = "wall", (WALL[letter] == s) * (1 + (here == "approach")), (WALL[wall] == s) * (1 + (there == "approach"))
             elif mode == 0:
-                f = lambda ph, i=i, s=s: [a - push(ph, i)[0] * s, push(ph, i)[1] * -s]  # noqa: E731
+                f = lambda ph, i=i, s=s: [a[s] - push(ph, i)[0] * s, push(ph, i)[1] * -s]  # noqa: E731
                 kind, start, end = "hold", here == "stick" and side == s, s == signs[i + 1]
             else:
                 f = lambda ph, i=i, s=s: ws(ph, i, s)[1:]  # noqa: E731
@@ -264,11 +268,11 @@ def verify(c):
              "letters": [*events, MIRROR.get(events[:1], events[:1]) if half else events[:1]], "before": [sign * m for m in modes[-1:]] + modes[:-1]}
     p = {name: A(num(t)) for name, t in c["parameters"].items()}
     q = finish(p | ({c["parameter"]: A(e[0])} if e else {}))
-    names = {*OWN[c["machine"]].split(), "mass_ratio", "friction", "gravity", "frequency"}
+    names = {*OWN[c["machine"]].split(), "mass_ratio", "gravity", "frequency"}
     need({*p, *([c["parameter"]] if e else [])} == names and len(p) + bool(e) == len(names), "parameters are missing, or too many")
     need(all(q[name]() >= 0 for name in names - {"slope"}) and q["frequency"]() > 0, "a parameter is out of range")
     need(all(q[name]() > 0 and q[name]() <= 1 for name in names if name[:4] == "rest"), "a restitution is out of range")
-    need(q["limit"]() == 0 if c["frictionless"] else q["limit"]() > 0, "the word does not fit the friction")
+    need(all(q["a", s]() >= 0 for s in (1, -1)) and c["frictionless"] == all(q["a", s]() == 0 for s in (1, -1)), "the word does not fit the friction")
     if half: need(c["periods"] % 2 and c["machine"] != "cavity", "no mirror symmetry")
     for i, letter in enumerate(events):
         fits = letter in WALL if c["frictionless"] else c["before"][i] in FITS[letter][0] and modes[i] in FITS[letter][1]
@@ -278,14 +282,23 @@ def verify(c):
     if wide > 1:
         mu = {"fold": (1, half), "symmetry-breaking": (-1, True), "period-doubling": (-1, False)}.get(kind, (1, half))
         need((c.get("multiplier", 1), half) == mu and len(e) == wide - 1 and border is None, f"no system of a {kind}")
+        need(c["normal"][0] in range(len(z)) and c["normal"][1] in range(c["n"]), "no component to be 1")
+        need(wide == 2 or 0 not in iv.sin(e[1]), "the multipliers are real")
     elif kind == "piece": return cover(c, p, len(events))
     else: need(bool(border) == bool(e) == (kind != "orbit") and "normal" not in c and c.get("multiplier", 1) == 1, f"no {kind}")
+    if border:
+        (name, i, side), free = border, c["frictionless"]
+        need(kind in ("wall-graze", "velocity-graze", "stick", "chatter") and side in (1, -1) and (i == 0 if stuck else i in range(len(z))), "no border")
+        fits = [name == "rest"] if stuck else [
+            name == "reversal" and free, name in ("flight", "hold") and not free and (modes[i] == 0) == (name == "hold"), name == "approach"
+            and events[i] in WALL, name == "wall" and events[i] in "tsu", (name, events[i]) in [("turn", "t"), ("stick", "s"), ("stop", "s"), ("slip", "u")]]
+        need(any(fits) and len(e) == 1 + (name in ("flight", "hold", "reversal")), "no such margin at this event")
     if z: exists(c, p, z, e)
     name, event, side, touch = (*border, e[1] if len(e) > 1 else None) if border else ("", -1, 0, None)
     if stuck:  # the push is a harmonic of the forcing about the bias
         one, two = (motion(q, "", 0, None, A(ph))[1].rate(2)() for ph in (iv.mpf(0), iv.pi / 2))
-        held = q["limit"]() - iv.sqrt(one * one + two * two) - abs(q["bias"]())
-        found = [("stick", 0, True if held > 0 or border else False if held < 0 else None)]
+        held = [q["a", s]() - q["bias"]() * s - iv.sqrt(one * one + two * two) for s in (1, -1)]
+        found = [("stick", 0, True if all(h > 0 for h in held) or border else False if any(h < 0 for h in held) else None)]
     else: found = [(n, i, positive(test, 1 / q["frequency"]())) for n, i, test in conditions(c, q, [x[:c["n"]] for x in z], name, event, side, touch)]
     real, stable, broken = claims["real"], claims["stable"], c.get("broken")
     need(real is None or (all(v for *_, v in found) if real else (*broken, False) in found), "it is not proved real, or not virtual")

@@ -11,7 +11,7 @@ from typing import Any
 
 from orbits.proofs.balls import library
 from orbits.proofs.elimination import Blocks
-from orbits.proofs.flights import MACHINES, WALLS, Coupled, Shaken
+from orbits.proofs.flights import MACHINES, WALLS, Coupled, Shaken, wall
 from orbits.proofs.jets import partial, variables
 
 MIRRORED = {"L": "R", "R": "L"}
@@ -97,9 +97,9 @@ class Motif:
         letter, mode = self.arrival(i)
         if letter in WALLS:
             r = flights.restitution(letter)
-            rows = [end.w - WALLS[letter], end.v1 + r * end.w1 - following[1]]
+            rows = [end.w - wall(flights, letter), end.v1 + r * end.w1 - following[1]]
         elif letter == "u":
-            rows = [end.push - mode * flights.friction, end.w - following[1]]
+            rows = [end.push - mode * flights.limit[mode], end.w - following[1]]
         else:
             rows = [end.w1, end.w - following[1]]
         if self.node == 4:

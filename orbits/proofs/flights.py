@@ -7,7 +7,7 @@ Shaken cavity (`absorber`, `cavity`): v = C sin Psi and, in mode s,
 
     w'' = push - s a,    push = v'' + bias,    v'' = -C Omega^2 sin Psi,
 
-with a = (1 + eps) mu g cos(slope) and bias = -(1 + eps) g sin(slope) (the slope pulls towards w = -1).
+with a = (1 + eps) mu g cos(slope), mu depending on the direction, and bias = -(1 + eps) g sin(slope) (the slope pulls to the right).
 
 Absorber on its oscillator (`coupled`), e = eps G sin Psi:
 
@@ -48,7 +48,8 @@ Flight = Callable[[Any], Motion]
 class Flights(Protocol):
     """A machine with closed-form flights and definite parameters."""
 
-    friction: Any  # a, the largest relative acceleration by friction
+    limit: Mapping[int, Any]  # largest relative acceleration by friction against sliding in mode +1, -1
+    room: Mapping[int, Any]  # distance of the left (+1) and the right wall (-1) from w = 0
     omega: Any
 
     def restitution(self, letter: str) -> Any:
@@ -60,6 +61,12 @@ class Flights(Protocol):
         ...
 
 
+def wall(flights: Flights, letter: str) -> Any:
+    """Where the absorber hits at an impact."""
+    side = WALLS[letter]
+    return side * flights.room[side]
+
+
 class Shaken:
     """Flights of a cavity that is shaken harmonically; node (Psi, B+) at impacts, (Psi, w) elsewhere."""
 
@@ -68,12 +75,16 @@ class Shaken:
     def __init__(self, p: Mapping[str, Any]) -> None:
         self.amplitude, self.omega = p["amplitude"], p["frequency"]
         weight = (1 + p["mass_ratio"]) * p["gravity"]
-        self.friction, self.bias = weight * p["friction"], 0
         if "slope" in p:
             sine, cosine = sin_cos(p["slope"])
-            self.friction, self.bias = self.friction * cosine, -weight * sine
-        self.left = p["restitution_left"] if "restitution_left" in p else p["restitution"]
-        self.right = p["restitution_right"] if "restitution_right" in p else p["restitution"]
+            weight, self.bias = weight * cosine, -weight * sine
+            self.limit = {1: weight * p["friction_left"], -1: weight * p["friction_right"], 0: 0}
+            self.room = {1: p["distance_left"], -1: p["distance_right"]}
+            self.left, self.right = p["restitution_left"], p["restitution_right"]
+        else:
+            a = weight * p["friction"]
+            self.limit, self.room, self.bias = {1: a, -1: a, 0: 0}, {1: 1, -1: 1}, 0
+            self.left = self.right = p["restitution"]
 
     def restitution(self, letter: str) -> Any:
         """Newton's coefficient of the wall."""
@@ -86,8 +97,8 @@ class Shaken:
         speed = C * omega
         peak = speed * omega
         s0, c0 = sin_cos(phase0)
-        w0, beta = (WALLS[letter], y) if letter in WALLS else (y, speed * c0)
-        pull = self.bias - mode * self.friction
+        w0, beta = (wall(self, letter), y) if letter in WALLS else (y, speed * c0)
+        pull = self.bias - mode * self.limit[mode]
 
         def flight(phase: Any) -> Motion:
             s, c = sin_cos(phase)
@@ -119,7 +130,8 @@ class Coupled:
         self.eps, self.omega = p["mass_ratio"], p["frequency"]
         self.whole = 1 + self.eps
         self.pull = p["friction"] * p["gravity"]
-        self.friction = self.whole * self.pull
+        a = self.whole * self.pull
+        self.limit, self.room = {1: a, -1: a, 0: 0}, {1: 1, -1: 1}
         self.r = p["restitution"]
         self.rate = self.eps * p["damping"]
         self._force, self._chi = self.eps * p["forcing"], p["excitation"]
@@ -147,7 +159,7 @@ class Coupled:
         phase0, y, v0, v1 = node
         eps, omega, whole = self.eps, self.omega, self.whole
         if letter in WALLS:
-            w0, q2r = WALLS[letter], y / whole
+            w0, q2r = wall(self, letter), y / whole
             q1r = v1 - eps * q2r
         else:
             w0, q1r, q2r = y, v1 / whole, v1 / whole
@@ -197,11 +209,14 @@ MACHINES: dict[str, type[Shaken] | type[Coupled]] = {
     "coupled": Coupled,
 }
 
-_CAVITY = ("friction", "gravity", "mass_ratio", "frequency")
+_EVERY = ("gravity", "mass_ratio", "frequency")
+_SIDES = tuple(
+    f"{name}_{side}" for name in ("restitution", "friction", "distance") for side in ("left", "right")
+)
 NAMES: dict[str, tuple[str, ...]] = {
-    "absorber": ("amplitude", "restitution", *_CAVITY),
-    "cavity": ("amplitude", "restitution_left", "restitution_right", "slope", *_CAVITY),
-    "coupled": ("forcing", "damping", "restitution", "excitation", *_CAVITY),
+    "absorber": ("amplitude", "restitution", "friction", *_EVERY),
+    "cavity": ("amplitude", "slope", *_SIDES, *_EVERY),
+    "coupled": ("forcing", "damping", "restitution", "excitation", "friction", *_EVERY),
 }
 
 

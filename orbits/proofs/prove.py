@@ -116,6 +116,9 @@ def prove_special(
     margin : (str, int), optional
         For a border the name of the margin that vanishes (`orbits.proofs.special.Vanishing`) and its event.
     """
+    if kind in ("symmetry-breaking", "period-doubling") and motif.half is not (kind == "symmetry-breaking"):
+        part = "half of the word of a symmetric orbit" if kind == "symmetry-breaking" else "the whole word"
+        raise ProofError(f"a {kind} is proved on {part}")
     given = {name: decimal(number) for name, number in parameters.items() if name != parameter}
     shorter = merged(motif, nodes) if margin else None
     if shorter is not None:
@@ -134,6 +137,8 @@ def prove_special(
         z, e = _refined(system, nodes, e, at, z)
         box = enclose(system, z, e, at)
         balls, extras = box.balls()
+        if kind == "neimark-sacker" and extras[1].sin().contains(0):
+            raise Obstacle(Step.EXISTENCE, Remedy.DEGENERATE, detail="the multipliers are real")
         inside = [node[: motif.node] for node in balls]
         zero = NOTHING
         if vanishing is not None:
@@ -160,7 +165,7 @@ def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: fl
     flights = proof.motif.flights(here)
     one, other = (float(flights.resting(phase)[0].mid()) for phase in (ball(0), ball(float(np.pi / 2))))
     bias = float(ball(0) + flights.bias)
-    side = -1 if bias < 0 else 1
+    side = min((1, -1), key=lambda s: float(ball(0) + flights.limit[s]) - s * bias)
     phase = float(np.arctan2(other - bias, one - bias)) + (0.0 if side > 0 else float(np.pi))
     assert proof.parameter is not None
     system = AtSlip(proof.motif, p, proof.parameter, side)
@@ -227,8 +232,10 @@ def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
         raise ProofError(
             "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
         )
-    friction = motif.flights(p).friction
-    if motif.frictionless != bool(friction == 0):
+    limit = motif.flights(p).limit
+    if not (limit[1] >= 0 and limit[-1] >= 0):
+        raise ProofError("the slope leaves friction no load: keep it between -pi/2 and pi/2")
+    if motif.frictionless != bool(limit[1] == 0 and limit[-1] == 0):
         raise ProofError(
             "a word without friction's events needs friction exactly 0, and any other needs friction above 0"
         )

@@ -27,7 +27,7 @@ class AtSlip(AtParameter):
 
         def row(z: Sequence[Any], extras: Sequence[Any]) -> Any:
             flights = self.prepare(extras)
-            return flights.friction - side * flights.resting(z[0])[0]
+            return flights.limit[side] - side * flights.resting(z[0])[0]
 
         self.borders = ((0, row),)
 
@@ -49,8 +49,9 @@ def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) 
     with precision(bits):
         p = {name: ball(value) for name, value in given.items()}
         flights = motif.flights(p)
-        reserve = flights.friction - push_amplitude(flights) - abs(ball(0) + flights.bias)
-        real = True if reserve > 0 else False if reserve < 0 else None
+        size = push_amplitude(flights)
+        reserves = [flights.limit[side] - side * flights.bias - size for side in (1, -1)]
+        real = True if all(r > 0 for r in reserves) else False if any(r < 0 for r in reserves) else None
         # the oscillator's free motion decays by exp(-alpha T); the shaken cavity has none
         stable = True if motif.node == 2 or p["damping"] > 0 else None
     proof = Proof("orbit", motif, given, box=Box([], []), real=real, stable=stable, bits=bits)

@@ -149,13 +149,13 @@ class AtBorder(AtParameter):
             if v.name == "flight":
                 return m.w1, m.w2
             if v.name == "hold":
-                return flights.friction - v.side * m.push, m.push1
-            return 1 - v.side * m.w, m.w1
+                return flights.limit[v.side] - v.side * m.push, m.push1
+            return flights.room[v.side] - v.side * m.w, m.w1
         m = flight(x[0])
         if v.name == "approach":
             return m.w1, None
         if v.name in ("turn", "stick", "stop"):
-            return flights.friction - v.side * m.push, None
+            return flights.limit[v.side] - v.side * m.push, None
         if v.name == "slip":
             return m.push1, None
-        return 1 - v.side * x[1], None
+        return flights.room[v.side] - v.side * x[1], None

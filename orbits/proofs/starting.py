@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.proofs.balls import library
 from orbits.proofs.equations import Motif, System
-from orbits.proofs.flights import Flight
+from orbits.proofs.flights import Coupled, Flight, Shaken
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal, Vanishing
 
@@ -111,7 +111,7 @@ def _least(
     candidates = []
     for j in range(1, SAMPLES):
         phase = (first + (last - first) * j / SAMPLES).mid()
-        candidates.append((_size(flight, phase, motif.modes[i], vanishing, flights.friction), phase))
+        candidates.append((_size(flight, phase, motif.modes[i], vanishing, flights), phase))
     inner = [
         candidates[j]
         for j in range(1, len(candidates) - 1)
@@ -120,13 +120,13 @@ def _least(
     return min(inner, key=lambda pair: pair[0]) if inner else None
 
 
-def _size(flight: Flight, phase: Any, mode: int, vanishing: Vanishing, friction: Any) -> float:
+def _size(flight: Flight, phase: Any, mode: int, vanishing: Vanishing, machine: Shaken | Coupled) -> float:
     m = flight(phase)
     if vanishing.name == "flight":
         return float((mode * m.w1).mid())
     if vanishing.name == "hold":
-        return float((friction - vanishing.side * m.push).mid())
-    return float((1 - vanishing.side * m.w).mid())
+        return float((machine.limit[vanishing.side] - vanishing.side * m.push).mid())
+    return float((machine.room[vanishing.side] - vanishing.side * m.w).mid())
 
 
 def _product(factors: Sequence[Any]) -> Any:

@@ -25,11 +25,11 @@ PLAIN = ("end", "user")  # kinds of special points where nothing happens
 
 
 def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
-    """Prove an `Orbit` or a `StuckOrbit`.
+    """Prove an `Orbit`.
 
     Parameters
     ----------
-    orbit : Orbit or StuckOrbit
+    orbit : Orbit
     bits : int, optional
         Precision to begin with.
     **parameters
@@ -60,11 +60,11 @@ def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
 def of_point(
     problem: Any, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
 ) -> Proof:
-    """Prove a special point of an `OrbitProblem` or `StuckProblem`.
+    """Prove a special point of an `OrbitProblem`.
 
     Parameters
     ----------
-    problem : OrbitProblem or StuckProblem
+    problem : OrbitProblem
     kind : str
         Kind of the special point.
     u, p : float array (N,), float

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
 
-from orbits.machines.catalogue import model_class
+from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import EVENTS_FULL, FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
 
@@ -22,24 +21,6 @@ _BODIES = ("q1", "q2", "q1_rate", "q2_rate")
 
 class SimulationError(ValueError):
     """A start or a length of a run that cannot be; the sentence names the field, the value and what would do."""
-
-
-@cache
-def machine(name: str) -> Machine:
-    """The compiled stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
-    chosen = model_class(name)
-    kernels = chosen.stepper()
-    return Machine(
-        name,
-        kernels.STATE,
-        kernels.ROW,
-        kernels.launch,
-        kernels.advance,
-        kernels.sample,
-        kernels.works,
-        kernels.energies,
-        chosen.walls,
-    )
 
 
 def simulate(

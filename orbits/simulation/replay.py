@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from orbits.machines.states import nodes_of, state_of
 from orbits.machines.stepping import EVENTS_FULL
 from orbits.simulation.driver import collect, machine, skip
-from orbits.simulation.return_map import cyclic_distance, go_round, monodromy, nodes_of, state_of
+from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 

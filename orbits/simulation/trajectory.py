@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orbits.machines.stepping import HOLD, MODE, PSI, RATE, STATUS, TURNS, V_RATE, Machine, V, W
+from orbits.machines.states import event_states
+from orbits.machines.stepping import HOLD, PSI, RATE, STATUS, TURNS, Machine
 
 TWO_PI = 2.0 * np.pi
 LETTERS = "LRtsuH"
@@ -200,17 +201,3 @@ class Trajectory:
         )
         error = abs(gap) / scale if scale > 0.0 else 0.0
         return Balance(change, float(excitation), float(damping), float(friction), impacts, float(error))
-
-
-def event_states(machine: Machine, modes: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """States after events, shape (n, S), from their rows."""
-    states = np.zeros((len(rows), machine.state))
-    states[:, PSI] = rows[:, 0]
-    states[:, TURNS] = rows[:, 1]
-    states[:, W] = rows[:, 2]
-    states[:, RATE] = rows[:, 4]
-    states[:, MODE] = modes
-    if machine.state > V:
-        states[:, V] = rows[:, 5]
-        states[:, V_RATE] = rows[:, 6]
-    return states

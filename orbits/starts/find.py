@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 
-from orbits.cycles.kernels import assemble
-from orbits.cycles.stuck import StuckOrbit
+from orbits.attractors.recurrence import find_attractor
+from orbits.cycles.equations import equations, solved_at
+from orbits.cycles.solution import Solution
 from orbits.machines.base import Model
-from orbits.orbit import Orbit
-from orbits.problem import OrbitProblem
 from orbits.starts.reading import DirectionError, directed, readings
 from orbits.words import Word
 
@@ -31,24 +31,21 @@ class StartError(ValueError):
     """No orbit was found; the sentence says what was tried and what the simulator finds there."""
 
 
-def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
+Found = TypeVar("Found", bound=Solution)
+
+
+def polish(orbit: Found, limit: int = 30) -> Found | None:
     """Newton's method from the orbit's nodes at fixed parameters; None if it does not converge to an orbit with this word."""
     parameter = orbit.model.default_parameter
-    symmetric = orbit.symmetric and orbit.model.has_mirror(orbit.params, parameter)
-    problem = OrbitProblem(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, symmetric)
-    u = problem.reduce(orbit.nodes)
-    border = np.zeros(problem.dimension + 1)
-    border[-1] = 1.0
-    step, tangent = np.empty_like(border), np.empty_like(border)
-    value = problem.value(orbit.params)
-    residual, _, _ = assemble(orbit.model).newton(
-        problem.data, u, value, problem.workspace(), border, step, tangent, TOLERANCE, limit
-    )
+    half = orbit.symmetric and orbit.model.has_mirror(orbit.params, parameter)
+    system = equations(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, half)
+    value = system.value(orbit.params)
+    u, residual = solved_at(system, system.reduce(orbit.nodes), value, TOLERANCE, limit)
     if not residual < 1e-9 * max(1.0, float(np.abs(u).max())):
         return None
-    nodes = problem.expand(u)
+    nodes = system.expand(u)
     nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
-    return Orbit(orbit.model, orbit.word, orbit.periods, nodes, orbit.params)
+    return replace(orbit, nodes=nodes)
 
 
 def check_guess(word: Word, names: Sequence[str], guess: Any) -> np.ndarray:
@@ -82,8 +79,9 @@ def find(
     periods: int = 1,
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
     parameters: Mapping[str, float] | None = None,
+    made: Any = Solution,
 ) -> Any:
-    """The orbit of `model` with this word: an `Orbit`, or a `StuckOrbit` for the empty word.
+    """The orbit of `model` with this word.
 
     Parameters
     ----------
@@ -97,6 +95,8 @@ def find(
         Newton's method from many random nodes.
     parameters : mapping
         Parameters that are no fields of the machine, or replace them.
+    made : type
+        Of what is returned: a `Solution`, or a kind of one.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def find(
         )
     periods = int(periods)
     if len(reading) == 0:
-        return _stuck(model, params)
+        return _stuck(made.at_rest(model, params))
     tried = []
     if guess is not None:
         nodes = check_guess(reading, model.node_names, guess)
@@ -123,27 +123,27 @@ def find(
             reading = directed(word, reading, nodes)
         except DirectionError as error:
             raise StartError(str(error)) from None
-        orbit = _from_guess(model, reading, periods, nodes, params)
+        orbit = _from_guess(made(model, reading, periods, nodes, params))
         if orbit is not None:
             return orbit
         tried.append("Newton's method from the guess")
     else:
         for nodes in model.start_nodes(reading, periods, params):
-            orbit = polish(Orbit(model, reading, periods, nodes, params))
+            orbit = polish(made(model, reading, periods, nodes, params))
             if orbit is not None:
                 return orbit
         tried.append("the closed forms")
-    orbit, nearest = _simulated(model, reading, periods, params)
+    orbit, nearest = _simulated(model, reading, periods, params, made)
     if orbit is not None:
         _warn(guess, reading, "simulation from many starts")
         return orbit
     tried.append("simulation from many starts")
     if guess is None:
-        orbit = _random(model, reading, periods, params)
+        orbit = _random(model, reading, periods, params, made)
         if orbit is not None:
             return orbit
         tried.append("Newton's method from random nodes")
-    orbit = _repeated(model, reading, periods, parameters)
+    orbit = _repeated(model, reading, periods, parameters, made)
     if orbit is not None:
         _warn(guess, reading, "a shorter orbit, written several times")
         return orbit
@@ -159,15 +159,10 @@ def find(
     )
 
 
-def _from_guess(
-    model: Model, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
-) -> Orbit | None:
+def _from_guess(first: Solution) -> Solution | None:
     """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
-    first = Orbit(model, word, periods, nodes, params)
-    others = [
-        Orbit(model, reading, periods, nodes, params)
-        for reading in readings(word, model.has_mirror(params, model.default_parameter))
-    ]
+    mirrored = first.model.has_mirror(first.params, first.model.default_parameter)
+    others = [replace(first, word=reading) for reading in readings(first.word, mirrored)]
     better = [orbit for orbit in others if orbit.residual < min(NEARBY, BETTER * first.residual)]
     virtual = None
     for guess in (*sorted(better, key=lambda orbit: orbit.residual), first):
@@ -189,19 +184,22 @@ def _warn(guess: Any, word: Word, instead: str) -> None:
         )
 
 
-def _repeated(model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None) -> Orbit | None:
+def _repeated(
+    model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None, made: Any
+) -> Solution | None:
     """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
     times = math.gcd(word.repetitions, periods)
     if times == 1:
         return None
     try:
-        return find(model, word.head(len(word) // times), periods // times, None, parameters).repeat(times)
+        return find(model, word.head(len(word) // times), periods // times, None, parameters, made).repeat(
+            times
+        )
     except StartError:
         return None
 
 
-def _stuck(model: Model, params: np.ndarray) -> StuckOrbit:
-    orbit = StuckOrbit.of(model, params)
+def _stuck(orbit: Solution) -> Solution:
     if not orbit.real:
         raise StartError(
             f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); "
@@ -210,16 +208,16 @@ def _stuck(model: Model, params: np.ndarray) -> StuckOrbit:
     return orbit
 
 
-def _proper(orbit: Orbit) -> bool:
+def _proper(orbit: Solution) -> bool:
     """Whether time runs forward through the nodes."""
     phases = np.append(orbit.nodes[:, 0], orbit.nodes[0, 0] + 2.0 * np.pi * orbit.periods)
     return bool(np.all(np.diff(phases) > -1e-9))
 
 
-def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
+def _simulated(
+    model: Model, word: Word, periods: int, params: np.ndarray, made: Any
+) -> tuple[Solution | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
-    from orbits.attractors.recurrence import find_attractor
-
     mirrored = model.has_mirror(params)
     target = word.canonical(mirrored)
     values = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
@@ -234,7 +232,7 @@ def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tu
             continue
         if attractor.word is None:
             continue
-        orbit = attractor.orbit
+        orbit = made.of(attractor.cycle)
         if orbit.word.impact_free:  # its mean position is free: take the middle
             orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
         if orbit.word.canonical(mirrored) == target and orbit.periods == periods:
@@ -251,7 +249,7 @@ def _simulated(model: Model, word: Word, periods: int, params: np.ndarray) -> tu
     return None, nearest
 
 
-def _aligned(orbit: Orbit, word: Word) -> Orbit:
+def _aligned(orbit: Solution, word: Word) -> Solution:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
     images = (orbit, orbit.mirror()) if orbit.model.has_mirror(orbit.params) else (orbit,)
     for candidate in images:
@@ -261,7 +259,7 @@ def _aligned(orbit: Orbit, word: Word) -> Orbit:
     return orbit
 
 
-def _random(model: Model, word: Word, periods: int, params: np.ndarray) -> Orbit | None:
+def _random(model: Model, word: Word, periods: int, params: np.ndarray, made: Any) -> Solution | None:
     """Newton's method from random nodes, where the machine has any: the first real orbit found, else the first proper one."""
     if len(word) > LONG:
         return None
@@ -271,7 +269,7 @@ def _random(model: Model, word: Word, periods: int, params: np.ndarray) -> Orbit
         nodes = model.random_nodes(word, periods, params, generator)
         if nodes is None:
             return None
-        orbit = polish(Orbit(model, word, periods, nodes, params), limit=25)
+        orbit = polish(made(model, word, periods, nodes, params), limit=25)
         if orbit is None or not _proper(orbit) or orbit.root().periods != periods:
             continue
         if orbit.real:

@@ -105,8 +105,9 @@ class Scanned(cv.AlgebraicProblem):
     """Made-up points: two multipliers, five margins, the mirror u -> -u."""
 
     def __init__(self):
-        super().__init__(lambda u, p: u - p, [0.0, 0.0], 0.0)
+        super().__init__(lambda u, p: u - p, [0.0, 0.0], 0.0, scale=1.0)
         self.n_multipliers, self.n_margins, self.spectrum = 2, 5, "map"
+        self.detection = ""
         self.symmetries = (Symmetry("symmetry-breaking", lambda u: -u),)
 
 

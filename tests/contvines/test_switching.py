@@ -12,7 +12,7 @@ from contvines.switching.departures import departures, null_vectors
 
 
 def engine_of(f, n):
-    return Engine(cv.AlgebraicProblem(f, np.zeros(n), -0.5), (-1.0, 1.0), Settings())
+    return Engine(cv.AlgebraicProblem(f, np.zeros(n), -0.5, scale=1.0), (-1.0, 1.0), Settings())
 
 
 @settings(max_examples=25, deadline=None)

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from orbits.doors import above
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import ShakenRest
 from orbits.machines.cavity.shaken import Shaken
 from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, Parameter, ParameterError
 from orbits.machines.rest import Rest
-
-if TYPE_CHECKING:
-    from orbits.orbit import Orbit
-    from orbits.words import Word
+from orbits.words import Word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +90,7 @@ class Absorber(Shaken):
         except ParameterError:
             return
 
-    def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Orbit:
+    def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Any:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters
@@ -107,9 +105,10 @@ class Absorber(Shaken):
         ParameterError
             If there is no symmetric orbit at this amplitude.
         """
-        from orbits.orbit import Orbit
         from orbits.words import Word
 
         params = self.vector({"amplitude": amplitude})
         nodes = symmetric_nodes(params, stable)
-        return Orbit(self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params)
+        return above("Orbit")(
+            self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params
+        )

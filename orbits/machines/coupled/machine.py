@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from orbits.doors import above
 from orbits.machines.base import Model
 from orbits.machines.coupled import closed_forms
 from orbits.machines.coupled.rest import DrivenRest
@@ -25,8 +26,6 @@ from orbits.machines.rest import Rest
 
 if TYPE_CHECKING:
     from orbits.machines.coupled.closed_forms import StuckResponse
-    from orbits.orbit import Orbit
-    from orbits.theory.multiple_scales import Equilibrium
     from orbits.words import Word
 
 
@@ -161,7 +160,7 @@ class Coupled(Model):
         return params
 
     # ------------------------------------------------------------------ orbits
-    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Orbit:
+    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Any:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters
@@ -185,7 +184,7 @@ class Coupled(Model):
             )
         return self._closed("LR", found[0 if fast else -1], params)
 
-    def sliding_orbit(self, **parameters: float) -> Orbit:
+    def sliding_orbit(self, **parameters: float) -> Any:
         """The symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
 
         Raises
@@ -202,7 +201,7 @@ class Coupled(Model):
             )
         return self._closed("tt", nodes, params)
 
-    def orbit_near(self, equilibrium: Equilibrium, **parameters: float) -> Orbit:
+    def orbit_near(self, equilibrium: Any, **parameters: float) -> Any:
         """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
 
         Parameters
@@ -219,14 +218,13 @@ class Coupled(Model):
         guess = self._closed(word, closed_forms.nodes_from_equilibrium(params, equilibrium), params)
         return self.orbit(word, 1, guess.nodes, **values)
 
-    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Orbit:
-        from orbits.orbit import Orbit
+    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Any:
         from orbits.words import Word
 
         reading = Word.parse(word, frictionless=self.frictionless(params))
         if reading.modes[0] != (-1 if word == "LR" else 1):
             nodes = np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
-        return Orbit(self, reading, 1, nodes, params)
+        return above("Orbit")(self, reading, 1, nodes, params)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         """Nodes to start from in closed form, where there are any: `LR`, `RL`, `tt`."""

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from orbits.cycles.measures import event_table
 from orbits.machines.base import Model
 from orbits.machines.coupled.damper import share_of_the_base
 from orbits.machines.coupled.flow import ahead, derivative, first_zero, leg, oscillation
+from orbits.machines.events import event_table
 from orbits.words import Word
 
 POWERS = ("input_work", "damping_loss", "force_work", "grounded_damping_loss")

@@ -193,7 +193,7 @@ class Physical(Model):
     @cached_property
     def units(self) -> dict[str, str]:
         """Units of quantities and measures by name; plain numbers have none."""
-        from orbits.cycles.measures import KINDS, names
+        from orbits.machines.measures import KINDS, names
 
         gauges: dict[str, Quantity] = self.tables.GAUGES
         found = dict(zip(self.amount_names, self.said))
@@ -291,6 +291,10 @@ class Physical(Model):
         return _made(self.base, numbers, self.basis, counts, self.said, self.unusual)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from orbits.machines.catalogue import build
+        return _again, (self.settings(),)
 
-        return build, (self.settings(),)
+
+def _again(settings: Mapping[str, Any]) -> Any:
+    """The machine with these settings."""
+    values = {key: value for key, value in settings.items() if key not in ("name", "units", "unusual")}
+    return physical(settings["name"], values, bool(settings["unusual"]))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from orbits import Coupled
 from orbits.machines.base import ParameterError
-from orbits.machines.catalogue import build
+from orbits.machines.building import build
 from orbits.machines.physical import QuantityError, physical
 
 FLAT = {

@@ -222,3 +222,29 @@ def test_without_friction_flights_may_reverse():
         restitution=0.76, friction=0.0, gravity=0.211, mass_ratio=0.006, forcing=2.47, damping=1.0
     ).symmetric_orbit(frequency=1.01)
     assert coupled.prove().real is coupled.real
+
+
+def test_the_cavity_with_unlike_walls_and_a_slope():
+    """Level and with equal sides it is the absorber, with the same nodes; else its own, against the floating orbit."""
+    from orbits.attractors import find_attractor
+    from orbits.machines.cavity.machine import Cavity
+
+    level = Cavity(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    same = level.orbit("LR", 1, guess=ABSORBER.symmetric_orbit(amplitude=0.6).nodes, amplitude=0.6).prove()
+    for node, other in zip(
+        same.nodes(), ABSORBER.symmetric_orbit(amplitude=0.6).prove().nodes(), strict=True
+    ):
+        for (a, r), (b, q) in zip(node, other, strict=True):
+            assert abs(Decimal(a) - Decimal(b)) <= Decimal(r) + Decimal(q)
+    machine = Cavity(
+        restitution_left=0.7, restitution_right=0.8, friction_left=0.4, friction_right=0.3, gravity=0.2,
+        slope=0.1, distance_left=1.1, distance_right=0.9, mass_ratio=0.006,
+    )  # fmt: skip
+    orbit = find_attractor(machine, amplitude=0.8).orbit
+    proof = orbit.prove()
+    assert (
+        (proof.existence, proof.real, proof.stable) == (True, orbit.real, orbit.stable) == (True, True, True)
+    )
+    for node, pairs in zip(orbit.nodes, proof.nodes(), strict=True):
+        assert all(abs(x - float(pair[0])) < 1e-8 for x, pair in zip(node, pairs, strict=True))
+    check(json.loads(json.dumps(proof.certificate())))

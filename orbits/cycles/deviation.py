@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.cycles.sampling import flight, lengths
+from orbits.cycles.sampling import flight, sample
+from orbits.machines.states import state_of
 from orbits.simulation.driver import machine, simulate
 from orbits.simulation.replay import replay
-from orbits.simulation.return_map import state_of
 
 if TYPE_CHECKING:
-    from orbits.orbit import Orbit
+    from orbits.cycles.solution import Solution
 
 AT_BORDER = 1e-4  # margins below this may make two events one
 DEFINITE = 1e-2  # speed after an event from which a simulation starts without doubt
@@ -26,13 +26,15 @@ STRETCHES = 32  # at most so many starts
 AGREED = 1e-9  # deviations below this need no second look
 
 
-def replay_error(orbit: Orbit) -> float:
+def replay_error(orbit: Solution) -> float:
     """Largest deviation of the simulation over one period of the orbit.
 
     Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
     unstable orbits the relative position w is compared at many instants as well, stretch by stretch, and the smaller
     deviation counts. Infinite if the simulation does something else.
     """
+    if not len(orbit.word):
+        return _from_rest(orbit)
     error = float(replay(orbit).error)
     margins = np.array([margin.value for margin in orbit.margins])
     delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(orbit.multipliers) > WILD)
@@ -41,7 +43,16 @@ def replay_error(orbit: Orbit) -> float:
     return min(error, position_error(orbit))
 
 
-def position_error(orbit: Orbit, points: int = 400) -> float:
+def _from_rest(orbit: Solution) -> float:
+    """Largest relative displacement in a simulation of two periods of the absorber at rest."""
+    motion = sample(orbit, 5)
+    start = {"phase": 0.0, "w": 0.0, "w_rate": 0.0}
+    start |= {name: float(motion[name][0]) for name in orbit.model.node_names[2:]}
+    run = simulate(orbit.model, start, periods=2.0, **orbit.parameters)  # type: ignore[arg-type]
+    return float(np.abs(run.sample().w).max())
+
+
+def position_error(orbit: Solution, points: int = 400) -> float:
     """Largest difference of the relative positions over one period.
 
     The simulation is started at every definite event and followed to the next one: an impact of vanishing speed has
@@ -56,10 +67,10 @@ def position_error(orbit: Orbit, points: int = 400) -> float:
     return max(follow(int(a), int(b - a)) for a, b in zip(places, ends, strict=True))
 
 
-def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
+def _follower(orbit: Solution, points: int) -> Callable[[int, int], float]:
     """The same from one event over the next ones, as a function of place and number of events."""
     model = orbit.model
-    engine, durations = machine(model.name), lengths(orbit)
+    engine, durations = machine(model.name), orbit.durations
     codes, modes = orbit.word.codes, orbit.word.modes
 
     def error(place: int, events: int) -> float:
@@ -81,7 +92,7 @@ def _follower(orbit: Orbit, points: int) -> Callable[[int, int], float]:
     return error
 
 
-def _calm(orbit: Orbit) -> np.ndarray:
+def _calm(orbit: Solution) -> np.ndarray:
     """Slips if there are any (friction gives way at a known phase), else all events."""
     slips = [i for i, letter in enumerate(orbit.word.events) if letter == "u"]
     return np.array(slips or range(len(orbit.word)))

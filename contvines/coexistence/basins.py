@@ -1,0 +1,208 @@
+"""Basins: which attractor each start of a plane reaches, how large their shares are, how ragged their boundary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..graph.attractor import Attractor
+from .population import population_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST = 4_000_000  # points of a picture
+CONFIDENCE = 1.96  # standard errors of a 95 % interval
+
+
+@dataclass
+class Basins:
+    """A plane of starts coloured by what they reach.
+
+    Attributes
+    ----------
+    parameter : str
+    value : float
+    axes : (str, str)
+        Names of the coordinates that vary.
+    x, y : float array (n,), (m,)
+        Their values.
+    fixed : dict
+        The other coordinates.
+    index : int array (m, n)
+        Which attractor the start at (x[j], y[i]) reaches.
+    mirrored : bool array (m, n)
+        Whether it reaches the mirror image.
+    attractors : list of Attractor
+        With their shares of the plane.
+    """
+
+    parameter: str
+    value: float
+    axes: tuple[str, str]
+    x: np.ndarray
+    y: np.ndarray
+    fixed: dict[str, float]
+    index: np.ndarray
+    mirrored: np.ndarray
+    attractors: list[Attractor] = field(default_factory=list)
+
+    def interval(self, k: int) -> tuple[float, float]:
+        """A 95 % interval (Wilson's) of the share of attractor `k` in the plane, its points taken as draws from it."""
+        n, share = self.index.size, self.attractors[k].share
+        z2 = CONFIDENCE**2
+        centre = (share + z2 / (2 * n)) / (1 + z2 / n)
+        half = CONFIDENCE / (1 + z2 / n) * np.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+        return float(max(centre - half, 0.0)), float(min(centre + half, 1.0))
+
+    def uncertainty_exponent(self) -> tuple[float, float]:
+        """Uncertainty exponent of the boundary and its standard error; 1: a smooth curve, near 0: riddled.
+
+        The share f(d) of points whose neighbour at distance d reaches another motion grows like d^alpha (Grebogi, McDonald,
+        Ott and Yorke, Phys. Lett. A 99 (1983) 415): a straight line through log f against log d, d = 1, 2, 4, ... points.
+
+        Raises
+        ------
+        ValueError
+            If all points reach one motion, or there are too few of them.
+        """
+        kinds = 2 * self.index + self.mirrored
+        distances, shares = [], []
+        d = 1
+        while 4 * d <= min(kinds.shape):
+            other = np.concatenate(
+                [(kinds[:, d:] != kinds[:, :-d]).ravel(), (kinds[d:] != kinds[:-d]).ravel()]
+            )
+            if other.mean() > 0.0:
+                distances.append(d)
+                shares.append(other.mean())
+            d *= 2
+        if len(distances) < 3:
+            raise ValueError(
+                "the plane has too few points, or one motion alone, to tell how ragged a boundary is"
+            )
+        fit, covariance = np.polyfit(np.log(distances), np.log(shares), 1, cov=True)
+        return float(fit[0]), float(np.sqrt(covariance[0, 0]))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Attractors, shares with their intervals, and the uncertainty exponent, ready for JSON."""
+        try:
+            exponent: Any = list(self.uncertainty_exponent())
+        except ValueError:
+            exponent = None
+        return {
+            "parameter": self.parameter,
+            "value": self.value,
+            "plane": list(self.axes),
+            "points": list(self.index.shape),
+            "fixed": self.fixed,
+            "attractors": [
+                a.to_dict() | {"interval": list(self.interval(k))} for k, a in enumerate(self.attractors)
+            ],
+            "uncertainty_exponent": exponent,
+        }
+
+    def plot(self, **options: Any) -> Figure:
+        """The plane in colours; see :func:`contvines.plots.basins.plot_basins`."""
+        from ..plots.basins import plot_basins
+
+        return plot_basins(self, **options)
+
+
+def basins(
+    machine: Any,
+    over: str | None = None,
+    at: float | None = None,
+    plane: Sequence[str] | None = None,
+    points: int | tuple[int, int] = 200,
+    within: Mapping[str, tuple[float, float]] | None = None,
+    fixed: Mapping[str, float] | None = None,
+) -> Basins:
+    """Simulate a plane of starts and tell what each reaches.
+
+    Parameters
+    ----------
+    machine : machine, orbit or problem
+        With a ``population``.
+    over : str, optional
+        Name of the parameter whose value `at` is.
+    at : float
+    plane : two names, optional
+        Coordinates of the plane; by default the last two of ``population.names`` among position and velocity.
+    points : int or (int, int)
+        Across and up.
+    within : mapping, optional
+        Ranges of the coordinates; by default the machine's box.
+    fixed : mapping, optional
+        The other coordinates; 0 by default.
+
+    Returns
+    -------
+    Basins
+
+    Raises
+    ------
+    ValueError
+        If a coordinate is unknown, or the numbers of points will not do.
+    """
+    population = population_of(machine, over)
+    if at is None:
+        raise ValueError(f"at = None: give the value of {population.parameter}, for example at=1.1")
+    names = population.names
+    if plane is not None and len(plane) != 2:
+        raise ValueError(f"plane = {plane!r}: give two names of {', '.join(names)}")
+    across, up = (str(n) for n in (plane or (names[1:3] if len(names) > 2 else names[:2])))
+    given = dict(fixed or {})
+    ranges = dict(within or {})
+    for name in (across, up, *given, *ranges):
+        if name not in names:
+            raise ValueError(f"{name!r} is no coordinate of a start; choose from {', '.join(names)}")
+    if across == up:
+        raise ValueError(
+            f"plane = {across!r}, {up!r}: choose two different coordinates of {', '.join(names)}"
+        )
+    columns, rows = (points, points) if isinstance(points, int) else points
+    if not (columns >= 2 and rows >= 2 and columns * rows <= MOST):
+        raise ValueError(f"points = {columns} x {rows}: give at least 2 each way, and at most {MOST} in all")
+    box = population.box(float(at))
+    limits = {name: ranges.get(name, tuple(box[names.index(name)])) for name in (across, up)}
+    for name, (low, high) in limits.items():
+        if not (np.isfinite(low) and np.isfinite(high) and low < high):
+            raise ValueError(
+                f"within: {name} = [{low:g}, {high:g}] is no interval; give the lower number first"
+            )
+    x = _cells(*limits[across], columns)
+    y = _cells(*limits[up], rows)
+    starts = np.zeros((rows * columns, len(names)))
+    for name, value in given.items():
+        starts[:, names.index(name)] = value
+    starts[:, names.index(across)] = np.tile(x, rows)
+    starts[:, names.index(up)] = np.repeat(y, columns)
+    motions, index, mirrored = population.settle(starts, float(at))
+    attractors = [
+        Attractor(
+            float(at), m.word, int(m.periods), m.kind, None, float((index == k).mean()),
+            float(((index == k) & mirrored).mean()), index.size, float(m.exponent), float(m.error),
+        )
+        for k, m in enumerate(motions)
+    ]  # fmt: skip
+    shape = (rows, columns)
+    return Basins(
+        population.parameter,
+        float(at),
+        (across, up),
+        x,
+        y,
+        {name: float(given.get(name, 0.0)) for name in names if name not in (across, up)},
+        index.reshape(shape),
+        mirrored.reshape(shape),
+        attractors,
+    )
+
+
+def _cells(low: float, high: float, count: int) -> np.ndarray:
+    """Centres of equal cells: no start on the very edge of the cavity."""
+    return low + (high - low) * (np.arange(count) + 0.5) / count

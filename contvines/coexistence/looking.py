@@ -1,0 +1,61 @@
+"""A brief look after a diagram: does simulation find what its graph does not have?"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..continuation.settings import Settings
+from ..graph.attractor import Attractor
+from ..graph.builder import adopt
+from ..graph.graph import Graph
+from ..graph.run import Run
+from ..journal import NullJournal
+from .build import locate
+from .census import census
+from .population import Population
+
+VALUES, STARTS = 5, 48  # few: a look costs a fraction of the diagram
+
+
+def look(graph: Graph, population: Population) -> list[Attractor]:
+    """Attractors that a few simulated starts reach and that lie on no branch of the graph; kept as ``graph.missing``.
+
+    Parameters
+    ----------
+    graph : Graph
+        With its problems.
+    population : Population
+    """
+    low, high = graph.within
+    names = Settings().to_dict()
+    settings = Settings.of({name: value for name, value in graph.settings.items() if name in names})
+    run = Run(graph, settings, NullJournal(), 0, True, None, None)
+    adopt(run)
+    found: list[Attractor] = []
+    for t in (np.arange(VALUES) + 0.5) / VALUES:
+        for counted in census(population, float(low + (high - low) * t), STARTS, 0, run.journal):
+            about = counted.attractor
+            if about.kind == "slow" or (counted.problem is not None and locate(run, counted) is not None):
+                continue
+            found.append(about)
+    graph.missing = found
+    return found
+
+
+def told(graph: Graph, command: str) -> str:
+    """What the look has found, in one line with the command that adds it; empty if nothing."""
+    if not graph.missing:
+        return ""
+    best: dict[tuple[str, int, str], Any] = {}
+    for about in graph.missing:
+        key = (about.word, about.periods, about.kind)
+        if key not in best or about.share > best[key].share:
+            best[key] = about
+    names = []
+    for about in sorted(best.values(), key=lambda a: -a.share)[:3]:
+        word = about.word or about.kind
+        names.append(f"{word} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})")
+    more = f" and {len(best) - 3} more" if len(best) > 3 else ""
+    return f"simulation also finds {', '.join(names)}{more}, on no branch here: {command}"

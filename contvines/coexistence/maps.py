@@ -1,0 +1,182 @@
+"""Starts of a plain map, and the cycles that they settle on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ..problems.maps import MapProblem
+
+TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur before
+LONGEST = 64  # of the cycles looked for
+RETURN = 1e-9  # difference that counts as a return, relative to the box
+NEAR = 1e-5  # a settled point lies so near to a solved cycle that it belongs to it
+FAR = 1e4  # times the box: escaped
+GROWTH = 4000  # iterations for a Lyapunov exponent
+SIGMAS = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """What some starts of a map settle on; a `contvines.coexistence.population.Motion`."""
+
+    kind: str
+    word: str = ""
+    periods: int = 0
+    problem: Any = field(default=None, repr=False)
+    u: np.ndarray | None = field(default=None, repr=False)
+    exponent: float = float("nan")
+    error: float = float("nan")
+
+
+class MapPopulation:
+    """Starts in a box of the map's states.
+
+    Parameters
+    ----------
+    problem : MapProblem
+    box : sequence of (low, high), optional
+        One pair per state; by default the cycle's own range, widened by its size on every side.
+    """
+
+    def __init__(self, problem: MapProblem, box: Sequence[tuple[float, float]] | None = None) -> None:
+        self.problem, self.parameter = problem, problem.parameter
+        points = problem.u0.reshape(-1, problem.node)
+        if box is None:
+            reach = np.maximum(np.ptp(points, axis=0), np.maximum(1.0, np.abs(points).max(axis=0)))
+            self._box = np.column_stack([points.min(axis=0) - reach, points.max(axis=0) + reach])
+        else:
+            self._box = np.array(box, dtype=float).reshape(-1, 2)
+            if self._box.shape != (problem.node, 2) or not np.all(self._box[:, 0] < self._box[:, 1]):
+                raise ValueError(f"box = {box!r}: give {problem.node} pairs (low, high), one per state")
+        self.size = float(np.ptp(self._box, axis=1).max())
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """The map's name."""
+        return {"name": self.problem.name}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """x0, x1, ..."""
+        return tuple(f"x{j}" for j in range(self.problem.node))
+
+    def box(self, p: float) -> np.ndarray:
+        """Ranges of the starts, shape (d, 2)."""
+        return self._box
+
+    def starts(self, count: int, seed: int, p: float) -> np.ndarray:
+        """Low-discrepancy starts (Sobol, scrambled by the seed), shape (count, d)."""
+        from scipy.stats import qmc
+
+        draw = qmc.Sobol(self.problem.node, scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
+        points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
+        return self._box[:, 0] + points * np.ptp(self._box, axis=1)
+
+    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Cycle], np.ndarray, np.ndarray]:
+        """Iterate all starts and recognise what they settle on; see `contvines.coexistence.population`."""
+        step = _Iteration(self.problem, p, np.asarray(starts, dtype=float))
+        x = np.array(starts, dtype=float)
+        n = len(x)
+        periods = np.zeros(n, dtype=int)  # 0: not yet, -1: escaped
+        for transient in TRANSIENTS:
+            left = np.flatnonzero(periods == 0)
+            if not left.size:
+                break
+            now = self._advance(step, x[left], transient)
+            first, period = now.copy(), np.zeros(len(left), dtype=int)
+            for k in range(1, LONGEST + 1):
+                now = self._advance(step, now, 1)
+                back = (np.abs(now - first).max(axis=1) < RETURN * self.size) & (period == 0)
+                period[back] = k
+            period[~np.all(np.isfinite(now), axis=1)] = -1
+            x[left], periods[left] = now, period
+        return self._sorted(step, x, periods, p)
+
+    def _advance(self, step: _Iteration, x: np.ndarray, count: int) -> np.ndarray:
+        middle = self._box.mean(axis=1)
+        for _ in range(count):
+            with np.errstate(all="ignore"):
+                x = step(x)
+                x[np.abs(x - middle).max(axis=1) > FAR * self.size] = np.nan
+        return x
+
+    def _sorted(
+        self, step: _Iteration, x: np.ndarray, periods: np.ndarray, p: float
+    ) -> tuple[list[Cycle], np.ndarray, np.ndarray]:
+        index = np.full(len(x), -1)
+        motions: list[Cycle] = []
+        for i in range(len(x)):
+            if index[i] >= 0:
+                continue
+            if periods[i] < 0:
+                here = periods < 0
+                motions.append(Cycle("escaped"))
+            elif periods[i] == 0:
+                here = periods == 0
+                motions.append(self._wandering(x[i], p))
+            else:
+                cycle = [x[i]]
+                for _ in range(periods[i] - 1):
+                    cycle.append(step(cycle[-1][None])[0])
+                points = np.array(cycle)
+                gaps = np.abs(x[:, None, :] - points[None]).max(axis=2).min(axis=1)
+                here = (gaps < NEAR * self.size) & (periods == periods[i])
+                problem = self.problem.cycle_through(points, p)
+                motions.append(
+                    Cycle("periodic", f"{periods[i]}-cycle", int(periods[i]), problem, points.ravel())
+                )
+            here[i] = True
+            index[here & (index < 0)] = len(motions) - 1
+        return motions, index, np.zeros(len(x), dtype=bool)
+
+    def _wandering(self, x: np.ndarray, p: float) -> Cycle:
+        """A motion that does not recur, told by the growth of a tangent vector; blocks give the error of the mean."""
+        functions = self.problem.functions
+        vector = np.ones(self.problem.node) / np.sqrt(self.problem.node)
+        logs = np.empty(GROWTH)
+        for k in range(GROWTH):
+            vector = functions.jacobian(x, p) @ vector
+            size = float(np.linalg.norm(vector))
+            logs[k] = np.log(max(size, 1e-300))
+            vector = vector / max(size, 1e-300)
+            x = functions.value(x, p)
+        means = logs.reshape(20, -1).mean(axis=1)
+        mean, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))
+        if mean > SIGMAS * error:
+            kind = "chaotic"
+        elif mean > -SIGMAS * error and self.problem.node > 1:
+            kind = "quasi-periodic"
+        else:
+            kind = "slow"
+        return Cycle(kind, exponent=mean, error=error)
+
+
+class _Iteration:
+    """The map on many points: at once where the function takes arrays of columns, else one by one."""
+
+    def __init__(self, problem: MapProblem, p: float, sample: np.ndarray) -> None:
+        self.functions, self.p = problem.functions, p
+        self.value = problem.values.at(p)
+        self.together = self._takes_columns(sample[:7])
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        if self.together:
+            return np.array(self.functions.f(np.ascontiguousarray(x.T), self.value), dtype=float).T.copy()
+        return np.array([self.one(point) for point in x])
+
+    def one(self, x: np.ndarray) -> np.ndarray:
+        """The image of one point, whatever it is."""
+        return np.asarray(self.functions.f(x, self.value), dtype=float).reshape(-1)
+
+    def _takes_columns(self, x: np.ndarray) -> bool:
+        try:
+            columns = np.array(self.functions.f(np.ascontiguousarray(x.T), self.value), dtype=float)
+            single = np.array([self.one(point) for point in x])
+        except Exception:  # a function of one point: whatever it says of columns
+            return False
+        return columns.shape == x.T.shape and np.array_equal(columns.T, single)

@@ -1,0 +1,105 @@
+"""Two graphs of one problem as one: what both have is kept once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..continuation.settings import Settings
+from ..graph.builder import adopt
+from ..graph.graph import Graph
+from ..graph.identity import same_form
+from ..graph.run import Run
+from ..journal import NullJournal
+
+
+def merge(graph: Graph, other: Graph) -> dict[str, str]:
+    """Add to a graph what another one has beside it; the first one is changed.
+
+    Parameters
+    ----------
+    graph, other : Graph
+        In the same parameter of the same machine, with their problems attached.
+
+    Returns
+    -------
+    dict
+        The labels of the other graph, and what they are called here.
+
+    Raises
+    ------
+    ValueError
+        If they are of different parameters or machines, or a branch has no problem.
+    """
+    _refuse_strangers(graph, other)
+    names = Settings().to_dict()
+    settings = Settings.of({name: value for name, value in graph.settings.items() if name in names})
+    run = Run(graph, settings, NullJournal(), 0, True, None, None)
+    adopt(run)
+    called: dict[str, str] = {}
+    for branch in other.branches.values():
+        middle = len(branch) // 2
+        known = run.register.find(
+            branch.problem, branch.points[middle], float(branch.values[middle]), branch.real
+        )
+        called[branch.label] = run.new_label("B") if known is None else known.label
+        if known is None:
+            added = replace(branch, label=called[branch.label])
+            graph.branches[added.label] = added
+            run.register.add(added, run.engine(added.problem)[0])
+    for point in other.special.values():
+        called[point.label] = _special(run, point, called)
+    fresh = {called[label] for label in other.branches} - {
+        b for b in called if b in graph.branches and called.get(b) == b
+    }
+    for label in fresh:
+        branch = graph.branches[label]
+        if any(mark not in graph.special for _, mark in branch.marks) or branch.seed not in (
+            None,
+            *graph.special,
+        ):
+            branch.marks = tuple((i, called.get(mark, mark)) for i, mark in branch.marks)
+            branch.seed = None if branch.seed is None else called.get(branch.seed, branch.seed)
+    for switch in other.switches:
+        run.connect(called[switch.point], called[switch.source], called[switch.target], switch.note)
+    attractors = [replace(a, branch=None if a.branch is None else called[a.branch]) for a in other.attractors]
+    graph.attractors = sorted([*graph.attractors, *attractors], key=lambda a: a.value)
+    graph.within = (min(graph.within[0], other.within[0]), max(graph.within[1], other.within[1]))
+    return called
+
+
+def _special(run: Run, point: Any, called: dict[str, str]) -> str:
+    """The label of a special point here: of the same one where there is one, else a new one."""
+    graph = run.graph
+    form = point.problem.canonical(point.u, point.value)
+    for known in graph.special.values():
+        near = abs(known.value - point.value) <= 1e-8 * run.unit(point.value)
+        if (
+            known.kind == point.kind
+            and near
+            and known.problem is not None
+            and same_form(run.form(known), form)
+        ):
+            return known.label
+    prefix = point.label.rstrip("0123456789")
+    label = run.new_label(prefix)
+    graph.special[label] = replace(point, label=label, branch=called[point.branch])
+    return label
+
+
+def _refuse_strangers(graph: Graph, other: Graph) -> None:
+    if graph.parameter != other.parameter:
+        raise ValueError(f"graphs over {graph.parameter} and over {other.parameter} cannot be merged")
+    for name, value in graph.model.items():
+        theirs = other.model.get(name, value)
+        numbers = isinstance(value, int | float) and isinstance(theirs, int | float)
+        if (numbers and not np.isclose(value, theirs, rtol=1e-12)) or (not numbers and theirs != value):
+            raise ValueError(
+                f"graphs of two machines cannot be merged: {name} = {value} here and {theirs} there"
+            )
+    for part in (graph, other):
+        lost = [b.label for b in part.branches.values() if b.problem is None]
+        if lost:
+            raise ValueError(f"{lost[0]} has no problem attached; use graph.attach(problem) before merging")

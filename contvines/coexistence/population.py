@@ -1,0 +1,76 @@
+"""What an atlas asks of a problem: starts, and the motions that they settle on.
+
+The contract, in words:
+
+1. ``population.starts(count, seed, p)`` draws starts, shape (count, n), over a box that the machine knows; the same for the
+   same seed.
+2. ``population.settle(starts, p)`` returns ``(motions, index, mirrored)``: the motions reached, each once; which of them each
+   start reaches; and whether it is the mirror image that it reaches. The result depends on the starts alone.
+3. A motion has ``kind``, ``word``, ``periods``, ``exponent`` and ``error`` (the largest Lyapunov exponent per period and its
+   standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None.
+4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Motion(Protocol):
+    """What some starts settle on; see item 3 of the contract."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def word(self) -> str: ...
+    @property
+    def periods(self) -> int: ...
+    @property
+    def problem(self) -> Any: ...
+    @property
+    def u(self) -> np.ndarray | None: ...
+    @property
+    def exponent(self) -> float: ...
+    @property
+    def error(self) -> float: ...
+
+
+class Population(Protocol):
+    """Starts of a problem and what becomes of them; see the contract at the top of this module."""
+
+    @property
+    def parameter(self) -> str: ...
+    @property
+    def about(self) -> dict[str, Any]: ...
+    @property
+    def names(self) -> tuple[str, ...]: ...
+
+    def box(self, p: float) -> np.ndarray: ...
+
+    def starts(self, count: int, seed: int, p: float) -> np.ndarray: ...
+
+    def settle(self, starts: np.ndarray, p: float) -> tuple[Sequence[Motion], np.ndarray, np.ndarray]: ...
+
+
+def population_of(thing: Any, over: str | None = None, **parameters: float) -> Population:
+    """The population of a machine, an orbit or a problem; a population is returned as it is.
+
+    Raises
+    ------
+    ValueError
+        If it has none, or no such parameter.
+    """
+    if hasattr(thing, "settle") and hasattr(thing, "starts"):
+        return thing
+    make = getattr(thing, "population", None)
+    if make is None:
+        problem = getattr(thing, "problem", None)  # an orbit
+        make = getattr(problem(over), "population", None) if callable(problem) else None
+    if make is None:
+        raise ValueError(
+            f"{type(thing).__name__} cannot be simulated from many starts: give a machine, one of its orbits, or a map"
+        )
+    return make(over, **parameters)

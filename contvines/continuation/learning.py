@@ -1,0 +1,161 @@
+"""Learning scales: a short, coarse continuation both ways from the start of a problem that is made of Python callables.
+
+It follows the branch far enough to see how large its unknowns become; its metric grows with what it sees. Nothing of it is kept
+but the sizes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..problems.scales import Scales, in_fields
+
+STEPS, FEW = 24, 6  # each way; few of them where there are many unknowns
+LARGE = 500  # unknowns
+LONGEST = 0.25  # step, in the metric
+TURN = 0.6  # largest angle between tangents
+CLOSE = 1e-7  # corrections at which a point is good enough
+SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
+SAMPLES = 4  # points at which eigenvalues are looked at
+
+
+class Scout:
+    """A coarse predictor-corrector whose scales grow with the unknowns.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ``lengths`` (N,), over which its equations bend, and ``bends`` (N,), whether they do.
+    within : (float, float)
+    """
+
+    def __init__(self, problem: Any, within: tuple[float, float]) -> None:
+        self.problem, self.within, self.n = problem, within, int(problem.dimension)
+        self.width = within[1] - within[0]
+        self.kernels, self.work = problem.kernels, problem.workspace()
+        self.first = np.array(problem.lengths, dtype=float)
+        self.scale = self.first.copy()
+        self.low = self.high = np.append(problem.u0, problem.p0)
+        self.rows = np.zeros(self.n)
+        self.rates: list[float] = []
+        self.noise = 0.0
+
+    # ------------------------------------------------------------------ one point
+    def weights(self) -> np.ndarray:
+        return np.append(1.0 / (self.n * self.scale**2), 1.0 / self.width**2)
+
+    def _length(self, vector: np.ndarray) -> float:
+        return math.sqrt(float((self.weights() * vector) @ vector))
+
+    def _correct(
+        self, z: np.ndarray, border: np.ndarray, sweeps: int
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """The solution with border.z as it is, and its tangent."""
+        z, target = z.copy(), float(border @ z)
+        step, tangent = np.zeros(self.n + 1), np.zeros(self.n + 1)
+        before = math.inf
+        for sweep in range(sweeps):
+            if not self.kernels.linearise(self.problem.data, z[:-1], float(z[-1]), self.work) < math.inf:
+                return None
+            self.kernels.bordered(
+                self.problem.data, self.work, border, target - float(border @ z), step, tangent
+            )
+            size = float((np.abs(step[:-1]) / (self.scale + np.abs(z[:-1]))).max())
+            size = max(size, abs(float(step[-1])) / self.width)
+            if not math.isfinite(size) or (sweep > 3 and size > 2.0 * before and size > SETTLED):
+                return None
+            z += step
+            if size < CLOSE or (size < SETTLED and size > 0.3 * before):
+                return (z, tangent) if np.isfinite(tangent).all() else None
+            before = size
+        return None
+
+    def _saw(self, z: np.ndarray, first: bool) -> None:
+        if first:
+            self.low = self.high = z
+        self.low, self.high = np.minimum(self.low, z), np.maximum(self.high, z)
+        extent = 0.5 * (self.high - self.low)[:-1]
+        self.scale = in_fields(np.maximum(self.first, extent))
+        rows = self.problem.row_sizes(self.work, self.scale, self.width)
+        self.rows = np.maximum(self.rows, rows)
+        if len(self.rates) < SAMPLES:
+            self.rates += self.problem.rates(self.work)
+
+    # ------------------------------------------------------------------ the way
+    def start(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """A solution near the start, at the fixed parameter or with a fixed unknown, and its tangent."""
+        z = np.append(self.problem.u0, self.problem.p0)
+        for i in (self.n, *range(min(self.n, 8))):
+            border = np.zeros(self.n + 1)
+            border[i] = 1.0
+            found = self._correct(z, border, 40)
+            if found is not None and self.within[0] <= found[0][-1] <= self.within[1]:
+                self._saw(found[0], True)
+                return found
+        return None
+
+    def walk(self, z: np.ndarray, tangent: np.ndarray, steps: int) -> None:
+        """Follow the branch for some steps in the direction of the tangent."""
+        h = 0.02
+        for _ in range(steps):
+            tangent = tangent / self._length(tangent)
+            guess, border = z + h * tangent, self.weights() * tangent
+            found = self._correct(guess, border, 7)
+            if found is None:
+                h *= 0.25
+                continue
+            ahead = found[1] / self._length(found[1])
+            cosine = float((self.weights() * tangent) @ ahead)
+            if math.sqrt(max(0.0, 2.0 - 2.0 * cosine)) > TURN or self._length(found[0] - guess) > h:
+                h *= 0.3
+                continue
+            if not self.within[0] <= found[0][-1] <= self.within[1]:
+                return
+            z, tangent = found[0], ahead
+            self._saw(z, False)
+            h = min(1.7 * h, LONGEST)
+
+    def scales(self, given: np.ndarray | None) -> Scales:
+        """What was seen; ``given`` wins over it."""
+        extent = 0.5 * (self.high - self.low)
+        size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
+        bends, first = np.asarray(self.problem.bends), self.first
+        moved = extent[:-1] > 1e-6 * np.where(bends, first, np.maximum(size, 1e-300))
+        rest = np.where(bends, first, np.where(size > 0.0, size, 1.0))
+        seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
+        own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
+        unknowns = in_fields(own) if given is None else given
+        unit = self.width if extent[-1] <= 0.0 else float(min(self.width, 2.0 * extent[-1]))
+        rows = np.where(self.rows > 0.0, self.rows, 1.0)
+        rate = float(np.exp(np.mean(np.log(self.rates)))) if self.rates else 1.0
+        return Scales(unknowns, unit, rows, rate, self.noise)
+
+
+def learn(problem: Any, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:
+    """Scales of a problem within an interval.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ``u0``, ``p0``, ``lengths``, ``bends``, ``row_sizes`` and ``rates``.
+    within : (float, float)
+    given : ndarray, optional
+        Scales of the unknowns where the user has given them.
+    """
+    scout = Scout(problem, within)
+    if given is not None:
+        scout.first = given
+        scout.scale = given.copy()
+    begin = scout.start()
+    if begin is None:
+        return Scales(in_fields(scout.first), scout.width, np.ones(scout.n), 1.0, 0.0)
+    z, tangent = begin
+    across = scout.weights() * tangent
+    scout.noise = problem.noise_at(scout.work, scout.scale, across / np.abs(across).max())
+    steps = STEPS if scout.n <= LARGE else FEW
+    scout.walk(z, tangent, steps)
+    scout.walk(z, -tangent, steps)
+    return scout.scales(given)

@@ -1,0 +1,84 @@
+"""Basins of attraction as a coloured plane of starts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..graph.shortening import short_word
+from .figures import new_axes, settle, styled
+from .legends import NARROW
+from .style import axis_label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..coexistence.basins import Basins
+
+COLORS = ("#2a6f97", "#e9a23b", "#7b3f8c", "#3f8f4f", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
+IMAGE = 0.45  # how much lighter the basin of a mirror image is
+START = {
+    "w": "position $w$ of the start",
+    "w_rate": "velocity $w'$ of the start",
+    "phase": "phase of the start",
+}
+
+
+def plot_basins(
+    basins: Basins,
+    *,
+    axes: Axes | None = None,
+    legend: bool = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
+    """Draw which motion each start reaches; mirror images have the same colour, lighter.
+
+    Parameters
+    ----------
+    basins : Basins
+    axes : Axes, optional
+        Drawn on; without, a new figure of `figsize` inches.
+    legend : bool
+        Name the motions and their shares.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
+    """
+    from matplotlib.colors import to_rgb
+    from matplotlib.patches import Patch
+
+    count = len(basins.attractors)
+    base = np.array([to_rgb(COLORS[k % len(COLORS)]) for k in range(max(count, 1))])
+    light = base + IMAGE * (1.0 - base)
+    picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
+    with styled(style):
+        figure, axes = new_axes(axes, figsize=figsize)
+        axes.grid(False)
+        half_x, half_y = (0.5 * (v[1] - v[0]) for v in (basins.x, basins.y))
+        extent = (basins.x[0] - half_x, basins.x[-1] + half_x, basins.y[0] - half_y, basins.y[-1] + half_y)
+        axes.imshow(picture, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
+        if basins.axes[0] == "w":
+            axes.invert_xaxis()  # w = +1 is the left wall, and stands on the left
+        axes.set_xlabel(START.get(basins.axes[0], axis_label(basins.axes[0])))
+        axes.set_ylabel(START.get(basins.axes[1], axis_label(basins.axes[1])))
+        axes.set_title(f"{basins.parameter} = {basins.value:.8g}")
+        if legend:
+            entries = []
+            for k, about in enumerate(basins.attractors):
+                name = short_word(about.word, 20) if about.word else about.kind
+                cycles = f", k={about.periods}" if about.periods > 1 else ""
+                entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}"))
+                if 0.0 < about.mirror_share < about.share:
+                    entries.append(Patch(color=light[k], label="its mirror image"))
+            narrow = figure.get_size_inches()[0] < NARROW
+            place = "outside lower center" if narrow else "outside right upper"
+            options: dict[str, Any] = {"loc": place, "ncols": 2 if narrow else 1, "frameon": False}
+            if figure.axes == [axes] and figure.get_layout_engine() is not None:
+                figure.legend(handles=entries, **options)
+            else:
+                axes.legend(handles=entries)
+        settle(figure)
+    return figure

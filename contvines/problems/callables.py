@@ -1,0 +1,166 @@
+"""What problems made of Python callables have in common: parameters, scales, checks, and what they say when they fail."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import copy
+from typing import Any, Self
+
+import numpy as np
+
+from . import dense, sparse
+from .derivatives import Differentiated
+from .functions import NotEvaluable
+from .parameters import ParameterSet
+from .pieces import Pieces
+from .protocol import ProblemDefaults
+from .scales import Scales
+
+NOTICED = 1e-13  # noise of the unknowns below this is roundoff
+WORST = 1e-4  # more noise than this is not believed
+
+
+class CallableProblem(ProblemDefaults):
+    """A problem whose equations are Python callables.
+
+    Attributes
+    ----------
+    values : ParameterSet
+    functions : Differentiated
+    u0 : ndarray
+        The start.
+    given_scale : ndarray or None
+        Scale of each unknown, as far as the user has given it.
+    scales : Scales or None
+        None until they have been learned.
+    trouble : str
+        Why the equations could not be evaluated the last time that happened.
+    """
+
+    values: ParameterSet
+    functions: Differentiated
+    u0: np.ndarray
+    given_scale: np.ndarray | None = None
+    scales: Scales | None = None
+    reference: np.ndarray | None = None
+    trouble = ""
+
+    given: dict[str, Any]
+    pieces: Pieces
+
+    def _wrapped(self, pieces: Pieces) -> tuple[Any, Any, Any]:
+        """The equations and their given derivatives in a piece."""
+        return tuple(pieces.wrap(self.given[key]) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
+
+    # ------------------------------------------------------------------ parameters
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter that varies."""
+        return self.values.varying
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name; of the one that varies the value at the start."""
+        return dict(self.values.values)
+
+    @property
+    def p0(self) -> float:
+        """Value of the varying parameter at the start."""
+        return self.values.start
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Self:
+        """The same problem with another parameter varying, and with other values of some parameters.
+
+        Cheap: nothing is evaluated. Scales are learned again where another parameter varies.
+        """
+        other = copy(self)
+        other.values = self.values.against(parameter, values)
+        other.functions = self.functions.against(other.values)
+        if parameter != self.parameter:
+            other.scales = other.reference = None
+        return other._own()
+
+    def _own(self) -> Self:
+        """To be called on a copy: what refers to the problem refers to the copy."""
+        self.data = self
+        return self
+
+    # ------------------------------------------------------------------ scales
+    node: int
+
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the unknowns (over the first point of a cycle)."""
+        return float(np.linalg.norm(direction[: self.node]))
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """Length over which the equations bend in each unknown."""
+        return self.functions.lengths
+
+    @property
+    def bends(self) -> np.ndarray:
+        """Whether they bend in each unknown at all."""
+        return self.functions.bends
+
+    @property
+    def noise(self) -> float:
+        """Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff."""
+        return 0.0 if self.scales is None else self.scales.noise
+
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""
+        if self.scales is None:
+            from ..continuation.learning import learn
+
+            self.scales = learn(self, within, self.given_scale)
+        return self.scales.joined()
+
+    def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
+        """Largest change of each equation when one unknown or the parameter changes by its scale."""
+        return np.maximum(self.algebra.row_sizes(work, scale), np.abs(work.derivative) * width)
+
+    def rates(self, work: Any) -> list[float]:
+        """Sizes of the eigenvalues of dF/du, where they are wanted and can be had cheaply."""
+        return []
+
+    def noise_at(self, work: Any, scale: np.ndarray, border: np.ndarray) -> float:
+        """How much the noise of the equations moves a solution along the row `border`, relative to the scale.
+
+        `work` has the linearisation.
+        """
+        if not self.functions.noise.any():
+            return 0.0
+        n, step, tangent = self.dimension, np.zeros(self.dimension + 1), np.zeros(self.dimension + 1)
+        copies = n // len(self.functions.noise)
+        work.residual[:] = np.tile(self.functions.noise, copies)
+        self.kernels.bordered(self, work, border, 0.0, step, tangent)
+        moved = float((np.abs(step[:n]) / scale).max())
+        return min(moved, WORST) if np.isfinite(moved) and moved > NOTICED else 0.0
+
+    # ------------------------------------------------------------------ algebra
+    @property
+    def algebra(self) -> Any:
+        """The module with the kernels that fit the Jacobian."""
+        return dense if self.functions.structure == "dense" else sparse
+
+    @property
+    def kernels(self) -> Any:
+        """The kernels that fit the Jacobian: dense, sparse, or matrix-free."""
+        return self.algebra.KERNELS
+
+    def workspace(self) -> Any:
+        """Arrays for the kernels."""
+        return self.algebra.workspace(self)
+
+    # ------------------------------------------------------------------ what is wrong
+    def check(self, u: np.ndarray, p: float) -> str | None:
+        """A sentence on given derivatives that disagree with the equations at a solution; None if they agree."""
+        return self.functions.disagreement(u, p)
+
+    def _check_start(self, u: np.ndarray) -> None:
+        try:
+            wrong = self.functions.disagreement(u, self.p0)
+        except NotEvaluable as error:
+            wrong = str(error)
+        if wrong is not None:
+            raise ValueError(wrong)

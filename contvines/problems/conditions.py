@@ -1,0 +1,83 @@
+"""Conditions: what picks one solution from a continuous family of equivalent ones.
+
+A continuous symmetry makes every solution that it moves one of a family, and dF/du singular. With one condition g(u, p) = 0 for
+each such symmetry, and one more unknown a for each condition, the system
+
+    F(u, p) + a c = 0,   g(u, p) = 0,   c = dg/du at the start
+
+is regular again, and a = 0 on its solutions where c is not orthogonal to the left null vector (for gradients F never).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.linalg import null_space
+
+from .derivatives import Differentiated
+from .parameters import ParameterSet
+from .spectra import without_roundoff
+
+
+class Conditions:
+    """Conditions and their multipliers.
+
+    Parameters
+    ----------
+    given : list of callable
+        (u, p) -> number.
+    functions : Differentiated
+        The equations, for the lengths over which unknowns vary.
+    u : ndarray, shape (n,)
+        The start.
+
+    Raises
+    ------
+    ValueError
+        If a condition cannot be evaluated at the start or does not depend on u there.
+    """
+
+    def __init__(self, given: list[Callable], functions: Differentiated, u: np.ndarray) -> None:
+        self.given, self.count, self.node = given, len(given), len(u)
+
+        def together(u: np.ndarray, p: Any) -> np.ndarray:
+            return np.array([np.asarray(g(u, p)).reshape(-1)[0] for g in given])
+
+        self.functions = functions.of(together, None, None, "conditions", len(given))
+        gradient = self.functions.jacobian(u, functions.parameters.start)
+        sizes = np.linalg.norm(gradient, axis=1)
+        if not (np.isfinite(sizes).all() and (sizes > 0.0).all()):
+            raise ValueError(
+                "conditions: one of them does not depend on u at the start, so it picks no solution"
+            )
+        self.directions = (gradient / sizes[:, None]).T
+
+    def extended(self, u: np.ndarray) -> np.ndarray:
+        """u with multipliers zero."""
+        return np.append(u, np.zeros(self.count))
+
+    def equations(
+        self, u: np.ndarray, p: float, functions: Differentiated, values: ParameterSet
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The larger system, its Jacobian and its parameter derivative."""
+        n, own, amounts = self.node, u[: self.node], u[self.node :]
+        self.functions.parameters = values
+        jacobian = np.zeros((n + self.count, n + self.count))
+        jacobian[:n, :n] = functions.jacobian(own, p)
+        jacobian[:n, n:] = self.directions
+        jacobian[n:, :n] = self.functions.jacobian(own, p)
+        return (
+            np.append(functions.value(own, p) + self.directions @ amounts, self.functions.value(own, p)),
+            jacobian,
+            np.append(functions.derivative(own, p), self.functions.derivative(own, p)),
+        )
+
+    def eigenvalues(self, jacobian: np.ndarray) -> np.ndarray:
+        """Eigenvalues of dF/du but for the zeros that belong to the symmetries."""
+        n = self.node
+        right, left = null_space(jacobian[n:, :n]), null_space(self.directions.T)
+        return without_roundoff(
+            np.linalg.eigvals(np.linalg.solve(left.T @ right, left.T @ jacobian[:n, :n] @ right))
+        )

@@ -1,0 +1,157 @@
+"""Differences with an error estimate, and what they tell of a function: lengths over which it bends, its noise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import factorial
+from typing import NamedTuple
+
+import numpy as np
+
+STEP = 6e-3  # part of a length: roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
+# sixth-order central difference: weights of f(x + k h) - f(x - k h), Fornberg, Math. Comp. 51 (1988) 699, table 1
+SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
+FOURTH = (2.0 / 3.0, -1.0 / 12.0)
+EPS = float(np.finfo(float).eps)
+GOOD = 1e-13  # relative error at which a difference is taken without trying a smaller step
+FACTOR = 64.0  # between the lengths that are tried by `bend`
+REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
+
+Line = Callable[[float], np.ndarray]
+
+
+class Difference(NamedTuple):
+    """A derivative, the estimated error of each of its entries, and whether that is roundoff: a smaller step does not help."""
+
+    value: np.ndarray
+    error: np.ndarray
+    settled: bool
+
+
+def central(f: Line, h: float, noise: float | np.ndarray = 0.0) -> Difference:
+    """Sixth-order central difference at 0.
+
+    The error is estimated from the difference to the fourth-order one, of which a hundredth is kept (for a function that bends
+    over a length L the ratio of the two errors is about (h/L)^2), and from the roundoff of f.
+
+    Parameters
+    ----------
+    f : callable
+        t -> ndarray.
+    h : float
+    noise : float or ndarray
+        Standard deviation of f beyond roundoff.
+    """
+    ahead, back = [f(k * h) for k in (1, 2, 3)], [f(-k * h) for k in (1, 2, 3)]
+    odd = [a - b for a, b in zip(ahead, back)]
+    with np.errstate(all="ignore"):
+        sixth = (SIXTH[0] * odd[0] + SIXTH[1] * odd[1] + SIXTH[2] * odd[2]) / h
+        fourth = (FOURTH[0] * odd[0] + FOURTH[1] * odd[1]) / h
+        size = np.maximum(np.abs(ahead[0]), np.abs(back[0]))
+        truncation, roundoff = 0.01 * np.abs(sixth - fourth), (noise + EPS * size) / h
+    settled = bool(truncation.max(initial=0.0) <= roundoff.max(initial=0.0))
+    return Difference(sixth, truncation + roundoff, settled)
+
+
+def along(f: Line, length: float, noise: float | np.ndarray = 0.0) -> Difference:
+    """Derivative at 0 of a function of one real variable, with steps that shrink until the estimated error is small.
+
+    Parameters
+    ----------
+    f : callable
+        t -> ndarray.
+    length : float
+        Over which f may bend; the first step is a small part of it, the larger the more noise there is.
+    noise : float or ndarray
+        Standard deviation of f beyond roundoff.
+
+    Returns
+    -------
+    Difference
+        The best of those tried; not finite where f cannot be evaluated.
+    """
+    found = best = central(f, STEP * length, noise)
+    least = _relative(best)
+    if least <= GOOD or (best.settled and not np.any(np.asarray(noise) > 0.0)):
+        return best
+    rough = bool(np.any(np.asarray(noise) > 0.0))
+    h, worse = (16.0 if rough else 0.125) * STEP * length, 0
+    for _ in range(16):
+        found = central(f, h, noise)
+        error = _relative(found)
+        if error < least or not np.isfinite(least):
+            best, least, worse = found, error, 0
+        elif np.isfinite(error):
+            worse += 1
+        if least <= GOOD or worse == 3 or found.settled:
+            break
+        h *= 0.125
+    return best
+
+
+def _relative(found: Difference) -> float:
+    """Largest error relative to the largest entry; infinity where it is not finite."""
+    size, error = float(np.abs(found.value).max(initial=0.0)), float(found.error.max(initial=0.0))
+    if not np.isfinite(size + error):
+        return np.inf
+    return error / size if size > 0.0 else float(error > 0.0)
+
+
+def bend(f: Line, guess: float, enough: int = REACH) -> float | None:
+    """Length over which f stops being linear, to within an order of magnitude; None if it is linear, or no power law ends.
+
+    The change of f grows like t as long as t is small; the length is where it stops to.
+
+    Parameters
+    ----------
+    f : callable
+        t -> ndarray; may be not finite far away.
+    guess : float
+        Lengths around this one are tried.
+    enough : int
+        How many on either side.
+    """
+    with np.errstate(all="ignore"):
+        here = f(0.0)
+        floor = 1e3 * EPS * np.abs(here)
+        lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
+        odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
+        even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
+        seen = np.abs(odd) > floor + 1e3 * EPS * np.abs(odd).min(axis=0, initial=np.inf)
+        slope = odd / lengths[:, None]
+        found = np.inf
+        for r in range(odd.shape[1]):
+            first = int(np.argmax(seen[:, r]))
+            if not seen[first, r]:
+                continue
+            reference = slope[first, r]
+            bent = np.abs(slope[:, r] - reference) + np.abs(even[:, r]) / lengths > 0.5 * abs(reference)
+            bent = (bent | ~np.isfinite(odd[:, r])) & (np.arange(len(lengths)) > first)
+            if bent.any():
+                k = int(np.argmax(bent))
+                found = min(found, float(lengths[k]) / np.sqrt(FACTOR))
+    return found if np.isfinite(found) else None
+
+
+def noise_of(f: Line, spacing: float, samples: int = 9) -> np.ndarray:
+    """Noise of each entry of f: its standard deviation, from a table of differences.
+
+    More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33 (2011) 1292: the k-th difference of noise of
+    variance s^2 has variance s^2 (2 k)!/(k!)^2, while that of a smooth function vanishes.
+
+    Parameters
+    ----------
+    f : callable
+        t -> ndarray.
+    spacing : float
+        Small against the length over which f bends.
+    samples : int
+    """
+    table = np.array([f(k * spacing) for k in range(samples)])
+    estimates = []
+    for k in range(1, 7):
+        table = np.diff(table, axis=0)
+        gamma = factorial(k) ** 2 / factorial(2 * k)
+        if k >= 4:
+            estimates.append(np.sqrt(gamma * (table**2).mean(axis=0)))
+    return np.median(estimates, axis=0)

@@ -1,0 +1,70 @@
+"""A user's function, called so that it can harm nothing, and its failures as sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .parameters import ParameterSet
+
+
+class NotEvaluable(ArithmeticError):
+    """A user's function could not be evaluated; the message is a sentence with the function's own words."""
+
+
+class UserFunction:
+    """f(u, p) of a user: sees a read-only u, and what it returns is copied.
+
+    Parameters
+    ----------
+    f : callable
+        (u, p) -> numbers.
+    name : str
+        For messages.
+    parameters : ParameterSet
+    """
+
+    def __init__(self, f: Callable[..., Any], name: str, parameters: ParameterSet) -> None:
+        self.f, self.name, self.parameters = f, name, parameters
+
+    def raw(self, u: np.ndarray, p: Any) -> Any:
+        """What f returns, whatever it is.
+
+        Raises
+        ------
+        NotEvaluable
+            If f raises anything but an interrupt.
+        """
+        view = u.view()
+        view.setflags(write=False)
+        try:
+            return self.f(view, self.parameters.at(p))
+        except Exception as error:
+            hint = ""
+            if isinstance(error, ValueError) and "read-only" in str(error):
+                hint = f" ({self.name} must not change its argument; let it work on u.copy())"
+            raise NotEvaluable(f"{self.name} raises {type(error).__name__}: {error}{hint}") from error
+
+    def __call__(self, u: np.ndarray, p: Any) -> np.ndarray:
+        """A flat array of its own: real for real arguments, complex for complex ones.
+
+        Raises
+        ------
+        NotEvaluable
+            If f raises, or returns complex numbers for real ones, or no numbers at all.
+        """
+        value = self.raw(u, p)
+        try:
+            result = np.array(value)
+            if result.dtype.kind == "c":
+                if u.dtype.kind != "c" and not isinstance(p, complex):
+                    if np.any(np.imag(result)):
+                        raise NotEvaluable(f"{self.name} returns complex numbers")
+                    result = np.real(result).copy()
+            elif result.dtype != np.float64:
+                result = result.astype(np.float64)
+        except (TypeError, ValueError) as error:
+            raise NotEvaluable(f"{self.name} returns no array of numbers: {error}") from error
+        return result.reshape(-1)

@@ -1,0 +1,155 @@
+"""Pieces: equations whose form is selected by the signs of switches.
+
+A solution lives in one piece: for every node (a map's cycle has several) one sign for every switch. Inside, each switch times its
+sign is positive: these are the margins of the problem, and where one of them vanishes the branch meets a border. On the other
+side the equations have the sign turned round. With both tangents at hand the crossing is typed:
+
+persistence        the branch goes on, in the piece next door;
+nonsmooth fold     both pieces have their solutions on the same side of the parameter;
+nonsmooth flip     (maps) a cycle of twice the length, with the sign turned in one of its halves, is born at the border.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from copy import copy
+from typing import Any
+
+import numpy as np
+
+from .functions import NotEvaluable, UserFunction
+from .parameters import ParameterSet
+from .protocol import Seed
+
+
+class Pieces:
+    """Switches and the signs that select a piece.
+
+    Parameters
+    ----------
+    switches : mapping of str to callable, or None
+        (u, p) -> number.
+    parameters : ParameterSet
+    nodes : ndarray, shape (m, d)
+        Where the signs are taken from.
+
+    Raises
+    ------
+    ValueError
+        If a switch is no function, or cannot be evaluated at a node.
+    """
+
+    def __init__(
+        self, switches: Mapping[str, Callable] | None, parameters: ParameterSet, nodes: np.ndarray
+    ) -> None:
+        for name, switch in (switches or {}).items():
+            if not (isinstance(name, str) and callable(switch)):
+                raise ValueError(f"switches: {name!r} must be a name with a function (u, p) -> number")
+        self.given, self.parameters = dict(switches or {}), parameters
+        self.switches = [UserFunction(f, f"the switch {name}", parameters) for name, f in self.given.items()]
+        try:
+            values = np.array([self._at(node, parameters.start) for node in nodes])
+        except NotEvaluable as error:
+            raise ValueError(f"{error}, at the start") from error
+        self.signs = np.where(values >= 0.0, 1, -1).reshape(len(nodes), len(self.switches))
+        self.current = 0
+
+    def _at(self, u: np.ndarray, p: float) -> np.ndarray:
+        return np.array([float(switch(u, p)[0]) for switch in self.switches])
+
+    @property
+    def count(self) -> int:
+        """Number of margins."""
+        return self.signs.size
+
+    @property
+    def key(self) -> tuple[int, ...]:
+        """The signs, hashable."""
+        return tuple(int(sign) for sign in self.signs.reshape(-1))
+
+    @property
+    def word(self) -> str:
+        """The signs as text: a group for each node, ``+-|--``."""
+        return "|".join("".join("+" if sign > 0 else "-" for sign in node) for node in self.signs)
+
+    def wrap(self, f: Any) -> Any:
+        """A function, or a mapping of functions, (u, p, sign) as one of (u, p), in the piece of the current node."""
+        if f is None or not self.switches:
+            return f
+        if isinstance(f, Mapping):
+            return {name: self.wrap(part) for name, part in f.items()}
+        call: Callable[..., Any] = f
+        return lambda u, p: call(u, p, self._current_signs())
+
+    def _current_signs(self) -> dict[str, int]:
+        return dict(zip(self.given, (int(sign) for sign in self.signs[self.current])))
+
+    def margins(self, nodes: np.ndarray, p: float) -> np.ndarray:
+        """Switches times their signs, flat."""
+        try:
+            values = np.array([self._at(node, p) for node in nodes])
+        except NotEvaluable:
+            return np.full(self.count, np.nan)
+        return (values * self.signs).reshape(-1)
+
+    def turned(self, j: int, copies: int = 1) -> Pieces:
+        """With the sign of margin j turned round, and behind it `copies` - 1 more cycles with the signs as they are."""
+        other = copy(self)
+        signs = [self.signs.copy() for _ in range(copies)]
+        signs[0].reshape(-1)[j] *= -1
+        other.signs = np.concatenate(signs)
+        return other
+
+    def repeated(self, times: int, of: int | None = None) -> Pieces:
+        """The signs of so many cycles in a row; ``of``: of the first nodes only."""
+        other = copy(self)
+        other.signs = np.tile(self.signs[:of], (times, 1))
+        return other
+
+    def beyond(self, problem: Any, point: Any) -> list[Seed]:
+        """What leaves a border: the solution of the piece next door, and of maps the cycle of twice the length.
+
+        Parameters
+        ----------
+        problem : AlgebraicProblem or MapProblem
+            With ``with_pieces`` (and ``doubled_with`` for maps).
+        point : SpecialPoint
+            Its tangent points out of the piece.
+        """
+        j = point.margin_index
+        seeds = []
+        doubled = getattr(problem, "doubled_with", None)
+        candidates = [(problem.with_pieces(self.turned(j)), point.u, False)]
+        if doubled is not None:
+            candidates.append((doubled(self.turned(j, 2)), np.tile(point.u, 2), True))
+        for other, u, flip in candidates:
+            tangent = _inward(other, u, point.value, j)
+            if tangent is None:
+                continue
+            persistence = bool(tangent[-1] * point.tangent[-1] > 0.0)
+            if flip:
+                note = "nonsmooth flip"
+            else:
+                note = "persistence" if persistence else "nonsmooth fold"
+            seeds.append(Seed(other, u, point.value, tangent, "border", note, persistence and not flip))
+        return seeds
+
+
+def _inward(problem: Any, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
+    """The tangent of a problem's branch through a border point, along which margin j grows; None if there is none."""
+    n = problem.dimension
+    work, step, tangent = problem.workspace(), np.zeros(n + 1), np.zeros(n + 1)
+    u = np.ascontiguousarray(u, dtype=float)
+    if not problem.kernels.linearise(problem, u, p, work) < np.inf:
+        return None
+    border = np.random.default_rng(6).uniform(0.5, 1.0, n + 1)
+    problem.kernels.bordered(problem, work, border, 0.0, step, tangent)
+    if not np.isfinite(tangent).all() or not tangent.any():
+        return None
+    size = float(np.abs(tangent).max())
+    h = 1e-5 * float(np.abs(np.append(u, p)).max() or 1.0) / size
+    ahead, back = (problem.margins(u + s * h * tangent[:-1], p + s * h * tangent[-1]) for s in (1.0, -1.0))
+    growth = ahead[j] - back[j]
+    if not abs(growth) > 0.0:
+        return None
+    return tangent if growth > 0.0 else -tangent

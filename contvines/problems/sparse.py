@@ -1,0 +1,291 @@
+"""Interpreted kernels with a sparse Jacobian: one factorisation a step, and bordering that leaves it sparse.
+
+With the factors of F_u = A the bordered system is solved by block elimination and iterative refinement. Next to a fold A is
+nearly singular while the bordered matrix is not; where refinement does not get there, the bordered matrix itself is factorised,
+its last row made small so that it is chosen as a pivot last and the factors stay sparse (about twice the work).
+
+A LinearOperator is never factorised: GMRES solves the bordered system, with the user's preconditioner for A.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, gmres, splu
+
+from .functions import NotEvaluable
+from .protocol import Kernels
+
+REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
+ENOUGH = 1e-9  # ... at which it will do
+SMALL = 1e-8  # size of the last row where the bordered matrix is factorised
+KRYLOV = 1e-11  # relative residual of GMRES
+EIGENVALUES = 1e-8  # relative accuracy of the leading eigenvalues
+
+
+@dataclass
+class SparseWork:
+    """F, F_u, F_p and the factors of F_u, made when they are first needed."""
+
+    residual: np.ndarray
+    derivative: np.ndarray
+    jacobian: Any = None
+    factors: Any = None
+    failed: bool = False
+    ordering: str = ""
+    options: dict[str, Any] = field(default_factory=dict)
+
+    def __getitem__(self, i: int) -> np.ndarray:
+        return (self.residual, self.derivative)[i]
+
+
+def workspace(problem: Any) -> SparseWork:
+    """Arrays for a problem."""
+    return SparseWork(np.zeros(problem.dimension), np.zeros(problem.dimension))
+
+
+def row_sizes(work: SparseWork, scale: np.ndarray) -> np.ndarray:
+    """Largest change of each equation when an unknown changes by its scale."""
+    if not sp.issparse(work.jacobian):
+        return np.abs(work.jacobian @ scale)
+    return np.asarray(abs(work.jacobian).multiply(scale[None, :]).max(axis=1).todense()).reshape(-1)
+
+
+def linearise(data: Any, u: np.ndarray, p: float, work: SparseWork) -> float:
+    """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
+    with np.errstate(all="ignore"):
+        try:
+            residual, jacobian, derivative = data.equations(u, p)
+        except NotEvaluable as error:
+            data.trouble = str(error)
+            return math.inf
+        work.residual[:], work.derivative[:] = residual, derivative
+        work.factors, work.failed = None, False
+        total = float(derivative.sum())
+        if sp.issparse(jacobian):
+            jacobian = jacobian.tocsc().astype(float)
+            total += float(jacobian.data.sum())
+        work.jacobian = jacobian
+        sizes = np.abs(residual)
+        size = float((sizes if data.scales is None else sizes / data.scales.rows).max())
+    return size if size - size == 0.0 and total - total == 0.0 else math.inf
+
+
+# ---------------------------------------------------------------------- factors
+def _parity(order: np.ndarray) -> int:
+    """0 for an even permutation, 1 for an odd one."""
+    n = len(order)
+    graph = sp.csr_matrix((np.ones(n, dtype=np.int8), (np.arange(n), order)), shape=(n, n))
+    return (n - connected_components(graph, directed=False)[0]) % 2
+
+
+def _sign(factors: Any) -> float:
+    """Sign of the determinant."""
+    diagonal = factors.U.diagonal()
+    if not (diagonal != 0.0).all():
+        return 0.0
+    odd = int((diagonal < 0.0).sum()) + _parity(factors.perm_r) + _parity(factors.perm_c)
+    return -1.0 if odd % 2 else 1.0
+
+
+def _factorise(work: SparseWork) -> Any:
+    """Factors of F_u, or None where it is singular; the ordering that fills in less is found out once."""
+    if work.factors is None and not work.failed:
+        matrix = work.jacobian
+        try:
+            if work.ordering:
+                work.factors = splu(matrix, permc_spec=work.ordering)
+            else:
+                pattern = matrix.copy()
+                pattern.data[:] = 1.0
+                symmetric = (pattern != pattern.T).nnz == 0
+                tries = {
+                    name: splu(matrix, permc_spec=name)
+                    for name in (("MMD_AT_PLUS_A", "COLAMD") if symmetric else ("COLAMD",))
+                }
+                work.ordering = min(tries, key=lambda name: tries[name].nnz)
+                work.factors = tries[work.ordering]
+        except RuntimeError:
+            work.failed = True
+    return work.factors
+
+
+def _border_matrix(work: SparseWork, border: np.ndarray, factor: float) -> Any:
+    return sp.bmat(
+        [
+            [work.jacobian, work.derivative[:, None]],
+            [factor * border[None, :-1], np.array([[factor * border[-1]]])],
+        ],
+        format="csc",
+    )
+
+
+def _product(work: SparseWork, border: np.ndarray, x: np.ndarray) -> np.ndarray:
+    top = work.jacobian @ x[:-1] + np.outer(work.derivative, x[-1])
+    return np.vstack([top, border @ x])
+
+
+def _eliminate(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float] | None:
+    """Block elimination with refinement; None where that is not accurate."""
+    factors = _factorise(work)
+    if factors is None:
+        return None
+    with np.errstate(all="ignore"):
+        columns = factors.solve(np.column_stack([sides[:-1, 0], work.derivative]))
+        column = columns[:, 1]
+        corner = border[-1] - border[:-1] @ column
+        if corner == 0.0 or not np.isfinite(columns).all():
+            return None
+        x = np.empty((len(border), 2))
+        x[-1, 0] = (sides[-1, 0] - border[:-1] @ columns[:, 0]) / corner
+        x[:-1, 0] = columns[:, 0] - column * x[-1, 0]
+        x[-1, 1] = sides[-1, 1] / corner
+        x[:-1, 1] = -column * x[-1, 1]
+        size = np.abs(sides).max(axis=0)
+        size[size == 0.0] = 1.0
+        scale = float(np.abs(work.jacobian.data).max(initial=0.0))
+        before = math.inf
+        for _ in range(4):
+            rest = sides - _product(work, border, x)
+            rough = np.abs(rest).max(axis=0) / np.maximum(size, scale * np.abs(x).max(axis=0))
+            error = float(rough.max())
+            if not error > REFINED:
+                break
+            if not error < 0.5 * before:
+                break
+            before = error
+            more = factors.solve(rest[:-1])
+            low = (rest[-1] - border[:-1] @ more) / corner
+            x[-1] += low
+            x[:-1] += more - np.outer(column, low)
+        if not error < ENOUGH:
+            return None
+    return x, _sign(factors) * math.copysign(1.0, corner)
+
+
+def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
+    """The bordered matrix factorised as a whole."""
+    top = float(np.abs(work.jacobian.data).max(initial=1.0))
+    factor = SMALL * top / float(np.abs(border).max())
+    scaled = sides.copy()
+    scaled[-1] *= factor
+    for shift in (0.0, 1e-14 * top):
+        matrix = _border_matrix(work, border, factor)
+        if shift:
+            matrix = (matrix + shift * sp.identity(len(border), format="csc")).tocsc()
+        try:
+            factors = splu(matrix, permc_spec=work.ordering or "COLAMD")
+        except RuntimeError:
+            continue
+        x = factors.solve(scaled)
+        rest = scaled - matrix @ x
+        more = factors.solve(rest)
+        return (x + more if np.isfinite(more).all() else x), (0.0 if shift else _sign(factors))
+    return np.full_like(sides, np.nan), 0.0
+
+
+def _iterate(data: Any, work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
+    """GMRES on the bordered system."""
+    n = len(border)
+    inverse = data.preconditioner_at()
+
+    def product(x: np.ndarray) -> np.ndarray:
+        x = x.reshape(-1)
+        return np.append(work.jacobian @ x[:-1] + work.derivative * x[-1], border @ x)
+
+    def precondition(x: np.ndarray) -> np.ndarray:
+        x = x.reshape(-1)
+        return np.append(inverse @ x[:-1], x[-1] / max(float(np.abs(border).max()), 1e-300))
+
+    operator = LinearOperator((n, n), matvec=product, dtype=float)  # type: ignore[call-arg]
+    near = None if inverse is None else LinearOperator((n, n), matvec=precondition, dtype=float)  # type: ignore[call-arg]
+    result = np.zeros_like(sides)
+    for k in range(2):
+        if np.any(sides[:, k]):
+            found, _ = gmres(
+                operator, sides[:, k], M=near, rtol=KRYLOV, atol=0.0, restart=min(n, 80), maxiter=40
+            )
+            gap = np.linalg.norm(product(found) - sides[:, k]) / np.linalg.norm(sides[:, k])
+            result[:, k] = found if gap < 1e-4 else np.nan
+    return result, 1.0
+
+
+def bordered(
+    data: Any, work: SparseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
+) -> float:
+    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant (1: not known)."""
+    sides = np.zeros((len(border), 2))
+    sides[:-1, 0] = -work.residual
+    sides[-1] = n, 1.0
+    if not sp.issparse(work.jacobian):
+        solution, sign = _iterate(data, work, border, sides)
+    else:
+        found = _eliminate(work, border, sides)
+        solution, sign = _direct(work, border, sides) if found is None else found
+    step[:], tangent[:] = solution[:, 0], solution[:, 1]
+    return sign
+
+
+# ---------------------------------------------------------------------- eigenvalues
+def leading(work: SparseWork, count: int, shift: float) -> np.ndarray:
+    """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
+
+    Parameters
+    ----------
+    work : SparseWork
+    count : int
+    shift : float
+
+    Returns
+    -------
+    ndarray of complex, shape (count,)
+        Where ARPACK finds fewer, the outermost is repeated.
+    """
+    matrix, n = work.jacobian, len(work.residual)
+    if count >= n - 1:
+        values = np.linalg.eigvals(matrix.toarray() if sp.issparse(matrix) else matrix @ np.eye(n))
+        order = np.argsort(np.abs(values - shift), kind="stable")
+        return values[order][:count]
+    start = np.random.default_rng(5).standard_normal(n)
+    options: dict[str, Any] = {"k": count, "v0": start, "tol": EIGENVALUES, "return_eigenvectors": False}
+    solve = eigs
+    if sp.issparse(matrix):
+        factors = _factorise(work) if shift == 0.0 else None
+        if (abs(matrix - matrix.T)).max() == 0.0:
+            solve = eigsh
+        options["sigma"] = shift if shift != 0.0 or factors is not None else 1e-12 * abs(matrix).max()
+        if factors is not None:
+            options["OPinv"] = LinearOperator((n, n), matvec=factors.solve, dtype=float)  # type: ignore[call-arg]
+    else:
+        options["which"] = "LR"
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            values = np.asarray(solve(matrix, **options), dtype=complex)
+        except ArpackNoConvergence as error:
+            values = np.asarray(error.eigenvalues, dtype=complex)
+        except (ArpackError, RuntimeError):
+            values = np.zeros(0, dtype=complex)
+    if not len(values):
+        return np.full(count, np.nan, dtype=complex)
+    values = values[np.argsort(np.abs(values - shift), kind="stable")][:count]
+    return np.append(values, np.full(count - len(values), values[np.argmin(np.real(values))]))
+
+
+def inspect(data: Any, u: np.ndarray, p: float, work: SparseWork, row: np.ndarray) -> None:
+    """Raw spectrum of the linearisation, then the margins of problems that have any."""
+    spectrum = data.raw_spectrum(work)
+    m = 2 * len(spectrum)
+    row[0:m:2] = spectrum.real
+    row[1:m:2] = spectrum.imag
+    if len(row) > m:
+        row[m:] = data.margins(u, p)
+
+
+KERNELS = Kernels(linearise, bordered, inspect, compiled=False)

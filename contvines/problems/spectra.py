@@ -1,0 +1,32 @@
+"""Raw spectra of problems made of Python callables."""
+
+from __future__ import annotations
+
+import numpy as np
+
+REAL = (
+    1e-9  # an imaginary part below this part of the largest eigenvalue is roundoff: a double real eigenvalue
+)
+WATCHED = (
+    20  # unknowns up to which the eigenvalues of problems without a spectrum are watched for branch points
+)
+
+
+def without_roundoff(values: np.ndarray) -> np.ndarray:
+    """Eigenvalues in which the two halves of a double real one, parted by roundoff, are real."""
+    values = np.asarray(values, dtype=complex)
+    tiny = np.abs(np.imag(values)) <= REAL * np.abs(values).max(initial=0.0)
+    return np.where(tiny, np.real(values) + 0.0j, values)
+
+
+def watched(jacobian: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """Eigenvalues of a Jacobian relative to a fixed one: zero where it is singular, whatever the scale of its rows."""
+    return without_roundoff(np.linalg.eigvals(reference @ jacobian))
+
+
+def reference_of(jacobian: np.ndarray, rows: np.ndarray, unknowns: np.ndarray) -> np.ndarray:
+    """The inverse of a Jacobian, or where it is nearly singular what brings its rows and columns to one size."""
+    scaled = jacobian * unknowns / rows[:, None]
+    if np.linalg.cond(scaled) < 1e8:
+        return np.linalg.inv(jacobian)
+    return np.diag(unknowns / rows)

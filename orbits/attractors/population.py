@@ -1,0 +1,337 @@
+"""What many starts settle on: a machine's attractors at one value, each solved once, with the starts that reach it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors.attractor import Attractor
+from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
+from orbits.attractors.recurrence import settle
+from orbits.cycles.stuck import StuckOrbit
+from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
+from orbits.simulation.driver import SimulationError, machine, skip
+
+TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
+LONGEST = 24  # forcing periods of the longest recurrence looked for
+TOLERANCE = 1e-8  # difference of two states that counts as a return
+PATIENCE, LATE = (
+    3,
+    3000.0,
+)  # how often, and for how many more periods, a motion that does not recur is looked at again
+NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
+SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
+SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One attractor as `contvines` is told of it.
+
+    Attributes
+    ----------
+    kind : str
+        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow`` or ``escaped``.
+    word : str
+    periods : int
+    problem, u : Problem and float array, or None
+        The motion as a solution, where it has a word.
+    exponent, error : float
+        Largest Lyapunov exponent per forcing period and its standard error; nan for motions that recur.
+    state : float array (S,)
+        From which a simulation goes on.
+    """
+
+    kind: str
+    word: str = ""
+    periods: int = 0
+    problem: Any = field(default=None, repr=False)
+    u: np.ndarray | None = field(default=None, repr=False)
+    exponent: float = float("nan")
+    error: float = float("nan")
+    state: np.ndarray | None = field(default=None, repr=False)
+
+
+class Population:
+    """Starts of a machine and what they settle on, against one of its parameters.
+
+    Parameters
+    ----------
+    model : Model
+    parameter : str
+        The one that varies.
+    parameters : mapping
+        All that are no fields of the machine, or replace them.
+    workers : int, optional
+        Threads; all cores by default. Results do not depend on it.
+
+    Raises
+    ------
+    ValueError
+        If the machine has no such parameter.
+    """
+
+    def __init__(
+        self,
+        model: Any,
+        parameter: str,
+        parameters: Mapping[str, float] | None = None,
+        workers: int | None = None,
+    ) -> None:
+        if parameter not in model.amount_names:
+            raise SimulationError(
+                f"{parameter!r} is no parameter of {model.name!r}; it has {', '.join(model.amount_names)}"
+            )
+        self.model, self.parameter = model, parameter
+        self.parameters = dict(parameters or {})
+        self.workers = (
+            workers or len(os.sched_getaffinity(0))
+            if hasattr(os, "sched_getaffinity")
+            else os.cpu_count() or 1
+        )
+        self.engine = machine(model.name)
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """The machine's name and settings."""
+        return self.model.settings()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the coordinates in which starts are given: phase, w, w_rate, and v, v_rate of the coupled machine."""
+        return ("phase", "w", "w_rate", "v", "v_rate")[: 3 if self.engine.state <= V else 5]
+
+    def box(self, p: float) -> np.ndarray:
+        """Smallest and largest coordinate of the starts, shape (n, 2): the cavity, and the velocities its walls can give."""
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        shaking = self._shaking(params)
+        left, right = (float(wall) for wall in self.model.walls(params))
+        rate = SPEEDS * max(1.0, shaking)
+        rows = [[0.0, 2.0 * np.pi], [right, left], [-rate, rate]]
+        if len(self.names) > 3:
+            reach = 2.0 * max(1.0, shaking)
+            rows += [[-reach, reach], [-reach, reach]]
+        return np.array(rows)
+
+    def starts(self, count: int, seed: int, p: float) -> np.ndarray:
+        """Low-discrepancy starts over the box (Sobol, scrambled by the seed), shape (count, n)."""
+        from scipy.stats import qmc
+
+        box = self.box(p)
+        draw = qmc.Sobol(len(box), scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
+        points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
+        return box[:, 0] + points * (box[:, 1] - box[:, 0])
+
+    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+        """Simulate all starts and recognise what they settle on.
+
+        Parameters
+        ----------
+        starts : float array (m, n)
+        p : float
+
+        Returns
+        -------
+        motions : list of Motion
+            In the order of their first start.
+        index : int array (m,)
+            Which motion each start reaches.
+        mirrored : bool array (m,)
+            Whether it reaches the mirror image of that motion.
+        """
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        states = np.zeros((len(starts), self.engine.state))
+        for column, name in zip(starts.T, self.names, strict=True):
+            states[:, {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}[name]] = column
+        result = settle_all(
+            self.model.name,
+            states,
+            params,
+            transients=TRANSIENTS,
+            longest=LONGEST,
+            tolerance=TOLERANCE,
+            workers=self.workers,
+        )
+        return _Sorting(self, params, p, states, result).sorted()
+
+    def _shaking(self, params: np.ndarray) -> float:
+        """Largest velocity of the cavity's centre that the excitation gives, as far as it is known beforehand."""
+        names = self.model.parameter_names
+        if "amplitude" in names:
+            return float(params[names.index("amplitude")] * params[names.index("frequency")])
+        return 1.0
+
+
+class _Sorting:
+    """The starts of one census, sorted by the motions they reach."""
+
+    def __init__(
+        self,
+        population: Population,
+        params: np.ndarray,
+        p: float,
+        states: np.ndarray,
+        result: dict[str, np.ndarray],
+    ) -> None:
+        self.population, self.params, self.p = population, params, p
+        self.model, self.engine = population.model, population.engine
+        self.states, self.result = states, result
+        self.motions: list[Motion] = []
+        self.index = np.full(len(states), -1)
+        self.mirrored = np.zeros(len(states), dtype=bool)
+        self.images: list[
+            tuple[np.ndarray, np.ndarray, bool]
+        ] = []  # of each motion: states, mirrored ones, free mean
+
+    def sorted(self) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+        outcome = self.result["outcome"]
+        for i in range(len(self.states)):
+            if self.index[i] >= 0:
+                continue
+            if outcome[i] == AT_REST:
+                self._take(Motion("stuck", "", 1, *self._stuck()), outcome == AT_REST)
+            elif outcome[i] == LOST:
+                self._take(Motion("escaped"), outcome == LOST)
+            elif outcome[i] == SETTLED:
+                self._settled(i)
+            else:
+                self._unsettled(i)
+        return self._in_order()
+
+    def _take(self, motion: Motion, members: np.ndarray) -> None:
+        self.index[members & (self.index < 0)] = len(self.motions)
+        self.motions.append(motion)
+        self.images.append((np.empty((0, 0)), np.empty((0, 0)), False))
+
+    def _stuck(self) -> tuple[Any, Any]:
+        orbit = StuckOrbit.of(self.model, self.params)
+        if not orbit.real:
+            return None, None
+        problem = orbit.problem(self.population.parameter)
+        return problem, orbit.seed(problem)[0]
+
+    def _settled(self, i: int) -> None:
+        found = settle(self.model, self.engine, self.params, self.states[i].copy(), 8.0, LONGEST, 1e-7, 1)
+        self._add(found, i)
+
+    def _unsettled(self, i: int) -> None:
+        """A motion that does not recur: looked at with patience once, then told by its growth of small differences."""
+        state = self.states[i].copy()
+        for _ in range(PATIENCE):  # a chaotic transient may end late
+            found = settle(self.model, self.engine, self.params, state, 200.0, LONGEST, 1e-7, 2)
+            if found.recurrent:
+                self._add(found, i)
+                return
+            exponent, error = lyapunov(self.model.name, state, self.params)
+            skip(self.engine, state, self.params, state[TURNS] + LATE, 10**9)
+        if exponent > SIGMAS * error:
+            kind = "chaotic"
+        elif exponent > -SIGMAS * error and self.model.node == 4:
+            kind = "quasi-periodic"  # two incommensurate frequencies need four dimensions of states
+        else:
+            kind = "slow"
+        known = next((k for k, m in enumerate(self.motions) if m.kind == kind and not m.word), None)
+        others = (self.index < 0) & (self.result["outcome"] == 0)
+        others &= np.arange(len(others)) >= i
+        gaps = self.result["gaps"]
+        alike = others & (np.abs(np.log10(np.maximum(gaps, 1e-300) / max(gaps[i], 1e-300))) < 1.5)
+        alike[i] = True
+        if known is not None:
+            self.index[alike] = known
+        else:
+            self._take(Motion(kind, exponent=exponent, error=error, state=self.states[i].copy()), alike)
+
+    def _add(self, found: Attractor, i: int) -> None:
+        """Put an attractor on the list, unless it is there, and give it all starts whose states lie on it."""
+        own, image, free = self._on(found)
+        here = self._members(own, image, free, found.periods)
+        here[i] = True
+        problem = u = None
+        word = found.text
+        if found.word is not None and found.kind != "stuck" and len(found.codes):
+            orbit = found.orbit.root()
+            problem = orbit.problem(self.population.parameter)
+            u = orbit.seed(problem)[0]
+            word = orbit.word.text
+        elif found.kind == "stuck":
+            problem, u = self._stuck()
+        for k, motion in enumerate(self.motions):
+            if (
+                motion.kind == found.kind
+                and motion.periods == found.periods
+                and self._same(motion, problem, u)
+            ):
+                self.index[here & (self.index < 0)] = k
+                return
+        side = self._nearer_image(own, image, free) & (not found.symmetric)
+        self.mirrored[here & (self.index < 0) & side] = True
+        self.index[here & (self.index < 0)] = len(self.motions)
+        self.motions.append(Motion(found.kind, word, found.periods, problem, u, state=found.state.copy()))
+        self.images.append((own, image, free))
+
+    def _same(self, motion: Motion, problem: Any, u: Any) -> bool:
+        if motion.problem is None or problem is None:
+            return motion.problem is problem
+        one, other = motion.problem.canonical(motion.u, self.p), problem.canonical(u, self.p)
+        return one[0] == other[0] and np.allclose(one[1], other[1], atol=1e-5)
+
+    def _on(self, found: Attractor) -> tuple[np.ndarray, np.ndarray, bool]:
+        """States of the attractor at whole forcing periods, of its mirror image, and whether its mean is free."""
+        state = found.state.copy()
+        now = np.floor(state[TURNS] + state[PSI] / (2.0 * np.pi)) + 1.0
+        skip(self.engine, state, self.params, now, 100_000)
+        whole, half = [], []
+        for k in range(max(found.periods, 1)):
+            whole.append(self._vector(state))
+            skip(self.engine, state, self.params, now + k + 0.5, 100_000)
+            half.append(-self._vector(state))
+            skip(self.engine, state, self.params, now + k + 1.0, 100_000)
+        mirror = np.array(half) if self.model.has_mirror(self.params) else np.empty((0, len(whole[0])))
+        return np.array(whole), mirror, found.impacts == 0
+
+    def _vector(self, states: np.ndarray) -> np.ndarray:
+        """w, w', mode, and v, v' of states (..., S)."""
+        places = [W, RATE, MODE, *range(V, self.engine.state)]
+        return states[..., places]
+
+    def _distances(self, images: np.ndarray, free: bool) -> np.ndarray:
+        """Of every settled state to the nearest of some states, shape (n,)."""
+        if not len(images):
+            return np.full(len(self.states), np.inf)
+        gaps = np.abs(self._vector(self.states)[:, None, :] - images[None, :, :])
+        if free:
+            gaps[..., 0] = 0.0  # a motion without impacts may lie anywhere between the walls
+        return gaps.max(axis=2).min(axis=1)
+
+    def _members(self, own: np.ndarray, image: np.ndarray, free: bool, periods: int) -> np.ndarray:
+        near = np.minimum(self._distances(own, free), self._distances(image, free)) < NEAR
+        return (
+            near
+            & (self.result["outcome"] == SETTLED)
+            & (self.result["periods"] == max(periods, 1))
+            & (self.index < 0)
+        )
+
+    def _nearer_image(self, own: np.ndarray, image: np.ndarray, free: bool) -> np.ndarray:
+        return self._distances(image, free) < self._distances(own, free)
+
+    def _in_order(self) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+        first = [
+            int(np.flatnonzero(self.index == k)[0]) if np.any(self.index == k) else 1 << 60
+            for k in range(len(self.motions))
+        ]
+        order = sorted((k for k in range(len(self.motions)) if first[k] < 1 << 60), key=first.__getitem__)
+        place = {k: i for i, k in enumerate(order)}
+        return [self.motions[k] for k in order], np.array([place[int(k)] for k in self.index]), self.mirrored
+
+
+def shares(index: np.ndarray, count: int) -> np.ndarray:
+    """Share of the starts that reach each of `count` motions."""
+    return np.bincount(index, minlength=count) / max(len(index), 1)
+
+
+__all__: Sequence[str] = ["Motion", "Population", "shares"]

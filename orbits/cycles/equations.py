@@ -1,0 +1,136 @@
+"""The equations of the cycles with one word: what the compiled kernels need, and how unknowns and nodes go together.
+
+A symmetric cycle is solved for on half its word, closed by the mirror. The empty word has linear equations of its own
+(`orbits.cycles.rest_equations`), with the same members.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.cycles.kernels import assemble
+from orbits.cycles.margins import PER_NODE
+from orbits.cycles.rest_equations import RestEquations
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.base import Model
+from orbits.machines.path import along
+from orbits.words import Word
+
+
+class Equations:
+    """Closed chains of elementary maps, against one parameter.
+
+    Attributes
+    ----------
+    length : int
+        Number of nodes that are unknown; half the word's if `symmetric`.
+    dimension, n_multipliers, n_margins : int
+    twist, shift : float
+        Closure: the first node returns with its phase plus `shift` and all else times `twist`.
+    loose : bool
+        Whether the motion may be moved as a whole; `pinned` says how that is prevented.
+    data : tuple
+        First argument of the kernels.
+
+    Raises
+    ------
+    ValueError
+        If the parameter is unknown, or `symmetric` is asked where there is no symmetry.
+    """
+
+    def __init__(
+        self, model: Model, word: Word, periods: int, parameter: str, params: np.ndarray, symmetric: bool
+    ) -> None:
+        if symmetric and not model.has_mirror(params, parameter):
+            raise ValueError(
+                f"the model {model.name!r} has no mirror image along {parameter}, so no symmetric orbits"
+            )
+        if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
+            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
+        self.model, self.params, self.parameter = model, params, parameter
+        self.path = model.path(parameter, params)
+        length = len(word) // 2 if symmetric else len(word)
+        n = model.node
+        self.length, self.dimension = length, length * n
+        self.twist = -1.0 if symmetric else 1.0
+        self.shift = np.pi * periods * (1 if symmetric else 2)
+        self.loose = word.impact_free
+        self.pinned = 0 if not self.loose else (2 if symmetric else 1)
+        self.n_multipliers = n - 1 if self.loose else n
+        self.n_margins = PER_NODE * length
+        self.period_shift = np.zeros(self.dimension)
+        self.period_shift[::n] = 2.0 * np.pi
+        own, law = params.copy(), model.law
+        self.data = (
+            word.codes[:length].copy(),
+            word.mode_codes[:length].copy(),
+            own,
+            self.path,
+            self.twist,
+            self.shift,
+            self.pinned,
+            model.place_of(parameter),
+            np.array(model.amounts(own), dtype=float) if len(law) else own,
+            law,
+        )
+
+    @property
+    def kernels(self) -> Any:
+        """linearise, bordered, inspect, newton, examine: the compiled functions of the model."""
+        return assemble(self.model)
+
+    def workspace(self) -> tuple[np.ndarray, ...]:
+        """Arrays for the kernels."""
+        return workspace(self.length, self.model.node, self.params.size)
+
+    def values(self, p: float | np.ndarray) -> np.ndarray:
+        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
+        return along(self.path, self.params, p)
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return self.model.amount(self.parameter, params)
+
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N)."""
+        u = np.asarray(u, dtype=float)
+        nodes = u.reshape(*u.shape[:-1], self.length, self.model.node)
+        if self.twist > 0.0:
+            return nodes
+        image = -nodes
+        image[..., 0] = nodes[..., 0] + self.shift
+        return np.concatenate([nodes, image], axis=-2)
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        spectrum = np.asarray(spectrum, dtype=complex)
+        return spectrum**2 if self.twist < 0.0 else spectrum
+
+
+def equations(
+    model: Model, word: Word, periods: int, parameter: str, params: np.ndarray, symmetric: bool = False
+) -> Equations | RestEquations:
+    """The equations of the cycles with this word."""
+    if not len(word):
+        return RestEquations(model, parameter, params)
+    return Equations(model, word, int(periods), parameter, params, symmetric)
+
+
+def solved_at(
+    system: Equations | RestEquations, guess: np.ndarray, p: float, tolerance: float = 1e-12, limit: int = 40
+) -> tuple[np.ndarray, float]:
+    """Solution at a parameter value by Newton's method, and its residual (infinite if there is none)."""
+    border = np.zeros(system.dimension + 1)
+    border[-1] = 1.0
+    step, tangent = np.empty_like(border), np.empty_like(border)
+    u = guess.copy()
+    residual, _, _ = system.kernels.newton(
+        system.data, u, p, system.workspace(), border, step, tangent, tolerance, limit
+    )
+    return u, float(residual)

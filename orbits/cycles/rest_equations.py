@@ -1,0 +1,123 @@
+"""The equations of the empty word: the absorber at rest, linear equations with one margin (`orbits.machines.rest`)."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from orbits.machines.base import Model
+from orbits.machines.path import along
+
+
+class RestEquations:
+    """What `orbits.cycles.equations.Equations` is for the other words; the unknowns are those of the machine's `rest`."""
+
+    length, n_margins = 0, 1
+    twist, shift = 1.0, 2.0 * np.pi
+    loose, pinned = False, 0
+    period_shift = None
+
+    def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
+        self.model, self.params, self.parameter = model, params, parameter
+        self.path = model.path(parameter, params)
+        self.dimension = model.rest.unknowns
+        self.n_multipliers = model.rest.multipliers(params).size
+        self.data = self
+
+    @property
+    def kernels(self) -> Any:
+        """In plain Python: three equations need no compiler."""
+        return SimpleNamespace(
+            linearise=_linearise,
+            bordered=_bordered,
+            inspect=_inspect,
+            newton=_newton,
+            examine=_examine,
+            compiled=False,
+            digest="stuck",
+        )
+
+    def workspace(self) -> tuple[np.ndarray, ...]:
+        """Residual, Jacobian and derivative with respect to the parameter."""
+        n = self.dimension
+        return np.zeros(n), np.zeros((n, n)), np.zeros(n)
+
+    def values(self, p: float | np.ndarray) -> np.ndarray:
+        """The parameter vector at parameter value `p`."""
+        return along(self.path, self.params, p)
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return self.model.amount(self.parameter, params)
+
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """No nodes."""
+        return np.zeros((*np.shape(u)[:-1], 0, self.model.node))
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """The unknowns, which follow from the parameters alone."""
+        return np.linalg.solve(*self.model.rest.equations(self.params))
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the forcing period."""
+        return np.asarray(spectrum, dtype=complex)
+
+
+def _linearise(data: RestEquations, u: np.ndarray, p: float, work: tuple[np.ndarray, ...]) -> float:
+    F, J, Q = work
+    K, f = data.model.rest.equations(data.values(p))
+    J[:] = K
+    F[:] = K @ u - f
+    h = 1e-6 * (abs(p) or 1.0)  # whatever the unit of p
+    ahead, f_ahead = data.model.rest.equations(data.values(p + h))
+    behind, f_behind = data.model.rest.equations(data.values(p - h))
+    Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)
+    return float(np.abs(F).max())
+
+
+def _bordered(
+    data: RestEquations, work: tuple, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+) -> float:
+    F, J, Q = work
+    matrix = np.vstack([np.column_stack([J, Q]), border])
+    sides = np.column_stack([np.r_[-F, target], np.r_[np.zeros_like(F), 1.0]])
+    sign = float(np.linalg.slogdet(matrix)[0])
+    solution = np.linalg.solve(matrix, sides) if sign else np.linalg.lstsq(matrix, sides, rcond=None)[0]
+    step[:], tangent[:] = solution[:, 0], solution[:, 1]
+    return sign
+
+
+def _inspect(data: RestEquations, u: np.ndarray, p: float, work: tuple, row: np.ndarray) -> None:
+    params = data.values(p)
+    spectrum = data.model.rest.multipliers(params)
+    row[: 2 * spectrum.size : 2] = np.real(spectrum)
+    row[1 : 2 * spectrum.size : 2] = np.imag(spectrum)
+    row[-1] = data.model.rest.reserve(params, u)
+
+
+def _newton(
+    data: RestEquations,
+    u: np.ndarray,
+    p: float,
+    work: tuple,
+    border: np.ndarray,
+    step: np.ndarray,
+    tangent: np.ndarray,
+    tolerance: float,
+    limit: int,
+) -> tuple[float, int, float]:
+    for iteration in range(limit):
+        residual = _linearise(data, u, p, work)
+        if residual <= tolerance or _bordered(data, work, border, 0.0, step, tangent) == 0.0:
+            return (residual if residual <= tolerance else np.inf), iteration, p
+        u += step[:-1]
+        p += float(step[-1])
+    return np.inf, limit, p
+
+
+def _examine(data: RestEquations, u: np.ndarray, p: float, work: tuple, row: np.ndarray) -> float:
+    residual = _linearise(data, u, p, work)
+    _inspect(data, u, p, work, row)
+    return residual

@@ -1,0 +1,111 @@
+"""A cycle seen through its equations: residual, multipliers, margins, measures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from orbits.cycles import measures as measuring
+from orbits.cycles.cycle import Cycle
+from orbits.cycles.deviation import replay_error
+from orbits.cycles.equations import equations
+from orbits.cycles.margins import Margin, named_margins
+from orbits.cycles.sampling import sample
+
+REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
+TOLERANCE = 1e-12  # of Newton's method, in the unknowns
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution(Cycle):
+    """A cycle that is claimed to solve its equations: how well, how stable, and whether a machine can follow it."""
+
+    @cached_property
+    def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
+        half = self.word.impact_free and self.symmetric and len(self.word) > 0
+        system = equations(
+            self.model, self.word, self.periods, self.model.default_parameter, self.params, half
+        )
+        residual, spectrum, margins = _examined(system, self.nodes)
+        return residual, system.to_multipliers(spectrum), margins
+
+    @property
+    def residual(self) -> float:
+        """Largest residual of the maps."""
+        return self._examined[0]
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Multipliers of the period, complex, largest modulus first; an impact-free motion's trivial +1 is left out."""
+        return self._examined[1]
+
+    @property
+    def half_multipliers(self) -> np.ndarray:
+        """Multipliers of the half map (half a period, then the mirror) of a symmetric orbit.
+
+        +1 is a fold, -1 a symmetry breaking; the multipliers of the period are their squares.
+
+        Raises
+        ------
+        ValueError
+            If the orbit is not symmetric.
+        """
+        if not self.symmetric:
+            raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
+        parameter = self.model.default_parameter
+        system = equations(self.model, self.word, self.periods, parameter, self.params, symmetric=True)
+        _, spectrum, _ = _examined(system, self.nodes)
+        return spectrum
+
+    @property
+    def margins(self) -> list[Margin]:
+        """Margins of admissibility, all positive for a real orbit."""
+        return named_margins(self.word, self._examined[2])
+
+    @property
+    def margin(self) -> float:
+        """The smallest margin."""
+        return float(self._examined[2].min())
+
+    @property
+    def real(self) -> bool:
+        """Whether a machine can follow the orbit: all margins positive."""
+        return self.margin > REAL
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.all(np.abs(self.multipliers) < 1.0))
+
+    def measure(self, name: str) -> float:
+        """One measure of the orbit; names: `orbits.cycles.measures.COMMON` and the machine's own."""
+        return float(self.measures(name)[name])
+
+    def measures(self, *wanted: str) -> dict[str, float]:
+        """Measures by name, all of them if none is named."""
+        asked = wanted or measuring.names(self.model)
+        values = measuring.measure(
+            self.model, self.word, self.periods, self.nodes[None], self.params[None], list(asked)
+        )
+        return {name: float(value[0]) for name, value in values.items()}
+
+    # ------------------------------------------------------------------ seeing it move
+    def sample(self, points: int = 400) -> dict[str, np.ndarray]:
+        """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
+        return sample(self, points)
+
+    def replay(self) -> float:
+        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
+        return replay_error(self)
+
+
+def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Residual, multipliers of the closure map and margins of a cycle in its equations."""
+    count = 2 * system.n_multipliers
+    row = np.empty(count + system.n_margins)
+    value = system.value(system.params)
+    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.workspace(), row)
+    return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]

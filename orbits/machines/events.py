@@ -1,0 +1,61 @@
+"""What happens at the events of a motion: positions and velocities from its nodes, for many solutions at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from orbits.machines.base import Model
+from orbits.words import Word
+
+
+@dataclass(frozen=True)
+class EventTable:
+    """What happens at each event; all arrays have shape (m, L).
+
+    Attributes
+    ----------
+    phase : float array
+        Psi, radians from the start of the forcing.
+    w, rate_post, rate_pre : float array
+        Relative position, relative velocity after and before the event.
+    B_post, B_pre : float array
+        Absolute velocity of the absorber times 1 + eps, v' - w', after and before the event.
+    v, v_rate : float array
+        Cavity coordinate v and its rate.
+    """
+
+    phase: np.ndarray
+    w: np.ndarray
+    rate_post: np.ndarray
+    rate_pre: np.ndarray
+    B_post: np.ndarray
+    B_pre: np.ndarray
+    v: np.ndarray
+    v_rate: np.ndarray
+
+
+def parameter(model: Model, params: np.ndarray, name: str) -> np.ndarray:
+    """Column `name` of the parameter vectors, shape (m, 1)."""
+    return params[:, model.parameter_names.index(name)][:, None]
+
+
+def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray) -> EventTable:
+    """Positions and velocities at all events, from nodes (m, L, n) and parameter vectors (m, P)."""
+    phase = nodes[:, :, 0]
+    v, v_rate = model.cavity_motion(nodes, params)
+    hits, walls, r = contacts(model, word, params)
+    w = np.where(hits, walls, nodes[:, :, 1])
+    rate_post = np.where(hits, v_rate - nodes[:, :, 1], 0.0)
+    rate_pre = np.where(hits, -rate_post / r, 0.0)
+    return EventTable(phase, w, rate_post, rate_pre, v_rate - rate_post, v_rate - rate_pre, v, v_rate)
+
+
+def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Which events are impacts, shape (L,), and their walls' places and coefficients of restitution, shape (m, L)."""
+    left = np.array([letter == "L" for letter in word.events], dtype=bool)
+    hits = left | np.array([letter == "R" for letter in word.events], dtype=bool)
+    (at_left, at_right), (by_left, by_right) = model.walls(params), model.restitutions(params)
+    walls = np.where(left, at_left[:, None], at_right[:, None])
+    return hits, walls, np.where(left, by_left[:, None], by_right[:, None])

@@ -1,0 +1,53 @@
+"""Names of the measures of orbits, and what kind of quantity each is."""
+
+from __future__ import annotations
+
+from orbits.machines.base import Model
+
+COMMON = (
+    "B",
+    "B_post",
+    "B_pre",
+    "B_mean",
+    "C2",
+    "phase",
+    "impact_speed",
+    "impact_speed_min",
+    "impact_loss",
+    "friction_loss",
+    "max_abs_w",
+)
+
+ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
+ENERGIES = (  # per period of the orbit
+    "impact_loss",
+    "friction_loss",
+    "input_work",
+    "damping_loss",
+    "force_work",
+    "grounded_damping_loss",
+)
+MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
+
+KINDS = {
+    "B": "velocity",
+    "B_post": "velocity",
+    "B_pre": "velocity",
+    "B_mean": "velocity",
+    "C2": "area",
+    "phase": "angle",
+    "impact_speed": "velocity",
+    "impact_speed_min": "velocity",
+    "max_abs_w": "length",
+    "max_abs_q1": "length",
+    "amplitude": "length",
+    "v_phase": "angle",
+    **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
+}
+"""What kind of quantity each measure is, where it is more than a number."""
+
+
+def names(model: Model) -> tuple[str, ...]:
+    """Measures that orbits of this machine have."""
+    known = COMMON + model.own_measures
+    return known + tuple(mean for mean, name in MEANS.items() if name in known)

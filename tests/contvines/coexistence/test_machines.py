@@ -1,0 +1,146 @@
+"""Atlas, look, basins and merging for the absorber: two worlds, one graph."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.coexistence.looking import look, told
+from orbits import Absorber
+from orbits.attractors import find_attractor
+
+MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+@pytest.fixture(scope="module")
+def graph():
+    return cv.atlas(MACHINE, over="amplitude", within=(1.0, 1.3), values=5, starts=96, depth=1)
+
+
+def test_the_orbit_that_no_diagram_has_is_on_the_atlas(graph):
+    """`LRtR` attracts from 1.146 to 1.27 and hangs together with no other branch: a simulation of its own finds it."""
+    words = {a.word for a in graph.attractors if a.kind == "periodic"}
+    found = find_attractor(MACHINE, {"phase": 0.0, "w": 0.3, "w_rate": 1.9}, amplitude=1.2)
+    orbit = found.orbit
+    problem = orbit.problem("amplitude")
+    u, p = orbit.seed(problem)
+    form = problem.canonical(u, p)
+    on = [
+        b
+        for b in graph
+        if b.range[0] <= 1.2 <= b.range[1] and b.problem.canonical(b.points[0], b.values[0])[0] == form[0]
+    ]
+    assert on and any(b.description["word"] in words for b in on)
+
+
+def test_every_periodic_attractor_lies_on_a_stable_real_branch(graph):
+    for a in graph.attractors:
+        if a.kind in ("periodic", "sliding", "stuck"):
+            branch = graph[a.branch]
+            assert branch.real
+            assert any(low - 1e-9 <= a.value <= high + 1e-9 for low, high in branch.stable_intervals())
+    for value in {a.value for a in graph.attractors}:
+        assert sum(a.share for a in graph.attractors if a.value == value) == pytest.approx(1.0)
+
+
+def test_shares_agree_with_a_count_one_by_one():
+    """40 of the drawn starts are simulated alone by `find_attractor`: the same motions, the same counts."""
+    population = MACHINE.population("amplitude")
+    starts = population.starts(40, 3, 1.1)
+    motions, index, _ = population.settle(starts, 1.1)
+    alone = []
+    for phase, w, rate in starts:
+        found = find_attractor(MACHINE, {"phase": phase, "w": w, "w_rate": rate}, amplitude=1.1)
+        alone.append((found.kind, found.periods, found.impacts))
+    mine = [(motions[k].kind, motions[k].periods, motions[k].problem.word.impacts) for k in index]
+    assert mine == alone
+
+
+def test_results_do_not_depend_on_the_number_of_threads():
+    one, two = MACHINE.population("amplitude"), MACHINE.population("amplitude")
+    one.workers, two.workers = 1, 2
+    starts = one.starts(1500, 0, 0.6)
+    first, second = one.settle(starts, 0.6), two.settle(starts, 0.6)
+    assert np.array_equal(first[1], second[1]) and np.array_equal(first[2], second[2])
+    assert all(np.array_equal(a.u, b.u) for a, b in zip(first[0], second[0], strict=True))
+
+
+def test_mirror_twins_are_one_motion_with_two_shares():
+    population = MACHINE.population("amplitude")
+    starts = population.starts(400, 0, 0.8)
+    motions, index, mirrored = population.settle(starts, 0.8)
+    twins = next(k for k, m in enumerate(motions) if m.word == "LR" and not m.problem.symmetric)
+    share = mirrored[index == twins].mean()
+    assert 0.4 < share < 0.6  # by symmetry of the box of starts
+    image = starts.copy()  # the mirror image of every start reaches the mirror image of the motion
+    image[:, 0] = (starts[:, 0] + np.pi) % (2 * np.pi)
+    image[:, 1:] *= -1.0
+    again, other, flipped = population.settle(image, 0.8)
+    place = next(k for k, m in enumerate(again) if m.word == "LR" and not m.problem.symmetric)
+    assert np.array_equal(other == place, index == twins)
+    both = index == twins
+    assert len(set(zip(mirrored[both], flipped[both], strict=True))) == 2
+
+
+def test_the_look_says_what_a_diagram_lacks():
+    seed = MACHINE.symmetric_orbit(0.6)
+    graph = cv.diagram(seed, over="amplitude", within=(0.5, 1.3), depth=3)
+    found = look(graph, MACHINE.population("amplitude"))
+    assert any(a.value > 1.1 for a in found)
+    assert "contvines atlas x.toml" in told(graph, "contvines atlas x.toml adds it")
+    assert graph.to_dict()["missing"][0]["share"] > 0
+
+
+def test_an_atlas_is_kept_and_goes_on_after_a_stop(tmp_path):
+    options = {"over": "amplitude", "within": (1.05, 1.15), "values": 3, "starts": 32, "depth": 0}
+    whole = cv.atlas(MACHINE, **options)
+
+    class Stop(Exception):
+        pass
+
+    def until(progress):
+        if progress.branches >= 1:
+            raise Stop
+
+    path = tmp_path / "a.vines"
+    with pytest.raises(Stop), cv.resume(path) as journal:
+        cv.atlas(MACHINE, journal=journal, progress=until, **options)
+    with cv.resume(path) as journal:
+        again = cv.atlas(MACHINE, journal=journal, **options)
+    assert repr(again.attractors) == repr(whole.attractors)
+    assert repr(cv.load(path).attractors) == repr(whole.attractors)
+
+
+def test_graphs_are_merged_without_doubles(graph):
+    seed = MACHINE.symmetric_orbit(1.1, stable=True)
+    one = cv.diagram(seed, over="amplitude", within=(1.0, 1.3), depth=0, virtual=False)
+    two = cv.atlas(MACHINE, over="amplitude", within=(1.0, 1.3), values=[1.2], starts=16, depth=0)
+    before = len(one.branches)
+    called = one.merge(two)
+    assert len(one.branches) > before and set(called.values()) <= {*one.branches, *one.special}
+    count = len(one.branches)
+    one.merge(two)
+    assert len(one.branches) == count
+    assert all(label in one.special for b in one for _, label in b.marks)
+    with pytest.raises(ValueError, match="two machines"):
+        one.merge(
+            cv.atlas(
+                MACHINE.changed(friction=0.4),
+                over="amplitude",
+                within=(1.1, 1.2),
+                values=1,
+                starts=4,
+                depth=0,
+            )
+        )
+
+
+def test_basins_name_their_motions():
+    found = cv.basins(MACHINE, "amplitude", 0.6, points=40)
+    words = {a.word for a in found.attractors}
+    assert "LR" in words
+    assert sum(a.share for a in found.attractors) == pytest.approx(1.0)
+    with pytest.raises(ValueError, match="'q' is no coordinate"):
+        cv.basins(MACHINE, "amplitude", 0.6, plane=("w", "q"))
+    figure = found.plot(figsize=(3.4, 3.0))
+    low, high = figure.axes[0].get_xlim()
+    assert low > high  # the left wall, w = +1, stands on the left

@@ -1,0 +1,85 @@
+"""Atlas and basins of plain maps, against closed forms and published numbers."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def henon(x, p):
+    return np.array([1 - p * x[0] ** 2 + x[1], 0.3 * x[0]])
+
+
+def test_the_basin_of_henons_attractor():
+    """a = 1.4, b = 0.3: starts in [-2, 2]^2 escape or reach the attractor, whose exponent is 0.419 (per iterate).
+
+    The share is counted here by iterating the formula alone, 300 times, on the same starts.
+    """
+    problem = cv.MapProblem(henon, [0.6, 0.2], 1.4, parameter="a")
+    population = problem.population(box=[(-2, 2), (-2, 2)])
+    found = cv.basins(population, at=1.4, plane=("x0", "x1"), points=120)
+    kinds = {a.kind: a for a in found.attractors}
+    assert set(kinds) == {"chaotic", "escaped"}
+    x, y = np.meshgrid(found.x, found.y)
+    with np.errstate(all="ignore"):
+        for _ in range(300):
+            x, y = 1 - 1.4 * x**2 + y, 0.3 * x
+    stays = np.isfinite(x) & (np.abs(x) < 10)
+    share = float(stays.mean())
+    assert kinds["chaotic"].share == pytest.approx(share, abs=1e-12)
+    assert kinds["chaotic"].exponent == pytest.approx(0.419, abs=4 * kinds["chaotic"].error + 0.003)
+    low, high = found.interval([a.kind for a in found.attractors].index("chaotic"))
+    assert low < share < high
+
+
+def test_coexisting_cycles_are_roots_of_their_own():
+    """x -> x + sin(2 pi x)/8 on the line: every half-integer attracts, every integer repels: separate for ever."""
+    problem = cv.MapProblem(lambda x, p: x + p * np.sin(2 * np.pi * x) / 8, [0.5], 1.0)
+    population = problem.population(box=[(0.0, 3.0)])
+    graph = cv.atlas(population, within=(0.5, 1.5), values=3, starts=64, depth=0)
+    places = sorted({round(float(b.points[0, 0]), 9) for b in graph})
+    assert places == [0.5, 1.5, 2.5]
+    for value in {a.value for a in graph.attractors}:
+        here = [a for a in graph.attractors if a.value == value]
+        assert sum(a.share for a in here) == pytest.approx(1.0)
+        assert sorted(a.branch for a in here) == sorted(graph.branches)
+        for a in here:
+            assert a.share == pytest.approx(1 / 3, abs=0.05)  # by symmetry
+
+
+def test_an_isola_is_found_and_nothing_is_listed_twice():
+    """The logistic map's period-3 window at p > 1 + sqrt 8 hangs together with no other cycle."""
+    problem = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
+    population = problem.population(box=[(0.01, 0.99)])
+    graph = cv.atlas(population, within=(3.82, 3.84), values=[3.835], starts=32, depth=0)
+    threes = [b for b in graph if b.problem.cycle == 3]
+    assert len(threes) == 1
+    assert graph.of_kind("fold")[0].value == pytest.approx(1 + np.sqrt(8), abs=1e-12)
+
+
+def test_equal_seeds_give_equal_results():
+    problem = cv.MapProblem(henon, [0.6, 0.2], 0.5, parameter="a")
+    population = problem.population(box=[(-2, 2), (-2, 2)])
+    one, two = (
+        cv.atlas(population, within=(0.3, 0.8), values=3, starts=50, seed=4, depth=1) for _ in range(2)
+    )
+    assert [a.to_dict() for a in one.attractors if a.kind != "chaotic"] == [
+        a.to_dict() for a in two.attractors if a.kind != "chaotic"
+    ] or repr(one.attractors) == repr(two.attractors)
+    assert list(one.branches) == list(two.branches)
+    assert all(np.array_equal(one[b].points, two[b].points) for b in one.branches)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"values": 0}, "values = 0"),
+        ({"values": [9.0]}, "values: 9 lies outside"),
+        ({"starts": 0}, "starts = 0"),
+        ({"seed": -1}, "seed = -1"),
+    ],
+)
+def test_what_cannot_be_is_refused(options, says):
+    problem = cv.MapProblem(henon, [0.6, 0.2], 0.5, parameter="a")
+    with pytest.raises(ValueError, match=says):
+        cv.atlas(problem, within=(0.3, 0.8), **options)
