@@ -10,18 +10,19 @@ import importlib
 from typing import Any
 
 PLACES = {
-    "Orbit": "orbits.orbit",
-    "OrbitProblem": "orbits.problem",
-    "cross": "orbits.borders.crossing",
-    "find": "orbits.starts.find",
-    "of_branch": "orbits.proofs.subjects",
-    "of_orbit": "orbits.proofs.subjects",
-    "of_point": "orbits.proofs.subjects",
-    "portrait": "orbits.plots.portrait",
-    "scene": "orbits.plots.scene",
+    "Orbit": "orbits.orbit:Orbit",
+    "OrbitProblem": "orbits.problem:OrbitProblem",
+    "find": "orbits.starts.find:find",
+    "of_branch": "orbits.proofs.subjects:of_branch",
+    "of_orbit": "orbits.proofs.subjects:of_orbit",
+    "of_point": "orbits.proofs.subjects:of_point",
+    "portrait": "orbits.plots.portrait:portrait",
+    "portrait_of_page": "orbits.plots.declared:portrait",
+    "scene": "orbits.plots.scene:scene",
 }
 
 
 def above(name: str) -> Any:
     """The function or class behind a door."""
-    return getattr(importlib.import_module(PLACES[name]), name)
+    module, _, place = PLACES[name].partition(":")
+    return getattr(importlib.import_module(module), place)

@@ -34,7 +34,6 @@ from orbits.machines.path import single
 from orbits.machines.rest import Rest
 
 if TYPE_CHECKING:
-    from orbits.orbit import Orbit
     from orbits.words import Word
 
 
@@ -225,7 +224,7 @@ class Model:
         periods: int = 1,
         guess: Sequence[Sequence[float]] | np.ndarray | None = None,
         **parameters: Any,
-    ) -> Orbit:
+    ) -> Any:
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
         return above("find")(self, word, periods, guess, parameters, made=above("Orbit"))
 

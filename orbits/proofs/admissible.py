@@ -123,6 +123,9 @@ def conditions(
                 yield condition
         if zero.event != i or zero.name != "stop":
             yield Condition("duration", i, phases[1] - phases[0])
+            if zero.event == i and zero.phase is not None:  # else it would be no border of this flight
+                yield Condition("touch", i, zero.phase - phases[0])
+                yield Condition("touch", i, phases[1] - zero.phase)
             yield from _in_flight(motif, i, flight, phases, flights, zero)
 
 

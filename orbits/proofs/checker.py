@@ -165,6 +165,7 @@ def conditions(c, p, z, name, event, side, touch):
         yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
         if here == "stop": continue
         yield "duration", i, last - first
+        if event == i and touch is not None: yield from (("touch", i, touch - first), ("touch", i, last - touch))
         for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
             if c["frictionless"]:
                 f: Any = lambda ph, i=i, s=s: [v + (k == 0) * d[s] for k, v in enumerate(ws(ph, i, -s))]  # noqa: E731
@@ -281,8 +282,17 @@ def verify(c):
     if wide > 1:
         mu = {"fold": (1, half), "symmetry-breaking": (-1, True), "period-doubling": (-1, False)}.get(kind, (1, half))
         need((c.get("multiplier", 1), half) == mu and len(e) == wide - 1 and border is None, f"no system of a {kind}")
+        need(c["normal"][0] in range(len(z)) and c["normal"][1] in range(c["n"]), "no component to be 1")
+        need(wide == 2 or 0 not in iv.sin(e[1]), "the multipliers are real")
     elif kind == "piece": return cover(c, p, len(events))
     else: need(bool(border) == bool(e) == (kind != "orbit") and "normal" not in c and c.get("multiplier", 1) == 1, f"no {kind}")
+    if border:
+        (name, i, side), free = border, c["frictionless"]
+        need(kind in ("wall-graze", "velocity-graze", "stick", "chatter") and side in (1, -1) and (i == 0 if stuck else i in range(len(z))), "no border")
+        fits = [name == "rest"] if stuck else [
+            name == "reversal" and free, name in ("flight", "hold") and not free and (modes[i] == 0) == (name == "hold"), name == "approach"
+            and events[i] in WALL, name == "wall" and events[i] in "tsu", (name, events[i]) in [("turn", "t"), ("stick", "s"), ("stop", "s"), ("slip", "u")]]
+        need(any(fits) and len(e) == 1 + (name in ("flight", "hold", "reversal")), "no such margin at this event")
     if z: exists(c, p, z, e)
     name, event, side, touch = (*border, e[1] if len(e) > 1 else None) if border else ("", -1, 0, None)
     if stuck:  # the push is a harmonic of the forcing about the bias

@@ -116,6 +116,9 @@ def prove_special(
     margin : (str, int), optional
         For a border the name of the margin that vanishes (`orbits.proofs.special.Vanishing`) and its event.
     """
+    if kind in ("symmetry-breaking", "period-doubling") and motif.half is not (kind == "symmetry-breaking"):
+        part = "half of the word of a symmetric orbit" if kind == "symmetry-breaking" else "the whole word"
+        raise ProofError(f"a {kind} is proved on {part}")
     given = {name: decimal(number) for name, number in parameters.items() if name != parameter}
     shorter = merged(motif, nodes) if margin else None
     if shorter is not None:
@@ -134,6 +137,8 @@ def prove_special(
         z, e = _refined(system, nodes, e, at, z)
         box = enclose(system, z, e, at)
         balls, extras = box.balls()
+        if kind == "neimark-sacker" and extras[1].sin().contains(0):
+            raise Obstacle(Step.EXISTENCE, Remedy.DEGENERATE, detail="the multipliers are real")
         inside = [node[: motif.node] for node in balls]
         zero = NOTHING
         if vanishing is not None:

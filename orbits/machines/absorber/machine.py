@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,10 +15,7 @@ from orbits.machines.absorber.rest import ShakenRest
 from orbits.machines.cavity.shaken import Shaken
 from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, Parameter, ParameterError
 from orbits.machines.rest import Rest
-
-if TYPE_CHECKING:
-    from orbits.orbit import Orbit
-    from orbits.words import Word
+from orbits.words import Word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +90,7 @@ class Absorber(Shaken):
         except ParameterError:
             return
 
-    def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Orbit:
+    def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Any:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters

@@ -26,8 +26,6 @@ from orbits.machines.rest import Rest
 
 if TYPE_CHECKING:
     from orbits.machines.coupled.closed_forms import StuckResponse
-    from orbits.orbit import Orbit
-    from orbits.theory.multiple_scales import Equilibrium
     from orbits.words import Word
 
 
@@ -162,7 +160,7 @@ class Coupled(Model):
         return params
 
     # ------------------------------------------------------------------ orbits
-    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Orbit:
+    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Any:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters
@@ -186,7 +184,7 @@ class Coupled(Model):
             )
         return self._closed("LR", found[0 if fast else -1], params)
 
-    def sliding_orbit(self, **parameters: float) -> Orbit:
+    def sliding_orbit(self, **parameters: float) -> Any:
         """The symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
 
         Raises
@@ -203,7 +201,7 @@ class Coupled(Model):
             )
         return self._closed("tt", nodes, params)
 
-    def orbit_near(self, equilibrium: Equilibrium, **parameters: float) -> Orbit:
+    def orbit_near(self, equilibrium: Any, **parameters: float) -> Any:
         """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
 
         Parameters
@@ -220,7 +218,7 @@ class Coupled(Model):
         guess = self._closed(word, closed_forms.nodes_from_equilibrium(params, equilibrium), params)
         return self.orbit(word, 1, guess.nodes, **values)
 
-    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Orbit:
+    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Any:
         from orbits.words import Word
 
         reading = Word.parse(word, frictionless=self.frictionless(params))

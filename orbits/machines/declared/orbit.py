@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from orbits.cycles.margins import Margin
+from orbits.doors import above
 from orbits.machines.declared import identity
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import margin_name, per_node
@@ -202,9 +203,7 @@ class DeclaredOrbit:
 
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.declared.portrait`."""
-        from orbits.plots.declared import portrait
-
-        return portrait(self, **options)
+        return above("portrait_of_page")(self, **options)
 
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
