@@ -46,7 +46,7 @@ class Ending:
     kind : str or None
         Kind of the special point as this branch sees it.
     text : str
-        For SAID: the sentence of a file of version 0.1, or of something that is no branch.
+        What the problem says of it; for SAID the whole sentence, of a file of version 0.1 or of something that is no branch.
     """
 
     reason: Reason
@@ -93,4 +93,5 @@ class Ending:
                 return f"meets {self.other} at {self.point}, {at}"
             case Reason.COMES_BACK:
                 return f"comes back to more symmetric solutions at {self.point}, {at}"
-        return Status[self.reason.name].sentence(parameter, self.value, unit)
+        said = Status[self.reason.name].sentence(parameter, self.value, unit)
+        return f"{said}; {self.text}" if self.text else said

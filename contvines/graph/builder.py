@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ from .leaving import leave
 from .marking import mark, may_be_one, origin_index
 from .pending import Origin, Pending
 from .run import Run
+
+DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
 def begin(run: Run, problem: Any, u: Any, p: float) -> None:
@@ -116,6 +119,12 @@ def trace_pending(run: Run, pending: Pending) -> None:
     run.serial += 1
     label = run.new_label("B")
     half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)
+    if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
+        name = pending.problem.parameter
+        raise ValueError(
+            f"the branch dies at its first point, {name} = {first.p:.10g}, in every direction: "
+            + "; ".join(dict.fromkeys(ending.sentence(name) for ending in endings))
+        )
     if (
         pending.kind is Origin.REST
         and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p)
@@ -226,7 +235,11 @@ def both_ways(
         return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
     def ending(half: HalfBranch) -> Ending:
-        return Ending.of(half.status, half.end)
+        explain = getattr(pending.problem, "explain_end", None)
+        why = None
+        if explain is not None and half.status in DEAD:
+            why = explain(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
+        return replace(Ending.of(half.status, half.end), text=why or "")
 
     def beginning(reason: Reason) -> Ending:
         return Ending(reason, pending.p, pending.point, pending.source)

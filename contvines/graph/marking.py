@@ -197,6 +197,19 @@ def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bo
     return bool(alike(u, p, point.problem, point.u))
 
 
+def _doubt(engine: Engine, special: SpecialPoint) -> None:
+    """Carry the accuracy of the equations into that of the location, and look whether given derivatives are right here."""
+    uncertainty, check = (getattr(engine.problem, name, None) for name in ("uncertainty", "check"))
+    if uncertainty is not None:
+        special.location_error = max(
+            special.location_error, float(uncertainty()) * engine.parameter_unit(special.value)
+        )
+    wrong = None if check is None or special.kind == "end" else check(special.u, special.value)
+    if wrong is not None:
+        special.remarks = (*special.remarks, str(wrong))
+        special.location_error = float("inf")
+
+
 def _special(
     run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
 ) -> SpecialPoint:
@@ -226,6 +239,7 @@ def _special(
         problem=engine.problem,
     )
     special.replay = _replay(run, special)
+    _doubt(engine, special)
     if event.role is Role.MEETING:
         special.met_from = branch.label
     if kind == "fold":

@@ -11,7 +11,7 @@ import numpy as np
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..events.kinds import PREFIXES as SPECIAL
+from ..events.kinds import kind_of
 from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..journal import NullJournal
@@ -145,7 +145,7 @@ class Charting:
         own = (
             candidate.seed in self.graph.special
         )  # a locus is called like the special point from which it comes
-        label = candidate.seed if own else self.label(SPECIAL.get(candidate.kind, "L"))
+        label = candidate.seed if own else self.label(kind_of(candidate.kind).label)
         try:
             problem = begin(
                 candidate.problem,
