@@ -274,16 +274,19 @@ def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pi
     u, p
         The point.
     spectrum : ndarray of complex
-        Raw multipliers there, or eigenvalues.
+        Raw multipliers there (of a flow they are computed here).
     """
-    values: Any = np.asarray(spectrum, dtype=complex)
     flow = problem.spectrum == "flow"
-    upper = values[values.imag > 0.0]
-    if not len(upper) or getattr(problem.kernels, "matrix", None) is None:
+    if getattr(problem.kernels, "matrix", None) is None:
         return Pitch(None, None, "")
-    critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
     try:
-        found, _ = Forms(problem, u, p).lyapunov(critical)
+        forms = Forms(problem, u, p)
+        values: Any = np.linalg.eigvals(forms.J) if flow else np.asarray(spectrum, dtype=complex)
+        upper = values[values.imag > 0.0]
+        if not len(upper):
+            return Pitch(None, None, "")
+        critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
+        found, _ = forms.lyapunov(critical)
     except (ValueError, IndexError, np.linalg.LinAlgError):
         return Pitch(None, None, "")
     value = float(found.value)

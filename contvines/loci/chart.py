@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-from ..branch import Branch
+from ..branches.branch import Branch
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
 from .plane_point import PlanePoint

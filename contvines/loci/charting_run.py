@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..events.kinds import kind_of
 from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..journal import NullJournal
-from ..special import PREFIXES as SPECIAL
-from ..special import SpecialPoint
 from .chart import Chart
 from .codimension_two import find
 from .coefficients_at import coefficients
@@ -145,7 +145,7 @@ class Charting:
         own = (
             candidate.seed in self.graph.special
         )  # a locus is called like the special point from which it comes
-        label = candidate.seed if own else self.label(SPECIAL.get(candidate.kind, "L"))
+        label = candidate.seed if own else self.label(kind_of(candidate.kind).label)
         try:
             problem = begin(
                 candidate.problem,

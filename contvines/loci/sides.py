@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..branch import Branch
+from ..branches.branch import Branch
 from .linear import Linearisation
 from .problem import LocusProblem
 

@@ -207,7 +207,7 @@ class Model:
         }
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
-        """Many starts and what they settle on; see `orbits.attractors.population.Population`."""
+        """Many starts and what they settle on; see `orbits.population.Population`."""
         return above("Population")(self, over or self.default_parameter, parameters)
 
     def measure_own(
