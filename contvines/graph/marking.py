@@ -27,6 +27,8 @@ from .run import Run
 BACK_AT_BORDER = (
     1e-6  # a branch seeded beyond a border comes back to it within this part of the parameter's unit
 )
+TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
+BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
@@ -169,6 +171,10 @@ def _known(
             if found is not None and found.label == branch.label:
                 return other.point
     form = None
+    if kind == "fold":
+        turning = _turning_at(run, engine, event)
+        if turning is not None:
+            return turning
     for known in run.graph.special.values():
         if (
             known.kind != kind
@@ -183,6 +189,18 @@ def _known(
             return known.label
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
             return known.label  # one point seen in two problems, whose forms need not agree
+    return None
+
+
+def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
+    """Label of a branch point at which a side branch only turns: the parameter is stationary there, but it is no fold."""
+    point = event.point
+    for known in run.graph.special.values():
+        if known.kind not in ("branch-point", "symmetry-breaking") or known.u.shape != point.u.shape:
+            continue
+        gap = engine.join(known.u - point.u, known.value - point.p)
+        if abs(gap[-1]) <= TURNING * run.unit(point.p) and engine.norm(gap) <= BESIDE:
+            return known.label
     return None
 
 
