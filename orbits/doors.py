@@ -12,6 +12,7 @@ from typing import Any
 PLACES = {
     "Orbit": "orbits.orbit:Orbit",
     "OrbitProblem": "orbits.problem:OrbitProblem",
+    "Population": "orbits.population:Population",
     "find": "orbits.starts.find:find",
     "of_branch": "orbits.proofs.subjects:of_branch",
     "of_orbit": "orbits.proofs.subjects:of_orbit",

@@ -309,7 +309,7 @@ class OrbitProblem:
         return above("of_point")(self, kind, u, p, margin, bits)
 
     def population(self, over: str | None = None) -> Any:
-        """Starts of this machine and what they settle on; see `orbits.attractors.population.Population`."""
+        """Starts of this machine and what they settle on; see `orbits.population.Population`."""
         over = over or self.parameter
         return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
 

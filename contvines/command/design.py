@@ -33,6 +33,8 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
 
     from .study import StudyError
 
+    if study.quantities:
+        return _physical(study, cavity, natural_frequency)
     values = study.parameters
     fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
     fields["damping"] = values.get("damping", DAMPING)
@@ -48,7 +50,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
             raise StudyError(
                 "[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency."
             )
-        return Design(cavity=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
+        return Design(half_width=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
     if cavity is not None and natural_frequency is not None:
         raise StudyError(
             f"--cavity and --natural-frequency were both given, but [model] gravity = {values['gravity']!r} "
@@ -62,6 +64,33 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
         )
     except ValueError as error:
         raise StudyError(f"{study.path}: [model] {error}") from None
+
+
+def _physical(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
+    """The design of a study in physical units, which says its scale itself."""
+    from math import pi
+
+    from orbits.design import Design
+
+    from .compose import machine as built
+    from .study import StudyError
+
+    for name, value in (("cavity", cavity), ("natural-frequency", natural_frequency)):
+        if value is not None:
+            raise StudyError(f"--{name} = {value!r}: the study says it already; leave --{name} out.")
+    model = built(study)
+    params = model.vector()
+    number = {name: float(value) for name, value in zip(model.parameter_names, params)}
+    b, rate = number["half_width"], number["natural_rate"]
+    return Design(
+        half_width=b,
+        natural_frequency=rate / (2.0 * pi),
+        restitution=number["restitution"],
+        friction=number["friction"],
+        mass_ratio=number["mass_ratio"],
+        damping=number.get("damping", DAMPING),
+        acceleration=number["gravity"] * b * rate**2,
+    )
 
 
 def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
@@ -183,7 +212,7 @@ def draw(design: Design) -> Figure:
 def design(
     study: Path = typer.Argument(..., metavar="STUDY.toml", help="The study whose machine is meant."),
     cavity: float | None = typer.Option(
-        None, help="Half-width b of the cavity \\[m]; 0.02 if no scale is given."
+        None, "--half-width", "--cavity", help="Half-width b of the cavity \\[m]; 0.02 if no scale is given."
     ),
     natural_frequency: float | None = typer.Option(
         None, help="f_0 of the oscillator \\[Hz], instead of the cavity."

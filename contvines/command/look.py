@@ -329,7 +329,7 @@ def _describe(found: Any) -> str:
     lines = []
     if "word" in about:
         nature = "real" if about["real"] else "virtual: no machine follows it"
-        lines.append(f"{about['word'] or 'stuck'}  k = {about['periods']}  ({nature})")
+        lines.append(f"{about['word'] or about.get('rest', 'stuck')}  k = {about['periods']}  ({nature})")
     parameters = about.get("parameters", {})
     if parameters:
         units = about.get("units", {})

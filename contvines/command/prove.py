@@ -86,7 +86,9 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
 def _of_file(
     file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[float, float] | None
 ) -> dict[str, Any]:
+    from contvines.command.run import interruptible
     from contvines.graph.proving import prove as prove_labels
+    from contvines.graph.proving import subject
     from contvines.store import Store, load
 
     graph = load(file, trust=trust)
@@ -99,10 +101,14 @@ def _of_file(
     if within is not None and not within[0] < within[1]:
         raise ValueError(f"--within {within[0]:g} {within[1]:g} is empty; LOW < HIGH would do.")
     options = {} if within is None else {"within": within}
-    proofs = prove_labels(graph, labels, bits=bits, **options)
-    with Store.open(file, write=True) as store:
-        with store.transaction():
-            for label in proofs:
+    for label in labels:
+        subject(graph, label)
+    proofs: dict[str, Any] = {}
+    note = f"what is proved is kept in {file}; name the labels that are missing to go on"
+    with Store.open(file, write=True) as store, interruptible(note):
+        for label in labels or list(graph.special):
+            proofs |= prove_labels(graph, [label], bits=bits, **options)
+            with store.transaction():
                 store.put("proof", label, graph.proofs[label])
         store.tidy()
     return proofs

@@ -44,6 +44,8 @@ def _graph_machine(graph: Any) -> dict[str, Any]:
     from orbits.machines.catalogue import NAMES
 
     known = dict(graph.model)
+    if "page" in known:
+        return known
     for branch in graph.branches.values():
         params = branch.description.get("params")
         if params is None or known.get("name") not in NAMES:
@@ -59,7 +61,8 @@ def _study_machine(study: "Study") -> dict[str, Any]:
     if study.quantities:
         return {"name": study.name, **dict(zip(model.parameter_names, model.vector().tolist()))}
     vector = model.vector({**loose(study), study.parameter: study.parameters[study.parameter]})
-    return {"name": study.name, **dict(zip(model.parameter_names, vector.tolist()))}
+    name = study.name if study.machine is None else study.machine.name
+    return {"name": name, **dict(zip(model.parameter_names, vector.tolist()))}
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -78,10 +81,14 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
     from contvines.plots.sweep import plot_sweep
     from orbits.machines.catalogue import model_class
 
-    units = machine(study).units
+    units = {} if study.machine is not None else machine(study).units
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
-    measure = model_class(study.name).swept_measure
+    if study.machine is not None:  # impact speeds, or how far the first state goes
+        walls = any(hasattr(contact, "gap") for contact in study.machine.contacts)
+        measure = "impact_speed" if walls else f"max_{study.machine.states[0]}"
+    else:
+        measure = model_class(study.name).swept_measure
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
         return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, units=units)

@@ -54,6 +54,8 @@ class Kept:
 def kept(row: Any, direction: str, names: list[str]) -> Kept:
     """A row of `orbits.attractors.sweep` as it is kept; `names` are the measures in the CSV's order."""
     found = row.detail
+    if hasattr(row, "dots"):
+        return _declared(row, direction, names)
     kind = "periodic" if row.attractor == "sliding" else row.attractor
     cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
     cells += [repr(float(row.measures[n])) for n in names]
@@ -61,6 +63,16 @@ def kept(row: Any, direction: str, names: list[str]) -> Kept:
     cells.append(_nodes(found))
     dots = [float(row.measures["max_abs_q1"])] if "max_abs_q1" in row.measures else _impacts(found)
     return Kept(cells, row.attractor, found.recurrent, dots, [float(x) for x in found.state])
+
+
+def _declared(row: Any, direction: str, names: list[str]) -> Kept:
+    """A row of a declared machine's sweep."""
+    orbit = row.detail.orbit
+    cells = [repr(row.value), direction, row.attractor, row.word, str(row.periods), str(row.impacts)]
+    cells += [repr(float(row.measures[n])) for n in names]
+    cells.append("" if orbit is None else str(int(orbit.symmetric)))
+    cells.append("" if orbit is None else json.dumps([[float(x) for x in node] for node in orbit.nodes]))
+    return Kept(cells, row.attractor, orbit is not None, row.dots, [float(x) for x in row.state])
 
 
 def _nodes(found: Any) -> str:

@@ -71,7 +71,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
             return p, size, 1
         if size <= STALLED and ratio > 0.3 and residual < 1e-9:
             return p, size, 1
-        if size <= min(tolerance, 10.0 * noise) and ratio > 0.3:
+        if size <= min(tolerance, 30.0 * noise) and ratio > 0.1:
             return p, size, 1
     return p, size, 0
 

@@ -50,6 +50,7 @@ _ALONG = (
     Kind("chatter", "CH", "vanishing event", "X", True, True),
     Kind("switch-graze", "SG", "switch graze", "d", True, True),
     Kind("corner", "CO", "two events at once", "P", True, True),
+    Kind("switch", "SW", "switch", "d", False, True),
     Kind("user", "US", "user function", "*", True),
     Kind("end", "EP", "end of the interval", "|"),
 )

@@ -22,6 +22,8 @@ from .marking import mark, may_be_one, origin_index
 from .pending import Pending
 from .run import Run
 
+DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
+
 
 def begin(run: Run, problem: Any, u: Any, p: float) -> None:
     """Put the start into the queue.
@@ -117,6 +119,11 @@ def trace_pending(run: Run, pending: Pending) -> None:
     run.serial += 1
     label = run.new_label("B")
     half, ended, closed = both_ways(run, engine, watch, pending, first, real, label)
+    if pending.kind == "start" and len(half) == 1 and not closed and half.status in DEAD:
+        raise ValueError(
+            f"the branch dies at its first point, {pending.problem.parameter} = {first.p:.10g}, in every direction: "
+            + "; ".join(dict.fromkeys(ended))
+        )
     if pending.kind == "rest" and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p) and len(half) < 4:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
@@ -223,7 +230,12 @@ def both_ways(
         return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
     def sentence(half: HalfBranch) -> str:
-        return half.status.sentence(name, half.end)
+        said = half.status.sentence(name, half.end)
+        explain = getattr(pending.problem, "explain_end", None)
+        if explain is None or half.status not in (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE):
+            return said
+        why = explain(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
+        return f"{said}; {why}" if why else said
 
     leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"
     if pending.kind == "rest":

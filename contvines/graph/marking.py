@@ -26,6 +26,8 @@ BACK_AT_BORDER = (
     1e-6  # a branch seeded beyond a border comes back to it within this part of the parameter's unit
 )
 SIDE = "comes back to more symmetric solutions at"
+TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
+BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
@@ -171,6 +173,10 @@ def _known(
             if found is not None and found.label == branch.label:
                 return other.point
     form = None
+    if kind == "fold":
+        turning = _turning_at(run, engine, event)
+        if turning is not None:
+            return turning
     for known in run.graph.special.values():
         if (
             known.kind != kind
@@ -188,6 +194,18 @@ def _known(
     return None
 
 
+def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
+    """Label of a branch point at which a side branch only turns: the parameter is stationary there, but it is no fold."""
+    point = event.point
+    for known in run.graph.special.values():
+        if known.kind not in ("branch-point", "symmetry-breaking") or known.u.shape != point.u.shape:
+            continue
+        gap = engine.join(known.u - point.u, known.value - point.p)
+        if abs(gap[-1]) <= TURNING * run.unit(point.p) and engine.norm(gap) <= BESIDE:
+            return known.label
+    return None
+
+
 def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
     """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
 
@@ -197,6 +215,19 @@ def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bo
     if alike is None or type(point.problem) is not type(problem):
         return True
     return bool(alike(u, p, point.problem, point.u))
+
+
+def _doubt(engine: Engine, special: SpecialPoint) -> None:
+    """Carry the accuracy of the equations into that of the location, and look whether given derivatives are right here."""
+    uncertainty, check = (getattr(engine.problem, name, None) for name in ("uncertainty", "check"))
+    if uncertainty is not None:
+        special.location_error = max(
+            special.location_error, float(uncertainty()) * engine.parameter_unit(special.value)
+        )
+    wrong = None if check is None or special.kind == "end" else check(special.u, special.value)
+    if wrong is not None:
+        special.note = f"{special.note}; {wrong}" if special.note else wrong
+        special.location_error = float("inf")
 
 
 def _special(
@@ -228,6 +259,7 @@ def _special(
         problem=engine.problem,
     )
     special.replay = _replay(run, special)
+    _doubt(engine, special)
     if event.kind == "meets":
         special.note = f"met from {branch.label}"
     if kind == "fold":

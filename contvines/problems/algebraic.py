@@ -130,7 +130,7 @@ class AlgebraicProblem(CallableProblem):
         self.describe()  # its callables are known by their addresses from now on
 
     def _find_structure(self, start: np.ndarray) -> None:
-        dense = self.functions.find_structure(start) == "dense"
+        dense = self._structure_at(start) == "dense"
         if self.spectrum == "flow":
             self.n_multipliers = self.node if dense else min(self.leading, self.node)
             if dense and self.conditions is not None:
@@ -153,7 +153,23 @@ class AlgebraicProblem(CallableProblem):
             return image
         return lambda u: np.append(image(u[: self.node]), u[self.node :])
 
+    @property
+    def lengths(self) -> np.ndarray:
+        """Length over which the equations bend in each unknown; the multipliers of conditions have 1."""
+        return np.append(super().lengths, np.ones(self.dimension - self.node))
+
+    @property
+    def bends(self) -> np.ndarray:
+        """Whether they bend in each unknown at all."""
+        return np.append(super().bends, np.ones(self.dimension - self.node, dtype=bool))
+
     # ------------------------------------------------------------------ numerics
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
+        """F alone."""
+        if self.conditions is not None:
+            return self.equations(u, p)[0]
+        return self.functions.value(u, p)
+
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, Any, np.ndarray]:
         """F, dF/du, dF/dp."""
         f = self.functions

@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from . import dense, sparse
+from .breaks import find_break
 from .derivatives import Differentiated
 from .functions import NotEvaluable
 from .parameters import ParameterSet
@@ -88,6 +89,10 @@ class CallableProblem(ProblemDefaults):
     # ------------------------------------------------------------------ scales
     node: int
 
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
+        """F alone."""
+        raise TypeError("a problem made of callables says what its equations are")
+
     def amplitude(self, direction: np.ndarray) -> float:
         """Length of a direction as normal forms measure it: Euclidean, over the unknowns (over the first point of a cycle)."""
         return float(np.linalg.norm(direction[: self.node]))
@@ -153,6 +158,45 @@ class CallableProblem(ProblemDefaults):
         return self.algebra.workspace(self)
 
     # ------------------------------------------------------------------ what is wrong
+    def uncertainty(self) -> float:
+        """Relative accuracy of what was evaluated last: of derivatives by differences, and of noisy equations."""
+        errors = self.functions.errors
+        if self.scales is None or not errors.any():
+            return self.noise
+        scale = self.scales.unknowns[: len(errors)]
+        return max(float((errors * scale).max() / self.scales.rows.max()), self.noise)
+
+    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
+        """Why a branch ends where Newton's method fails, as far as that can be told; else an empty string.
+
+        Parameters
+        ----------
+        u, p, tangent
+            The last point, and the unit tangent in which the branch was followed.
+        evaluable : bool
+            False: the equations could not be evaluated further on.
+        """
+        if not evaluable:
+            return self.trouble
+        rows = np.ones(self.dimension) if self.scales is None else self.scales.rows
+
+        def line(t: float) -> np.ndarray:
+            try:
+                return self.residuals(u + t * tangent[:-1], p + t * float(tangent[-1]))
+            except NotEvaluable:
+                return np.full(self.dimension, np.nan)
+
+        for reach in (0.05, 2e-3):
+            with np.errstate(all="ignore"):
+                found = find_break(line, reach, rows)
+            if found is not None:
+                value = p + found.at * float(tangent[-1])
+                where = f"near {self.parameter} = {value:.6g} (row {found.row})"
+                if found.kind == "jump":
+                    return f"the equations jump {where}"
+                return f"the equations have a kink {where}; switches= would select their pieces"
+        return ""
+
     def check(self, u: np.ndarray, p: float) -> str | None:
         """A sentence on given derivatives that disagree with the equations at a solution; None if they agree."""
         return self.functions.disagreement(u, p)
@@ -164,3 +208,9 @@ class CallableProblem(ProblemDefaults):
             wrong = str(error)
         if wrong is not None:
             raise ValueError(wrong)
+
+    def _structure_at(self, u: np.ndarray) -> str:
+        try:
+            return self.functions.find_structure(u)
+        except NotEvaluable as error:
+            raise ValueError(str(error)) from error

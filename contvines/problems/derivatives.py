@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from copy import copy
 from time import perf_counter
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -45,8 +46,8 @@ class Differentiated:
         Where it does.
     noise : ndarray, shape (n,)
         Standard deviation of each entry of f beyond roundoff.
-    error : float
-        Estimated relative error of the last derivatives.
+    errors : ndarray, shape (n,)
+        Estimated errors of the columns of the last Jacobian.
 
     Raises
     ------
@@ -66,17 +67,19 @@ class Differentiated:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.parameters, self.name = parameters, name
         self.structure = "dense"
+        self.words = ""  # of the last failure beside a point
         self.rows = 0  # numbers that f returns, where these are not as many as unknowns
         self._bind()
         p, n = parameters.start, len(u)
         begin = perf_counter()
         value = self.checked_value(u, p)
         cost = perf_counter() - begin
-        self.noise, self.error, self.complex_step = np.zeros(n), 0.0, False
+        self.noise, self.errors, self.complex_step = np.zeros(n), np.zeros(n), False
         self.parameter_lengths: dict[str, float] = {}
-        self._measure_lengths(u, p, cost)
+        self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
         self._measure_noise(u, p, value)
-        if jacobian is None or not self._gives_derivative:
+        self._measure_lengths(u, p, cost)
+        if (jacobian is None or not self._gives_derivative) and not self.noise.any():
             self.complex_step = self._complex_step_works(u, p)
 
     def _bind(self) -> None:
@@ -156,9 +159,9 @@ class Differentiated:
         """df/du, shape (n, n), as an array, or as it was given if that is sparse or a LinearOperator."""
         n = len(u)
         if self._jacobian is not None:
-            self.error = 0.0
+            self.errors = np.zeros(n)
             return as_matrix(self._jacobian.raw(u, p), n)
-        result, worst = np.empty((self.rows or n, n)), 0.0
+        result, worst = np.empty((self.rows or n, n)), np.zeros(n)
         for j in range(n):
             if self.complex_step:
                 shifted = u.astype(complex)
@@ -167,9 +170,8 @@ class Differentiated:
             else:
                 found = self._column(u, p, j)
                 result[:, j] = found.value
-                size = np.abs(found.value).max()
-                worst = max(worst, float(found.error.max() / size)) if size > 0.0 else worst
-        self.error = worst
+                worst[j] = found.error.max()
+        self.errors = worst
         return result
 
     def _column(self, u: np.ndarray, p: float, j: int) -> Difference:
@@ -178,7 +180,14 @@ class Differentiated:
             moved[j] += t
             return self._value(moved, p)
 
-        return along(shifted, float(self.lengths[j]), self.noise)
+        return self._evaluable(
+            along(self._quietly(shifted, len(self.noise)), float(self.lengths[j]), self.noise)
+        )
+
+    def _evaluable(self, found: Difference) -> Difference:
+        if not np.isfinite(found.value).all():
+            raise NotEvaluable(self.words or f"{self.name} is not finite beside the point")
+        return found
 
     def derivative(self, u: np.ndarray, p: float) -> np.ndarray:
         """df/dp, shape (n,)."""
@@ -186,17 +195,17 @@ class Differentiated:
             return self._derivative(u, p)
         if self.complex_step:
             return np.imag(self._value(u.astype(complex), complex(p, COMPLEX_STEP))) / COMPLEX_STEP
-        found = along(lambda t: self._value(u, p + t), self._parameter_length(u, p), self.noise)
-        size = np.abs(found.value).max()
-        if size > 0.0:
-            self.error = max(self.error, float(found.error.max() / size))
+        line = self._quietly(lambda t: self._value(u, p + t), len(self.noise))
+        found = self._evaluable(along(line, self._parameter_length(u, p), self.noise))
         return found.value
 
     # ------------------------------------------------------------------ what f is like
     def _parameter_length(self, u: np.ndarray, p: float) -> float:
         name = self.parameters.varying
         if name not in self.parameter_lengths:
-            found = bend(self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0)
+            found = bend(
+                self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.noise
+            )
             self.parameter_lengths[name] = found or abs(p) or 1.0
         return self.parameter_lengths[name]
 
@@ -206,14 +215,14 @@ class Differentiated:
         def value(t: float) -> np.ndarray:
             try:
                 return line(t)
-            except NotEvaluable:
+            except NotEvaluable as error:
+                self.words = str(error)
                 return np.full(n, np.nan)
 
         return value
 
     def _measure_lengths(self, u: np.ndarray, p: float, cost: float) -> None:
         n = len(u)
-        self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
         self.bends = np.zeros(n, dtype=bool)
         largest = float(np.abs(u).max()) or 1.0
         each = n <= EACH
@@ -225,12 +234,12 @@ class Differentiated:
         with np.errstate(all="ignore"):
             if each:
                 for j in range(n):
-                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries)
+                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.noise)
                     if found is not None:
                         self.lengths[j], self.bends[j] = found, True
             else:
                 direction = np.where(u == 0.0, largest, u)
-                found = bend(line(direction / np.abs(direction).max()), largest, tries)
+                found = bend(line(direction / np.abs(direction).max()), largest, tries, self.noise)
                 self.lengths[:] = largest if found is None else found
                 self.bends[:] = found is not None
 
@@ -251,7 +260,10 @@ class Differentiated:
         direction = self.lengths * rng.standard_normal(len(u))
         slope = 0.7 * self._parameter_length(u, p)
         try:
-            with np.errstate(all="ignore"):
+            with np.errstate(all="ignore"), catch_warnings():
+                simplefilter(
+                    "ignore"
+                )  # what casts complex numbers to real ones warns, and is found out below
                 shifted = self._value(u + 1j * COMPLEX_STEP * direction, complex(p, COMPLEX_STEP * slope))
                 exact = np.imag(shifted) / COMPLEX_STEP
                 near = along(lambda t: self._value(u + t * direction, p + t * slope), 0.5, self.noise)

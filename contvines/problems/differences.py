@@ -71,22 +71,28 @@ def along(f: Line, length: float, noise: float | np.ndarray = 0.0) -> Difference
         The best of those tried; not finite where f cannot be evaluated.
     """
     found = best = central(f, STEP * length, noise)
-    least = _relative(best)
-    if least <= GOOD or (best.settled and not np.any(np.asarray(noise) > 0.0)):
+    least = _worst(best)
+    if _relative(best) <= GOOD or (best.settled and not np.any(np.asarray(noise) > 0.0)):
         return best
     rough = bool(np.any(np.asarray(noise) > 0.0))
     h, worse = (16.0 if rough else 0.125) * STEP * length, 0
     for _ in range(16):
         found = central(f, h, noise)
-        error = _relative(found)
+        error = _worst(found)
         if error < least or not np.isfinite(least):
             best, least, worse = found, error, 0
         elif np.isfinite(error):
             worse += 1
-        if least <= GOOD or worse == 3 or found.settled:
+        if _relative(best) <= GOOD or worse == 3 or found.settled:
             break
         h *= 0.125
     return best
+
+
+def _worst(found: Difference) -> float:
+    """Largest error; infinity where it is not finite."""
+    error = float(found.error.max(initial=0.0))
+    return error if np.isfinite(error) and np.isfinite(found.value).all() else np.inf
 
 
 def _relative(found: Difference) -> float:
@@ -97,7 +103,7 @@ def _relative(found: Difference) -> float:
     return error / size if size > 0.0 else float(error > 0.0)
 
 
-def bend(f: Line, guess: float, enough: int = REACH) -> float | None:
+def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray = 0.0) -> float | None:
     """Length over which f stops being linear, to within an order of magnitude; None if it is linear, or no power law ends.
 
     The change of f grows like t as long as t is small; the length is where it stops to.
@@ -110,14 +116,16 @@ def bend(f: Line, guess: float, enough: int = REACH) -> float | None:
         Lengths around this one are tried.
     enough : int
         How many on either side.
+    noise : float or ndarray
+        Standard deviation of f beyond roundoff.
     """
     with np.errstate(all="ignore"):
         here = f(0.0)
-        floor = 1e3 * EPS * np.abs(here)
+        floor = 1e3 * EPS * np.abs(here) + 30.0 * noise
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
-        seen = np.abs(odd) > floor + 1e3 * EPS * np.abs(odd).min(axis=0, initial=np.inf)
+        seen = np.abs(odd) > floor + 1e3 * EPS * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
         found = np.inf
         for r in range(odd.shape[1]):
@@ -133,25 +141,38 @@ def bend(f: Line, guess: float, enough: int = REACH) -> float | None:
     return found if np.isfinite(found) else None
 
 
-def noise_of(f: Line, spacing: float, samples: int = 9) -> np.ndarray:
-    """Noise of each entry of f: its standard deviation, from a table of differences.
+def noise_of(f: Line, spacing: float, tries: int = 5) -> np.ndarray:
+    """Noise of each entry of f: its standard deviation, from tables of differences.
 
     More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33 (2011) 1292: the k-th difference of noise of
-    variance s^2 has variance s^2 (2 k)!/(k!)^2, while that of a smooth function vanishes.
+    variance s^2 has variance s^2 (2 k)!/(k!)^2, while that of a smooth function vanishes. What becomes less when the samples are a
+    thousand times closer is no noise.
 
     Parameters
     ----------
     f : callable
         t -> ndarray.
     spacing : float
-        Small against the length over which f bends.
-    samples : int
+        Between the samples at first.
+    tries : int
+        How often it is made smaller.
     """
-    table = np.array([f(k * spacing) for k in range(samples)])
+    before = _table(f, spacing)
+    for _ in range(tries):
+        spacing *= 1e-3
+        here = _table(f, spacing)
+        if not (here < 0.03 * before).any():
+            break
+        before = here
+    return np.where(here < 0.03 * before, here, np.maximum(before, here))
+
+
+def _table(f: Line, spacing: float) -> np.ndarray:
+    table = np.array([f(k * spacing) for k in range(9)])
     estimates = []
     for k in range(1, 7):
         table = np.diff(table, axis=0)
-        gamma = factorial(k) ** 2 / factorial(2 * k)
         if k >= 4:
+            gamma = factorial(k) ** 2 / factorial(2 * k)
             estimates.append(np.sqrt(gamma * (table**2).mean(axis=0)))
     return np.median(estimates, axis=0)

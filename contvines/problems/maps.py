@@ -95,7 +95,7 @@ class MapProblem(CallableProblem):
         self.pieces = Pieces(switches, self.values, flat[None, :d])
         self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
         self.functions = Differentiated(*self._wrapped(self.pieces), flat[:d], self.values, "the map")
-        if self.functions.find_structure(flat[:d]) != "dense":
+        if self._structure_at(flat[:d]) != "dense":
             raise ValueError(
                 "the jacobian of a map must be an array; use AlgebraicProblem for f(x, p) - x with sparse ones"
             )
@@ -170,6 +170,15 @@ class MapProblem(CallableProblem):
         if self.scales is not None:
             other.scales = self.scales.head(self.node).tiled(other.cycle)
         return other._own()
+
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
+        """f(x_i) - x_{i+1} alone."""
+        nodes = u.reshape(self.cycle, self.node)
+        images = np.empty_like(nodes)
+        for i, node in enumerate(nodes):
+            self.pieces.current = i
+            images[i] = self.functions.value(node, p)
+        return (images - np.roll(nodes, -1, axis=0)).reshape(-1)
 
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Residual f(x_i) - x_{i+1}, its Jacobian and parameter derivative."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from .outcomes import Findings, gaps
 
+OVER_ALL = 40  # values over the whole interval, where a diagram has next to nothing of it
 LEAST = 1e-3  # of the interval: shorter gaps are left alone
 
 
@@ -27,7 +28,7 @@ class Job:
     outcomes : tuple of callables
         ``outcome(found) -> {column: number}``; see `contvines.survey.outcomes`.
     gaps : int
-        At how many values the system is simulated where its diagram has no stable response, if the family can: there lie
+        At how many values, at least, the system is simulated where its diagram has no stable response, if the family can: there lie
         modulated and chaotic motions, and those that hang together with no branch.
     values, starts : int
         At how many values of the interval it is simulated besides, and from how many starts each.
@@ -89,7 +90,9 @@ def _simulated(job: Job, values: Mapping[str, float], graph: Any) -> list[Any]:
     found = []
     open_ = [(low, high) for low, high in gaps(graph) if high - low > LEAST * (job.within[1] - job.within[0])]
     if job.gaps and open_:
-        places = np.linspace(0.0, sum(high - low for low, high in open_), job.gaps + 2)[1:-1]
+        length = sum(high - low for low, high in open_)
+        count = max(job.gaps, int(np.ceil(OVER_ALL * length / (job.within[1] - job.within[0]))))
+        places = np.linspace(0.0, length, count + 2)[1:-1]
         for low, high in open_:
             inside = [low + place for place in places if 0.0 <= place < high - low] or [0.5 * (low + high)]
             places = places - (high - low)

@@ -33,7 +33,7 @@ from orbits.multipliers import (
 )
 from orbits.words.alphabet import CODES
 
-STICK = CODES["s"]
+STICK, SLIP = CODES["s"], CODES["u"]
 
 # filled in per model by `specialise`
 linearise: Any = None
@@ -50,9 +50,11 @@ def _inspect(data, u, p, work, row):
     A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
     events, length = data[0], A.shape[0]
     for i in range(length):
-        # Nothing later depends on when a stick began: w' = 0 there and v'' is the same before and after. That phase moves
-        # with 1/w'', which grows without bound where the stick vanishes, so it is held instead.
-        if events[(i + 1) % length] == STICK:
+        # Nothing later depends on when a stick begins or ends: w' = 0 there and v'' is the same before and after, at a slip
+        # w'' = 0, too. Those phases move with 1/w'' and one over the rate at which friction gives way, which grow without
+        # bound where the stick vanishes, so they are held instead.
+        arrival = events[(i + 1) % length]
+        if arrival in (STICK, SLIP):
             A[i, 0, :] = 0.0
             D[i, 0, :] = 0.0
             D[i, 0, 0] = 1.0

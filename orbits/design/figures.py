@@ -3,7 +3,7 @@
 Every field of `Design` may be an array; they broadcast, so that a map over friction and cavity length is
 one call:
 
-    Design(friction=mu[None, :], cavity=b[:, None]).operating_ratio
+    Design(friction=mu[None, :], half_width=b[:, None]).operating_ratio
 
 Sources: Youssef, Karoui and Leine, sections "Effect of friction on design-relevant performance metrics",
 "Inactive absorber" and "Purely sliding absorber"; the lower end of pure sliding is corrected to where
@@ -13,6 +13,7 @@ sticking ends.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import wraps
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,8 +42,8 @@ class Design:
 
     Parameters
     ----------
-    cavity : array_like
-        Half-width ``b`` of the cavity [m]: the absorber travels ``2 b`` from wall to wall.
+    half_width : array_like
+        ``b`` [m], the clearance to either side: the absorber travels ``2 b`` from wall to wall. `cavity` is an older name of it.
     natural_frequency : array_like
         ``f_0`` of the oscillator alone [Hz].
     restitution : array_like
@@ -63,7 +64,7 @@ class Design:
         If a value has no physical meaning; the message names the field.
     """
 
-    cavity: Any = 0.02
+    half_width: Any = 0.02
     natural_frequency: Any = 7.666
     restitution: Any = 0.76
     friction: Any = 0.5
@@ -79,7 +80,7 @@ class Design:
             return (x >= 0) & (x <= _LARGEST)
 
         rules = {
-            "cavity": (scale, "must be positive, from 1e-12 to 1e12 [m]"),
+            "half_width": (scale, "must be positive, from 1e-12 to 1e12 [m]"),
             "natural_frequency": (scale, "must be positive, from 1e-12 to 1e12 [Hz]"),
             "restitution": (lambda x: (x > 0) & (x <= 1), "must lie in (0, 1]"),
             "friction": (size, "must lie between 0 and 1e9"),
@@ -99,8 +100,9 @@ class Design:
         cls,
         *,
         gravity: float,
-        cavity: float | None = None,
+        half_width: float | None = None,
         natural_frequency: float | None = None,
+        cavity: float | None = None,
         **fields: Any,
     ) -> Design:
         """From ``g~ = g/(b omega_0^2)`` and one of the two scales; the other one follows.
@@ -110,6 +112,9 @@ class Design:
         ValueError
             If both scales or none are given, ``gravity`` is not positive, or a scale leaves `SCALE`.
         """
+        if half_width is not None and cavity is not None:
+            raise ValueError("half_width and cavity say the same thing twice; leave cavity out.")
+        cavity = half_width if cavity is None else cavity
         if (cavity is None) == (natural_frequency is None):
             raise ValueError(
                 "give exactly one of cavity [m] and natural_frequency [Hz]; gravity fixes the other."
@@ -134,11 +139,18 @@ class Design:
                 f"gravity = {gravity!r} with {name} = {value!r} {unit} means {follows.format(other)}, which lies outside "
                 f"{SCALE[0]:g} to {SCALE[1]:g}; change one of the two."
             )
-        return cls(cavity=cavity, natural_frequency=natural_frequency, **fields)
+        return cls(half_width=cavity, natural_frequency=natural_frequency, **fields)
 
     def with_(self, **changes: Any) -> Design:
         """A copy with some fields changed."""
+        if "cavity" in changes:
+            changes["half_width"] = changes.pop("cavity")
         return replace(self, **changes)
+
+    @property
+    def cavity(self) -> Any:
+        """`half_width`, by its older name."""
+        return self.half_width
 
     @property
     def natural_rate(self) -> Any:
@@ -148,7 +160,7 @@ class Design:
     @property
     def gravity(self) -> Any:
         """``g~ = g/(b omega_0^2)``, dimensionless."""
-        return self.acceleration / (self.cavity * self.natural_rate**2)
+        return self.acceleration / (self.half_width * self.natural_rate**2)
 
     @property
     def loss(self) -> Any:
@@ -163,13 +175,13 @@ class Design:
     @property
     def activation_threshold(self) -> Any:
         """``q1_min = b C_min`` [m]: displacement of the oscillator at which the absorber engages."""
-        return self.cavity * manifolds.activation(self.loss, self.level).amplitude
+        return self.half_width * manifolds.activation(self.loss, self.level).amplitude
 
     @property
     def upper_bound(self) -> Any:
         """``q1_max = b C_max`` [m]: displacement above which two symmetric impacts per period are
         unstable."""
-        return self.cavity * manifolds.symmetry_limit(self.loss, self.level).amplitude
+        return self.half_width * manifolds.symmetry_limit(self.loss, self.level).amplitude
 
     @property
     def operating_ratio(self) -> Any:
@@ -202,7 +214,7 @@ class Design:
         """
         ratio = 1.0 if frequency is None else np.asarray(frequency, dtype=float) / self.natural_frequency
         low, high = manifolds.sliding_bounds(self.level / ratio**2)
-        scale = self.cavity / (1.0 + np.asarray(self.mass_ratio))
+        scale = self.half_width / (1.0 + np.asarray(self.mass_ratio))
         return scale * low, scale * high
 
     @property
@@ -230,7 +242,7 @@ class Design:
 
     def excitation(self, forcing: ArrayLike) -> Any:
         """Base amplitude ``E = G b eps`` [m] of a dimensionless forcing ``G``."""
-        return np.asarray(forcing, dtype=float) * self.cavity * self.mass_ratio
+        return np.asarray(forcing, dtype=float) * self.half_width * self.mass_ratio
 
     def is_stuck(self, frequency: ArrayLike, excitation: ArrayLike) -> NDArray[np.bool_]:
         """Whether the linear response with the absorber stuck is one that friction can hold."""
@@ -251,3 +263,24 @@ class Design:
             Figure("friction level", "h", self.level, "1", "(1+eps)(pi/2) mu g~"),
             Figure("impact loss", "R", self.loss, "1", "(1 - r)/(1 + r)"),
         ]  # fmt: skip
+
+
+def _older_name(init: Any) -> Any:
+    """`Design(cavity=...)` is `Design(half_width=...)`."""
+
+    @wraps(init)
+    def known(self: Design, *values: Any, **fields: Any) -> None:
+        if "cavity" not in fields:
+            return init(self, *values, **fields)
+        if "half_width" in fields:
+            raise ValueError("half_width and cavity say the same thing twice; leave cavity out.")
+        fields["half_width"] = fields.pop("cavity")
+        try:
+            init(self, *values, **fields)
+        except ValueError as error:  # in the user's word
+            raise ValueError(str(error).replace("half_width", "cavity", 1)) from None
+
+    return known
+
+
+Design.__init__ = _older_name(Design.__init__)

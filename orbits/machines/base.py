@@ -207,10 +207,8 @@ class Model:
         }
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
-        """Many starts and what they settle on; see `orbits.attractors.population.Population`."""
-        from orbits.attractors.population import Population
-
-        return Population(self, over or self.default_parameter, parameters)
+        """Many starts and what they settle on; see `orbits.population.Population`."""
+        return above("Population")(self, over or self.default_parameter, parameters)
 
     def measure_own(
         self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray

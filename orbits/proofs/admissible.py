@@ -121,12 +121,22 @@ def conditions(
         for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights):
             if zero.event != i or not _vanishes(condition, zero):
                 yield condition
-        if zero.event != i or zero.name != "stop":
+        if zero.event == i and zero.name == "stop":
+            yield _no_time(motif, i, flight, phases, zero)
+        else:
             yield Condition("duration", i, phases[1] - phases[0])
             if zero.event == i and zero.phase is not None:  # else it would be no border of this flight
                 yield Condition("touch", i, zero.phase - phases[0])
                 yield Condition("touch", i, phases[1] - zero.phase)
             yield from _in_flight(motif, i, flight, phases, flights, zero)
+
+
+def _no_time(motif: Motif, i: int, flight: Flight, phases: tuple[Any, Any], zero: Zero) -> Condition:
+    """That a stick lasts no time at all: the push reaches friction at both its ends, and only once in their neighbourhood."""
+    mode = motif.arrival(i)[1]
+    near = (phases[1] - phases[0]).contains(0) and zero.side == mode
+    rate = mode * flight(interval(*phases)).push1
+    return Condition("stop", i, rate if near else library().arb(-1))
 
 
 def _vanishes(condition: Condition, zero: Zero) -> bool:

@@ -163,7 +163,10 @@ def conditions(c, p, z, name, event, side, touch):
         tests += {"t": [("turn", 0, mode * P[0] - a.get(mode, 0))], "u": [("slip", 0, mode * P[1])],
                   "s": [("stick", s, a[s] - P[0] * s) for s in (1, -1)]}.get(letter, [])
         yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
-        if here == "stop": continue
+        if here == "stop":  # no time at all: the push reaches friction at both ends, and once in their neighbourhood
+            once = push(iv.mpf([min(first.a, last.a), max(first.b, last.b)]), i)[1] * signs[i + 1]
+            yield "stop", i, once if 0 in last - first and side == signs[i + 1] else iv.mpf(-1)
+            continue
         yield "duration", i, last - first
         if event == i and touch is not None: yield from (("touch", i, touch - first), ("touch", i, last - touch))
         for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
@@ -288,7 +291,8 @@ def verify(c):
     else: need(bool(border) == bool(e) == (kind != "orbit") and "normal" not in c and c.get("multiplier", 1) == 1, f"no {kind}")
     if border:
         (name, i, side), free = border, c["frictionless"]
-        need(kind in ("wall-graze", "velocity-graze", "stick", "chatter") and side in (1, -1) and (i == 0 if stuck else i in range(len(z))), "no border")
+        which = {"flight": "velocity-graze", "wall": "wall-graze", "approach": "wall-graze", "reversal": "wall-graze"}
+        need(kind == which.get(name, "stick") and side in (1, -1) and (i == 0 if stuck else i in range(len(z))), "no border")
         fits = [name == "rest"] if stuck else [
             name == "reversal" and free, name in ("flight", "hold") and not free and (modes[i] == 0) == (name == "hold"), name == "approach"
             and events[i] in WALL, name == "wall" and events[i] in "tsu", (name, events[i]) in [("turn", "t"), ("stick", "s"), ("stop", "s"), ("slip", "u")]]

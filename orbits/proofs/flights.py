@@ -72,6 +72,9 @@ class Shaken:
 
     node = 2
 
+    limit: Mapping[int, Any]
+    room: Mapping[int, Any]
+
     def __init__(self, p: Mapping[str, Any]) -> None:
         self.amplitude, self.omega = p["amplitude"], p["frequency"]
         weight = (1 + p["mass_ratio"]) * p["gravity"]
@@ -125,6 +128,8 @@ class Coupled:
 
     node = 4
     bias = 0
+    limit: Mapping[int, Any]
+    room: Mapping[int, Any]
 
     def __init__(self, p: Mapping[str, Any]) -> None:
         self.eps, self.omega = p["mass_ratio"], p["frequency"]

@@ -124,10 +124,11 @@ def find_attractor(
     params = machine.vector(parameters)
     stepper = Stepper(machine, params)
     stepper.start(*first_state(machine, start))
-    return _found(stepper, transient, max_period, patience)
+    return attracted(stepper, transient, max_period, patience)
 
 
-def _found(stepper: Stepper, transient: int, max_period: int, patience: int) -> DeclaredAttractor:
+def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) -> DeclaredAttractor:
+    """What the motion of a stepper leads to; `find_attractor` says what the numbers are."""
     machine, params = stepper.machine, stepper.params
     for attempt in range(patience + 1):
         _skip(stepper, transient * 2**attempt)

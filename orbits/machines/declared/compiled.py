@@ -144,6 +144,13 @@ class Compiled:
 
         return self._once(("approach", wall), make)
 
+    def gap_slopes(self, wall: int) -> engine.Values:
+        """Derivatives of a gap by the states."""
+        e = self.equations
+        return self._once(
+            ("slopes", wall), lambda: engine.Values(self.layout, engine.derivatives([e.gap[wall]], e.x)[0])
+        )
+
     def settled(self, wall: int) -> engine.Values:
         """The states after an impulse that takes the rate of a gap away."""
         e = self.equations

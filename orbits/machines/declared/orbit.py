@@ -215,6 +215,7 @@ class DeclaredOrbit:
         ]
         return {
             "word": self.word.text,
+            **({} if len(self.word) else {"rest": "no events"}),
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,

@@ -439,8 +439,8 @@ class DeclaredProblem:
         """A description that `rebuild` understands, ready for JSON."""
         return {
             "factory": "orbits.machines.declared.stored:rebuild",
-            "name": f"P_{self.word.impacts}^{self.periods}",
-            "model": self.machine.settings(),
+            "name": f"P_{self.word.impacts}^{self.periods}" if len(self.word) else "no events",
+            "model": {**self.machine.settings(), **self.parameters},
             "word": self.word.text,
             "events": list(self.word.events),
             "modes": [list(mode) for mode in self.word.modes],

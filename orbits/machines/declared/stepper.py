@@ -65,10 +65,11 @@ class Stepper:
         if modes is not None:
             self.modes = tuple(modes)
             self._fresh = True
+            self._settle_touches()
             return
         found = list(self.machine.rest_mode(self.params, self.state, self.clock))
         self.modes = tuple(found)
-        values = self._contact_values()
+        values = self.contact_values()
         for j, contact in enumerate(self.machine.contacts):
             if isinstance(contact, Wall) and values[j] < -FIRST_EVENT * (1.0 + np.abs(self.state).max()):
                 raise SimulationError(
@@ -82,7 +83,8 @@ class Stepper:
         self._fresh = True
         self._impacts_at_start(values)
 
-    def _contact_values(self) -> np.ndarray:
+    def contact_values(self) -> np.ndarray:
+        """Gaps, velocities and surfaces at the state: one value per contact."""
         if not self.machine.contacts:
             return np.zeros(0)
         numbers = self.compiled.numbers(self.params, self.modes)
@@ -139,7 +141,7 @@ class Stepper:
         before = float(row[-1])
         self.state[:] = row[:-1]
         modes = list(self.modes)
-        values = self._contact_values()
+        values = self.contact_values()
         for j, contact in enumerate(self.machine.contacts):
             touched = isinstance(contact, DryFriction) and (wall, j) in self.machine.alphabet.flips
             if touched and j not in self.absent and values[j] != 0.0:
@@ -219,13 +221,21 @@ class Stepper:
             if value < 0.0 and guard.kind == HIT:
                 self.state, self.clock = before, begin
                 return
-        for value, guard in zip(values, guards):
-            if (
-                value < 0.0 and guard.kind == SWITCH
-            ):  # the surface was only touched: the flow stays on its side
-                self.state, self.clock = before, begin
-                self.modes = self._with(guard.contact, -self.modes[guard.contact])
-                return
+
+    def _settle_touches(self) -> None:
+        """A start on the surface of a switch that is only touched is on the side to which the flow leads."""
+        values, rates, guards = self._guards(self.modes)
+        near = TOUCH * (1.0 + np.abs(self.state).max())
+        for value, rate, guard in zip(values, rates, guards):
+            if guard.kind == SWITCH and abs(value) < near and abs(rate) < near:
+                _, _, _, numbers, watch = self._tools(self.modes)
+                moved = self.state.copy()
+                watch.move(moved, self.clock, self.clock + OFF, numbers)
+                kept, self.state = self.state, moved
+                there = self._guards(self.modes)[0]
+                self.state = kept
+                if next(v for v, g in zip(there, guards) if g is guard) < 0.0:
+                    self.modes = self._with(guard.contact, -self.modes[guard.contact])
 
     def _rebase(self) -> None:
         if self.machine.forced:

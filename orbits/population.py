@@ -12,8 +12,8 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
 from orbits.attractors.recurrence import settle
-from orbits.cycles.stuck import StuckOrbit
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
+from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip
 
 TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
@@ -208,7 +208,7 @@ class _Sorting:
         self.images.append((np.empty((0, 0)), np.empty((0, 0)), False))
 
     def _stuck(self) -> tuple[Any, Any]:
-        orbit = StuckOrbit.of(self.model, self.params)
+        orbit = Orbit.at_rest(self.model, self.params)
         if not orbit.real:
             return None, None
         problem = orbit.problem(self.population.parameter)

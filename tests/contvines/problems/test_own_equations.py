@@ -1,0 +1,191 @@
+"""Equations of one's own: scales, corrupting functions, derivatives, symmetries, kinks, sparse Jacobians."""
+
+import math
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.sparse.linalg import LinearOperator
+
+import contvines as cv
+
+
+def of_kind(graph, kind):
+    return sorted(point.value for point in graph.of_kind(kind))
+
+
+@pytest.mark.parametrize(("s", "t"), [(1e3, 1.0), (1e-6, 1.0), (1e-9, 1e-9), (1e9, 1e9), (1e-9, 1e9)])
+def test_scales_of_unknowns_parameter_and_rows(s, t):
+    """p/t + u/s - (u/s)^3 folds at p = +-2 t/(3 sqrt 3), whatever the units."""
+    problem = cv.AlgebraicProblem(lambda u, p: s * (p / t + u / s - (u / s) ** 3), [-1.5 * s], -2.0 * t)
+    graph = cv.diagram(problem, within=(-2.0 * t, 2.0 * t))
+    exact = 2.0 * t / (3.0 * math.sqrt(3.0))
+    assert of_kind(graph, "fold") == pytest.approx([-exact, exact], rel=1e-13)
+    assert len(graph) == 1 and not graph.of_kind("branch-point")
+
+
+def ab(u, p):
+    reaction = p * (1.0 - u[0]) * np.exp(u[1])
+    return np.array([-u[0] + reaction, -3.0 * u[1] + 14.0 * reaction])
+
+
+def ab_jacobian(u, p, wrong=0.0):
+    e = np.exp(u[1])
+    reaction = p * (1.0 - u[0]) * e
+    return np.array([[-1.0 - p * e, reaction], [-14.0 * p * e + wrong, -3.0 + 14.0 * reaction]])
+
+
+def test_functions_that_would_corrupt():
+    def changes(u, p):
+        u -= p
+        return u
+
+    with pytest.raises(ValueError, match="must not change its argument"):
+        cv.AlgebraicProblem(changes, [0.0], 0.0)
+    buffer = np.zeros(1)
+
+    def hands_out_its_buffer(u, p):
+        buffer[0] = float(np.real(u[0])) ** 3 + float(np.real(u[0])) - p
+        return buffer
+
+    graph = cv.diagram(cv.AlgebraicProblem(hands_out_its_buffer, [0.0], 0.0), within=(-1.0, 1.0))
+    assert graph["B1"].range == (-1.0, 1.0)
+
+
+def test_given_jacobians_are_checked():
+    cv.AlgebraicProblem(ab, [0.1, 0.2], 0.05, jacobian=ab_jacobian)
+    with pytest.raises(ValueError, match=r"row 1, column 0.*differences"):
+        cv.AlgebraicProblem(ab, [0.1, 0.2], 0.05, jacobian=lambda u, p: ab_jacobian(u, p, 0.01))
+    with pytest.raises(ValueError, match="transposed"):
+        cv.AlgebraicProblem(ab, [0.1, 0.2], 0.05, jacobian=lambda u, p: ab_jacobian(u, p).T)
+    with pytest.raises(ValueError, match=r"shape \(3, 2\); \(2, 2\) is needed"):
+        cv.AlgebraicProblem(ab, [0.1, 0.2], 0.05, jacobian=lambda u, p: np.zeros((3, 2)))
+
+
+def test_steep_functions():
+    steep = cv.AlgebraicProblem(lambda u, p: np.arctan(u / 1e-4) - p, [0.0], 0.0)
+    assert cv.diagram(steep, within=(-1.0, 1.0))["B1"].range == (-1.0, 1.0)
+    # real numbers only, so differences; p + v - exp(v) with v = u/1e-3 folds at p = 1
+    real = cv.AlgebraicProblem(lambda u, p: [p + u[0] / 1e-3 - math.exp(u[0] / 1e-3)], [0.0], 2.0)
+    assert of_kind(cv.diagram(real, within=(0.0, 3.0)), "fold") == pytest.approx([1.0], abs=1e-12)
+
+
+def four_ways(u, p):
+    x, y = u
+    return [p * x - x**3 - 0.5 * x * y * y, p * y - y**3 - 0.5 * x * x * y]
+
+
+def test_an_even_number_of_branch_points():
+    """The symmetry of a square: two kernels at once, four branches; two of them where the symmetries are told."""
+    graph = cv.diagram(cv.AlgebraicProblem(four_ways, [0.0, 0.0], -0.5), within=(-1.0, 0.5), depth=1)
+    assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-12) and len(graph) == 5
+    told = cv.AlgebraicProblem(four_ways, [0.0, 0.0], -0.5, symmetries=[np.diag([-1.0, 1.0]), [1, 0]])
+    assert len(cv.diagram(told, within=(-1.0, 0.5), depth=1)) == 3
+
+
+def test_a_continuous_symmetry_is_named_and_a_condition_helps():
+    def circle(u, p):
+        return p * u - u * (u @ u)
+
+    graph = cv.diagram(cv.AlgebraicProblem(circle, [0.0, 0.0], -0.5), within=(-1.0, 1.0))
+    assert len(graph) == 1 and "continuous symmetry" in graph["BP1"].note
+    problem = cv.AlgebraicProblem(circle, [0.0, 0.0], -0.5, conditions=[lambda u, p: u[1]])
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert len(graph) == 2
+    np.testing.assert_allclose(graph["B2"].points[:, 0] ** 2, graph["B2"].values, atol=1e-12)
+
+
+def test_kinks_are_named_and_switches_cross_them():
+    plain = cv.diagram(
+        cv.AlgebraicProblem(lambda u, p: p - np.abs(u) - 0.1 * u, [1.0], 1.1), within=(-1.0, 1.5)
+    )
+    assert "kink" in plain["B1"].ended[0]
+    jump = cv.diagram(cv.AlgebraicProblem(lambda u, p: u - p - (p > 0.3), [0.0], 0.0), within=(-1.0, 1.0))
+    assert "jump near p = 0.3" in jump["B1"].ended[1]
+    switches = {"k": lambda u, p: u[0]}
+    folded = cv.AlgebraicProblem(lambda u, p, s: [p - (s["k"] + 0.1) * u[0]], [1.0], 1.1, switches=switches)
+    graph = cv.diagram(folded, within=(-1.0, 1.5))
+    assert of_kind(graph, "switch") == pytest.approx([0.0], abs=1e-14) and len(graph) == 2
+    assert [switch.note for switch in graph.switches] == ["nonsmooth fold"]
+    bent = cv.AlgebraicProblem(
+        lambda u, p, s: [p - (1.5 + 0.5 * s["k"]) * u[0]], [1.0], 1.1, switches=switches
+    )
+    graph = cv.diagram(bent, within=(-1.0, 1.5))
+    assert [switch.note for switch in graph.switches] == ["persistence"]
+
+
+def test_errors_are_one_sentence_and_keep_the_graph():
+    def table(u, p):
+        if np.real(p) > 0.5:
+            raise RuntimeError("the table ends")
+        return u - p**2
+
+    graph = cv.diagram(cv.AlgebraicProblem(table, [0.0], 0.0), within=(-1.0, 1.0))
+    assert graph["B1"].range[1] == pytest.approx(0.5, abs=1e-6)
+    assert "RuntimeError: the table ends" in graph["B1"].ended[1]
+
+
+def bratu(n):
+    """u'' + p exp(u) = 0 on n inner points; the Jacobian in sparse form."""
+    h = 1.0 / (n + 1)
+    laplace = (
+        sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]).tocsr() / h**2
+    )
+    return lambda u, p: laplace @ u + p * np.exp(u), lambda u, p: (
+        laplace + sp.diags_array(p * np.exp(u))
+    ).tocsr()
+
+
+def test_sparse_jacobians_give_what_dense_ones_give():
+    f, jacobian = bratu(40)
+    dense = cv.AlgebraicProblem(
+        f, np.zeros(40), 0.0, jacobian=lambda u, p: jacobian(u, p).toarray(), scale=1.0
+    )
+    sparse = cv.AlgebraicProblem(
+        f,
+        np.zeros(40),
+        0.0,
+        jacobian=jacobian,
+        derivative=lambda u, p: np.exp(u),
+        scale=1.0,
+        spectrum="flow",
+        leading=4,
+    )
+    folds = [
+        of_kind(cv.diagram(problem, within=(0.0, 4.0), settings={"escape": 8.0}), "fold")
+        for problem in (dense, sparse)
+    ]
+    assert folds[0] == pytest.approx(folds[1], abs=1e-12) and len(folds[0]) == 1
+    assert folds[0][0] == pytest.approx(3.5138307, rel=2e-3)  # the differential equation's own fold
+
+
+def test_matrix_free():
+    f, jacobian = bratu(12)
+    inverse = np.linalg.inv(jacobian(np.zeros(12), 0.0).toarray())
+
+    def operator(u, p):
+        matrix = jacobian(u, p)
+        return LinearOperator((12, 12), matvec=lambda x: matrix @ x)
+
+    problem = cv.AlgebraicProblem(
+        f,
+        np.zeros(12),
+        0.0,
+        jacobian=operator,
+        derivative=lambda u, p: np.exp(u),
+        preconditioner=lambda u, p: inverse,
+        scale=1.0,
+    )
+    dense = cv.AlgebraicProblem(f, np.zeros(12), 0.0, scale=1.0)
+    folds = [
+        of_kind(cv.diagram(q, within=(0.0, 4.0), settings={"escape": 4.0}), "fold") for q in (problem, dense)
+    ]
+    assert folds[0] == pytest.approx(folds[1], abs=1e-9) and len(folds[1]) == 1
+
+
+def test_outputs_are_measures():
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u - p**2, [0.0], 0.0, outputs={"energy": lambda u, p: 0.5 * u[0] ** 2 + p}
+    )
+    branch = cv.diagram(problem, within=(-1.0, 1.0))["B1"]
+    np.testing.assert_allclose(branch.measure("energy"), 0.5 * branch.values**4 + branch.values, atol=1e-12)

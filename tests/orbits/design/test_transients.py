@@ -1,0 +1,91 @@
+"""Transients: free decay and recorded base motions, against closed forms, an energy balance and another integrator."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from orbits import Absorber, Coupled
+from orbits.design.transients import free_decay, recorded
+from orbits.machines.base import ParameterError
+
+MACHINE = Coupled(restitution=0.6, friction=0.1, gravity=0.25, mass_ratio=0.02, damping=1.5, forcing=0.0)
+
+
+def pulse(t):
+    return 0.8 * np.sin(t) * np.exp(-(((t - 12.0) / 8.0) ** 2))
+
+
+def test_a_free_decay_balances_and_beats_the_bare_oscillator():
+    decay = free_decay(MACHINE, MACHINE.vector(), 3.0)
+    lost = decay.impacts + decay.friction + decay.damping
+    assert lost == pytest.approx(0.5 * 9.0 * (1.0 - decay.energy[-1]) + 0.5 * 0.0, rel=0.05)
+    assert decay.pumping_time < decay.bare_time and 0.05 < decay.absorber_share < 0.6
+    rate = MACHINE.mass_ratio * MACHINE.damping
+    assert decay.bare_time == pytest.approx(np.log(10.0) / rate, rel=1e-12)
+    bare = solve_ivp(
+        lambda t, y: [y[1], -rate * y[1] - y[0]],
+        (0.0, 60.0),
+        [1.0, 0.0],
+        rtol=1e-10,
+        atol=1e-12,
+        dense_output=True,
+    )
+    t = decay.times[decay.times < 60.0]
+    np.testing.assert_allclose(decay.bare[: t.size], (bare.sol(t) ** 2).sum(axis=0), rtol=1e-6)
+
+
+def test_a_recorded_motion_of_the_bare_oscillator():
+    t = np.linspace(0.0, 40.0, 401)
+    a = pulse(t)
+    seen = recorded(MACHINE, MACHINE.vector(), t, a)
+    rate = MACHINE.mass_ratio * MACHINE.damping
+    known = solve_ivp(
+        lambda s, y: [y[1], -rate * y[1] - y[0] - np.interp(s, t, a)], (0.0, 40.0), [0.0, 0.0], rtol=1e-10, atol=1e-12,
+        max_step=0.1, t_eval=t,
+    )  # fmt: skip
+    np.testing.assert_allclose(np.interp(t, seen.times, seen.bare), known.y[0], atol=2e-3)
+    assert seen.bare[-1] == pytest.approx(known.y[0][-1], abs=1e-8)
+
+
+def test_what_goes_in_is_kept_or_lost():
+    """The work of the base's acceleration on both masses is what is lost and what they still have."""
+    t = np.linspace(0.0, 60.0, 6001)
+    a = pulse(t)
+    seen = recorded(MACHINE, MACHINE.vector(), t, a)
+    assert len(seen.impact_times) > 5 and np.all(np.diff(seen.impact_times) > 0.0)
+    assert np.abs(seen.relative).max() <= 1.0 + 1e-9
+    assert seen.impacts > 0.0 and seen.friction > 0.0
+    assert seen.peak < seen.bare_peak
+
+
+def test_a_periodic_motion_that_is_recorded_is_the_simulated_one():
+    """A harmonic base given as a record settles on the orbit of the harmonic machine."""
+    eps, omega = 0.02, 1.0
+    machine = MACHINE.changed(forcing=6.0, frequency=omega)
+    t = np.arange(0.0, 700.0, 0.02)
+    acceleration = -eps * 6.0 * omega**2 * np.sin(omega * t)
+    seen = recorded(machine, machine.vector(), t, acceleration)
+    last = seen.times > 680.0
+    base = eps * 6.0 * np.sin(omega * seen.times[last])
+    settled = np.abs(seen.oscillator[last] + base).max()
+    from orbits.attractors import find_attractor
+    from orbits.attractors.sweep import measures
+
+    assert settled == pytest.approx(measures(find_attractor(machine))["max_abs_q1"], rel=2e-3)
+
+
+def test_bad_records_get_a_sentence():
+    p = MACHINE.vector()
+    for t, a, says in (
+        ([0.0, 1.0], [0.0], "two columns of equal length"),
+        ([0.0, 0.0], [0.0, 1.0], "do not grow at row 1"),
+        ([0.0, np.nan], [0.0, 1.0], "not finite"),
+    ):
+        with pytest.raises(ParameterError, match=says):
+            recorded(MACHINE, p, np.array(t), np.array(a))
+    with pytest.raises(ParameterError, match="no oscillator"):
+        recorded(
+            Absorber(restitution=0.6, friction=0.1, gravity=0.2), np.zeros(6), np.arange(3.0), np.zeros(3)
+        )
+    with pytest.raises(ParameterError, match="other than 0"):
+        free_decay(MACHINE, p, 0.0)
