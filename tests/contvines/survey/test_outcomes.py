@@ -1,0 +1,49 @@
+"""Outcomes of the coupled machine: activation is the borders and folds of the diagram, shares and gaps add up."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.survey.outcomes import Findings, activation, covered, gaps, share, stable_range
+from orbits import Coupled
+
+
+@pytest.fixture(scope="module")
+def found():
+    machine = Coupled(
+        restitution=0.6,
+        friction=0.1,
+        gravity=0.26,
+        mass_ratio=0.02,
+        damping=1.5,
+        forcing=1.0,
+        frequency=1.003,
+    )
+    seed = machine.orbit("LR", forcing=1.2)
+    return Findings(
+        cv.diagram(seed, over="forcing", within=(0.05, 2.0), depth=2),
+        seed,
+        [(1.0, {}, "LR"), (1.0, {}, "tt")],
+    )
+
+
+def test_activation_is_at_special_points(found):
+    values = activation(found)
+    places = [float(point.value) for point in found.graph.special.values()]
+    for value in values.values():
+        assert np.isnan(value) or min(abs(value - place) for place in places) < 1e-8
+    assert np.isfinite(values["activation_from_above"])
+    assert values["activation_from_above"] <= np.nan_to_num(values["activation_from_below"], nan=2.0)
+
+
+def test_gaps_and_cover_are_the_whole(found):
+    low, high = found.graph.within
+    open_ = sum(b - a for a, b in gaps(found.graph)) / (high - low)
+    assert covered(found)["covered"] == pytest.approx(1.0 - open_, rel=1e-12)
+    inside = stable_range(found, "LR")
+    assert 0.0 < inside["stable_LR"] <= inside["stable_LR_to"] - inside["stable_LR_from"] + 1e-12
+
+
+def test_shares(found):
+    assert share(found, "LR") == {"share_LR": 0.5}
+    assert np.isnan(share(Findings(found.graph, None), "LR")["share_LR"])
