@@ -9,6 +9,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..events.segment import Segment
 from .branch import Branch
+from .ending import Ending
 from .half_branch import HalfBranch
 
 APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
@@ -98,7 +99,7 @@ def make_branch(
     engine: Engine,
     half: HalfBranch,
     real: bool,
-    ended: tuple[str, str],
+    endings: tuple[Ending, Ending],
     closed: bool,
     seed: str | None,
     origin: int | None = None,
@@ -116,7 +117,7 @@ def make_branch(
         margin=whole.smallest,
         stable=stability(engine, whole.spectrum, special if origin is None else [*special, origin]),
         real=real,
-        ended=ended,
+        endings=endings,
         closed=closed,
         seed=seed,
         description=dict(problem.describe()),

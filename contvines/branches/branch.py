@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..problems.registry import without_problem
+from .ending import Ending
 
 
 @dataclass(eq=False)
@@ -32,8 +33,8 @@ class Branch:
         A special point counts as stable when one of its neighbours is.
     real : bool
         False: beyond a border, no machine follows it.
-    ended : (str, str)
-        Why the branch ends, at its first and at its last point.
+    endings : (Ending, Ending)
+        Why the branch ends, at its first and at its last point; as sentences in ``ended``.
     closed : bool
         The last point is the first one again (modulo the shift by a period).
     seed : str or None
@@ -54,7 +55,7 @@ class Branch:
     margin: np.ndarray = field(repr=False)
     stable: np.ndarray = field(repr=False)
     real: bool = True
-    ended: tuple[str, str] = ("", "")
+    endings: tuple[Ending, Ending] = (Ending.said(""), Ending.said(""))
     closed: bool = False
     seed: str | None = None
     marks: tuple[tuple[int, str], ...] = ()
@@ -99,6 +100,13 @@ class Branch:
     def range(self) -> tuple[float, float]:
         """Smallest and largest parameter value."""
         return float(np.min(self.values)), float(np.max(self.values))
+
+    @property
+    def ended(self) -> tuple[str, str]:
+        """Why the branch ends, at its first and at its last point, in words."""
+        unit = float(np.abs(self.values).max(initial=0.0))
+        first, last = (ending.sentence(self.parameter, unit) for ending in self.endings)
+        return first, last
 
     def pieces(self) -> list[tuple[int, int, bool]]:
         """Runs of equal stability: (first, last, stable) with inclusive indices, neighbours sharing a point."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
-from ..events.examine import Located
+from ..events.located import Located
 
 
 class Piece(NamedTuple):

@@ -51,7 +51,12 @@ class SpecialPoint:
         At a border: multipliers of the solution on the other side.
     mirror : bool
         The branch that leaves here has a mirror image that is not traced.
-    note : str
+    name : str
+        Of the user function, at its zeros.
+    met_from : str or None
+        Label of the branch that came back here to more symmetric solutions.
+    remarks : tuple of str
+        What else there is to say, for people.
     margin_index : int or None
         Column of the margin that vanishes at a border.
     index : int
@@ -78,10 +83,18 @@ class SpecialPoint:
     replay: float | None = None
     multipliers_beyond: np.ndarray | None = field(default=None, repr=False)
     mirror: bool = False
-    note: str = ""
+    name: str = ""
+    met_from: str | None = None
+    remarks: tuple[str, ...] = ()
     margin_index: int | None = None
     index: int = -1
     problem: Any = field(default=None, repr=False)
+
+    @property
+    def note(self) -> str:
+        """Name of the user function, where the point was met from, and remarks, in words."""
+        met = f"met from {self.met_from}" if self.met_from else ""
+        return "; ".join(filter(None, (self.name, met, *self.remarks)))
 
     @property
     def orbit(self) -> Any:

@@ -11,8 +11,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
-from ..events.examine import Located
-from ..events.leaps import ends_branch
+from ..events.located import Located, Role
 from ..events.watch import Watch
 from .half_branch import HalfBranch, Piece, piece_of, single
 
@@ -70,12 +69,12 @@ def trace_half(
             events = unpack(known)
         status, count = chunk.status, len(chunk)
         retrace = None
-        if events and events[-1].kind == "leap":
+        if events and events[-1].role is Role.LEAP:
             i = int(events.pop().position)
             change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
             status, count = Status.RUNNING, i + 1
             retrace = Retrace(count, SHORTER * engine.norm(engine.join(change[0], float(change[1]))))
-        elif events and ends_branch(events[-1]):
+        elif events and events[-1].ends_branch:
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:
             # the loop saw a negative margin that could not be located: keep what is certainly real
@@ -93,7 +92,7 @@ def trace_half(
             half.pieces += [whole.part(here, where)] if where > here else []
             half.pieces.append(piece_of(engine, event.point))
             total += where - here
-            if event.kind != "plain":
+            if event.role is not Role.PLAIN:
                 half.events.append((total, event))
             here, total = where, total + 1
         half.pieces += [whole.part(here, count)] if count > here else []
@@ -119,7 +118,7 @@ def _opening(
     for i, event in enumerate(events):
         half.pieces.append(piece_of(engine, event.point))
         half.events.append((i + 1, event))
-    if events and ends_branch(events[-1]):
+    if events and events[-1].ends_branch:
         half.status = Status.BORDER
     else:
         half.pieces.append(piece_of(engine, start))
@@ -132,7 +131,8 @@ def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
     points = [e.point for e in events]
     return {
         "kind": [e.kind for e in events],
-        "note": [e.note for e in events],
+        "role": [e.role.value for e in events],
+        "name": [e.name for e in events],
         "index": [int(e.index) for e in events],
         "numbers": np.array(
             [
@@ -169,6 +169,15 @@ def unpack(record: dict[str, Any]) -> list[Located]:
             correction,
         )
         events.append(
-            Located(position, kind, int(record["index"][i]), point, (low, high), error, record["note"][i])
+            Located(
+                position,
+                kind,
+                int(record["index"][i]),
+                point,
+                (low, high),
+                error,
+                Role(record["role"][i]),
+                record["name"][i],
+            )
         )
     return events

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from ..number_text import number_text
+
 
 class Status(IntEnum):
     """Status codes of the continuation loop; ``sentence`` says what they mean."""
@@ -17,15 +19,16 @@ class Status(IntEnum):
     CLOSED = 6
     ESCAPED = 7
 
-    def sentence(self, parameter: str = "p", value: float = float("nan")) -> str:
-        """The status as a sentence about a branch at this parameter value."""
+    def sentence(self, parameter: str = "p", value: float = float("nan"), unit: float = 1.0) -> str:
+        """The status as a sentence about a branch at this parameter value; beside ``unit`` rounding is zero."""
+        long, short = number_text(value, 10, unit), number_text(value, 6, unit)
         return {
             Status.RUNNING: "unfinished",
-            Status.LEFT_INTERVAL: f"reaches the end of the interval, {parameter} = {value:.6g}",
-            Status.STEP_TOO_SMALL: f"no convergence near {parameter} = {value:.10g}, even with the smallest step",
-            Status.NOT_EVALUABLE: f"the equations cannot be evaluated beyond {parameter} = {value:.10g}",
-            Status.BORDER: f"reaches a border at {parameter} = {value:.10g}",
-            Status.MAX_POINTS: f"the largest number of points is reached at {parameter} = {value:.6g}",
-            Status.ESCAPED: f"the unknowns run away near {parameter} = {value:.6g}",
+            Status.LEFT_INTERVAL: f"reaches the end of the interval, {parameter} = {short}",
+            Status.STEP_TOO_SMALL: f"no convergence near {parameter} = {long}, even with the smallest step",
+            Status.NOT_EVALUABLE: f"the equations cannot be evaluated beyond {parameter} = {long}",
+            Status.BORDER: f"reaches a border at {parameter} = {long}",
+            Status.MAX_POINTS: f"the largest number of points is reached at {parameter} = {short}",
+            Status.ESCAPED: f"the unknowns run away near {parameter} = {short}",
             Status.CLOSED: "closed: the branch returns to its start",
         }[self]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ..continuation.engine import Engine, Solved
 from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
 from .kinds import BORDERS
 from .locate import Root, locate, locate_singular
+from .located import Located, Role
 from .scan import FLAT, MARGIN
 from .segment import Segment
 
@@ -23,35 +24,6 @@ TIED = 1e-9  # margins that differ by less vanish together
 SURE = 1e-10  # tangents at a border whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
-
-
-class Located(NamedTuple):
-    """A special point on a chunk.
-
-    Attributes
-    ----------
-    position : float
-        Index of the point before it plus the fraction of the segment.
-    kind : str
-        fold, branch-point, period-doubling, symmetry-breaking, neimark-sacker, hopf, a border, user; "meets" where a
-        branch comes back to the fixed space of a symmetry; "plain" for a point between two special points;
-        "leap" for the point before a step to another branch.
-    index : int
-        Which multiplier, margin, symmetry or user function.
-    point : Solved
-    bracket : (float, float)
-    error : float
-        Estimated error of the parameter value.
-    note : str
-    """
-
-    position: float
-    kind: str
-    index: int
-    point: Solved
-    bracket: tuple[float, float]
-    error: float
-    note: str = ""
 
 
 class Examiner:
@@ -125,8 +97,10 @@ class Examiner:
     def _multiplier(self, name: str, k: int) -> Callable[[Solved], float]:
         return lambda point: crossing(self.engine.spectrum(point.row), self.kind, name, k)
 
-    def _located(self, root: Root, kind: str, index: int, note: str = "") -> Located:
-        return Located(root.position, kind, index, root.point, (np.nan, np.nan), root.error, note)
+    def _located(
+        self, root: Root, kind: str, index: int, role: Role = Role.SPECIAL, name: str = ""
+    ) -> Located:
+        return Located(root.position, kind, index, root.point, (np.nan, np.nan), root.error, role, name)
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
         ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
@@ -206,7 +180,7 @@ class Examiner:
             root = locate_singular(segment, along, rough) or locate(segment, along)
             if root is not None:
                 root = locate_singular(segment, along, root.position) or root
-                events.append(self._located(root, "meets", index))
+                events.append(self._located(root, test.kind, index, Role.MEETING))
         return events
 
     def _borders(self, segment: Segment, real: bool) -> list[Located]:
@@ -230,7 +204,7 @@ class Examiner:
         j = self._which_border(engine.margins(root.point.row), falling)
         tangent = self._tangent_before(segment, root)
         root = root._replace(point=root.point._replace(tangent=tangent))
-        return [self._located(root, engine.problem.margin_kind(j), j, "border")]
+        return [self._located(root, engine.problem.margin_kind(j), j, Role.BORDER)]
 
     def _which_border(self, margins: np.ndarray, falling: np.ndarray) -> int:
         """The margin that vanishes. Several may, as when a stick disappears: which one is smallest is then a matter of
@@ -264,7 +238,7 @@ class Examiner:
             f = self.users[name]
             root = locate(segment, lambda point, f=f: float(f(point.u[None, :], np.array([point.p]))[0]))
             if root is not None and root.continuous:
-                events.append(self._located(root, "user", index, name))
+                events.append(self._located(root, "user", index, name=name))
         return events
 
     def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:

@@ -10,7 +10,7 @@ The branch is then traced again from the point before the gap, with shorter step
 
 from __future__ import annotations
 
-from .examine import Located
+from .located import Located, Role
 from .segment import Segment
 
 SHORTEST = 3e-7  # two branches whose gap is narrower than this cannot be told from a branch point
@@ -29,16 +29,11 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     """
     if segment.length <= SHORTEST:
         return None
-    stop = next((i for i, e in enumerate(found) if ends_branch(e)), len(found))
+    stop = next((i for i, e in enumerate(found) if e.ends_branch), len(found))
     if not (any(_inexact(segment, e) for e in found[: stop + 1]) or _unaccounted(segment, found, stop)):
         return None
     ends = (segment.a.p, segment.b.p)
-    return Located(0.0, "leap", 0, segment.a, ends, 0.0)
-
-
-def ends_branch(event: Located) -> bool:
-    """Whether what lies behind the event is left out."""
-    return event.kind == "meets" or event.note == "border"
+    return Located(0.0, "", 0, segment.a, ends, 0.0, Role.LEAP)
 
 
 def _inexact(segment: Segment, event: Located) -> bool:
@@ -51,7 +46,7 @@ def _inexact(segment: Segment, event: Located) -> bool:
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
     """Whether the sign changes before the branch ends, and nothing was found at which it may."""
-    if any(e.kind in ("branch-point", "meets") for e in found[: stop + 1]):
+    if any(e.kind == "branch-point" or e.role is Role.MEETING for e in found[: stop + 1]):
         return False
     last = segment.b if stop == len(found) else found[stop].point
     if not segment.a.sign * last.sign < 0.0:

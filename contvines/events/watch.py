@@ -10,8 +10,9 @@ import numpy as np
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
 from .dips import before_border, below_zero
-from .examine import Examiner, Located, changes
-from .leaps import ends_branch, leap
+from .examine import Examiner, changes
+from .leaps import leap
+from .located import Located, Role
 from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, SHALLOW, Scan, Scanner
 from .segment import Segment
 
@@ -75,11 +76,13 @@ class Watch(Examiner):
             split = self._split(segment, bits)
             if split is not None:
                 s, middle = split
-                plain = Located(s, "plain", 0, middle, (np.nan, np.nan), 0.0)
+                plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
             elif bits & ~(SHALLOW | DAMPED | HUMP):
                 found = self.examine(segment, real=real)
-                border = min((e for e in found if e.note == "border"), key=lambda e: e.position, default=None)
+                border = min(
+                    (e for e in found if e.role is Role.BORDER), key=lambda e: e.position, default=None
+                )
                 split = before_border(segment, border.position, border.point) if real and border else None
                 if split is not None:
                     found = self.both(segment, *split, real)
@@ -95,7 +98,7 @@ class Watch(Examiner):
             found = [e for e in found if e.kind != "astray"]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
-            stop = next((e for e in found if ends_branch(e)), None)
+            stop = next((e for e in found if e.ends_branch), None)
             if stop is not None:
                 # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
                 found = [e for e in found if e is stop or self._apart(e, stop)]
@@ -156,7 +159,7 @@ class Watch(Examiner):
 def before_stop(events: list[Located]) -> list[Located]:
     """The events up to the first one at which the branch ends."""
     for i, event in enumerate(events):
-        if ends_branch(event):
+        if event.ends_branch:
             return events[: i + 1]
     return events
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..branches.assembly import filled, make_branch
 from ..branches.branch import Branch
+from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
@@ -19,7 +21,7 @@ from ..events.watch import AT_BORDER, Watch
 from ..interrupts import listening, take
 from .leaving import leave
 from .marking import mark, may_be_one, origin_index
-from .pending import Pending
+from .pending import Origin, Pending
 from .run import Run
 
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
@@ -46,14 +48,11 @@ def begin(run: Run, problem: Any, u: Any, p: float) -> None:
 
 
 def adopt(run: Run) -> None:
-    """Continue the labels and the register of a graph that has branches already."""
+    """Continue the register of a graph that has branches already."""
     for branch in run.graph.branches.values():
         if branch.problem is not None:
             run.register.add(branch, run.engine(branch.problem)[0])
     run.serial = len(run.graph.branches)
-    for label in [*run.graph.branches, *run.graph.special]:
-        prefix = label.rstrip("0123456789")
-        run.numbers[prefix] = max(run.numbers.get(prefix, 0), int(label[len(prefix) :] or 0))
 
 
 def work(run: Run) -> None:
@@ -68,6 +67,7 @@ def work(run: Run) -> None:
                         f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
                         "the graph is not complete; raise max_branches, or lower depth"
                     )
+                    graph.complete = False
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
@@ -90,7 +90,7 @@ def trace_pending(run: Run, pending: Pending) -> None:
         # a solution that only repeats a shorter one is followed as that one
         pending.problem, pending.u = shorter
         pending.kind, pending.p, pending.tangent = (
-            "root" if pending.kind == "switch" else pending.kind,
+            Origin.ROOT if pending.kind is Origin.SWITCH else pending.kind,
             first.p,
             None,
         )
@@ -101,7 +101,7 @@ def trace_pending(run: Run, pending: Pending) -> None:
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
-    if not real and pending.kind == "border":
+    if not real and pending.kind is Origin.BORDER:
         return  # an algebraic solution beyond the border that no machine follows: nothing was crossed
     if not real and not run.virtual:
         if pending.point is not None:
@@ -109,7 +109,7 @@ def trace_pending(run: Run, pending: Pending) -> None:
         return
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None:
-        if pending.kind == "border" and pending.point is not None:
+        if pending.kind is Origin.BORDER and pending.point is not None:
             if known.label == pending.source:
                 run.remark(pending.point, "the solution found beyond lies on the same branch")
                 return
@@ -118,19 +118,24 @@ def trace_pending(run: Run, pending: Pending) -> None:
         return
     run.serial += 1
     label = run.new_label("B")
-    half, ended, closed = both_ways(run, engine, watch, pending, first, real, label)
-    if pending.kind == "start" and len(half) == 1 and not closed and half.status in DEAD:
+    half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)
+    if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
+        name = pending.problem.parameter
         raise ValueError(
-            f"the branch dies at its first point, {pending.problem.parameter} = {first.p:.10g}, in every direction: "
-            + "; ".join(dict.fromkeys(ended))
+            f"the branch dies at its first point, {name} = {first.p:.10g}, in every direction: "
+            + "; ".join(dict.fromkeys(ending.sentence(name) for ending in endings))
         )
-    if pending.kind == "rest" and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p) and len(half) < 4:
+    if (
+        pending.kind is Origin.REST
+        and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p)
+        and len(half) < 4
+    ):
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return
     half = filled(engine, half, origin_index(half, pending))
     origin = origin_index(half, pending)
-    branch = make_branch(label, engine, half, real, ended, closed, pending.point, origin)
+    branch = make_branch(label, engine, half, real, endings, closed, pending.point, origin)
     run.graph.branches[label] = branch
     run.register.add(branch, engine)
     run.connect(pending.point, pending.source, label, pending.note)
@@ -144,19 +149,19 @@ def trace_pending(run: Run, pending: Pending) -> None:
 
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     """The first regular point of a pending branch, or None."""
-    if pending.kind == "switch":
+    if pending.kind is Origin.SWITCH:
         first = pending.ahead
         if first is not None and not engine.lower <= first.p <= engine.upper:
             first = pending.back
         if first is not None and not engine.lower <= first.p <= engine.upper:
             first = None
-    elif pending.kind == "rest":
+    elif pending.kind is Origin.REST:
         first = pending.origin
     else:
         first = engine.start(pending.u, pending.p, pending.tangent)
         if first is not None:
             step = 0.0
-            if pending.kind == "root" and pending.tangent is None:
+            if pending.kind is Origin.ROOT and pending.tangent is None:
                 # off the point where the known branch ends, or it would be taken for that branch
                 step = run.settings.amplitude
             elif abs(first.tangent[-1]) <= 1e-6 * run.unit(first.p) or first.sign == 0.0:
@@ -218,9 +223,9 @@ def tie_borders(run: Run) -> None:
 
 def both_ways(
     run: Run, engine: Engine, watch: Watch, pending: Pending, first: Solved, real: bool, label: str
-) -> tuple[HalfBranch, tuple[str, str], bool]:
+) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
     """The whole branch in order, why it ends at either side, and whether it is closed."""
-    name, key = pending.problem.parameter, str(run.serial)
+    key = str(run.serial)
 
     def notice(points: int, value: float) -> None:
         run.tell(f"{label}: {points} points", value)
@@ -229,16 +234,17 @@ def both_ways(
         place = f"{key}/{side}"
         return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
-    def sentence(half: HalfBranch) -> str:
-        said = half.status.sentence(name, half.end)
+    def ending(half: HalfBranch) -> Ending:
         explain = getattr(pending.problem, "explain_end", None)
-        if explain is None or half.status not in (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE):
-            return said
-        why = explain(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
-        return f"{said}; {why}" if why else said
+        why = None
+        if explain is not None and half.status in DEAD:
+            why = explain(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
+        return replace(Ending.of(half.status, half.end), text=why or "")
 
-    leaves = "" if pending.point is None else f"leaves {pending.source} at {pending.point}"
-    if pending.kind == "rest":
+    def beginning(reason: Reason) -> Ending:
+        return Ending(reason, pending.p, pending.point, pending.source)
+
+    if pending.kind is Origin.REST:
         ahead = go(first, "ahead")
         # where a stick or flight vanishes p is stationary, or another solution crosses: that is the border itself
         ahead.events = [
@@ -247,8 +253,8 @@ def both_ways(
             if e.kind not in ("fold", "branch-point")
             or engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) > AT_BORDER
         ]
-        return ahead, (f"goes on from {pending.source} at {pending.point}", sentence(ahead)), False
-    if pending.kind == "switch":
+        return ahead, (beginning(Reason.GOES_ON), ending(ahead)), False
+    if pending.kind is Origin.SWITCH:
         assert pending.origin is not None
         starts = {"ahead": pending.ahead, "back": pending.back}
         sides = {
@@ -258,17 +264,17 @@ def both_ways(
         }
         if "ahead" in sides and sides["ahead"].status == Status.CLOSED:
             ahead = sides["ahead"].since(first.u)
-            return ahead, (sentence(ahead), sentence(ahead)), True
+            return ahead, (ending(ahead), ending(ahead)), True
         if len(sides) == 2:
             whole = sides["back"].reversed().extended(sides["ahead"], skip=1)
-            return whole, (sentence(sides["back"]), sentence(sides["ahead"])), False
+            return whole, (ending(sides["back"]), ending(sides["ahead"])), False
         if "ahead" in sides:
-            return sides["ahead"], (leaves, sentence(sides["ahead"])), False
-        return sides["back"].reversed(), (sentence(sides["back"]), leaves), False
-    if first.tangent[-1] < 0.0 and pending.kind == "start":
+            return sides["ahead"], (beginning(Reason.LEAVES), ending(sides["ahead"])), False
+        return sides["back"].reversed(), (ending(sides["back"]), beginning(Reason.LEAVES)), False
+    if first.tangent[-1] < 0.0 and pending.kind is Origin.START:
         first = first._replace(tangent=-first.tangent, sign=-first.sign)
     ahead = go(first, "ahead")
     if ahead.status == Status.CLOSED:
-        return ahead, (sentence(ahead), sentence(ahead)), True
+        return ahead, (ending(ahead), ending(ahead)), True
     back = go(first._replace(tangent=-first.tangent, sign=-first.sign), "back")
-    return back.reversed().extended(ahead, skip=1), (sentence(back), sentence(ahead)), False
+    return back.reversed().extended(ahead, skip=1), (ending(back), ending(ahead)), False

@@ -70,6 +70,8 @@ class Graph:
         False while the run that builds it goes on, or was interrupted.
     message : str
         How the run ended, in words.
+    complete : bool
+        False where branches were left waiting at ``max_branches``.
     proofs : dict of dict
         By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
     """
@@ -83,6 +85,7 @@ class Graph:
     settings: dict[str, Any] = field(default_factory=dict)
     finished: bool = False
     message: str = ""
+    complete: bool = True
     proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
     attractors: list[Attractor] = field(default_factory=list)
     missing: list[Attractor] = field(default_factory=list)
@@ -112,7 +115,7 @@ class Graph:
 
     @property
     def _cut(self) -> bool:
-        return self.message.startswith("stopped") and self.settings.get("max_branches") != 1
+        return not self.complete and self.settings.get("max_branches") != 1
 
     def _repr_html_(self) -> str:
         from .table import branches_table, special_table, title

@@ -11,13 +11,15 @@ from ..branches.branch import Branch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..events.kinds import BORDERS
+from ..events.located import Role
 from ..interrupts import OPEN
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
 from ..switching.normal_forms import criticality, crossing_speed
-from .pending import Pending
+from .pending import Origin, Pending
 from .run import Run
 
+OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
 
 FAMILY = (
@@ -30,7 +32,7 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """Queue the branches that leave a special point, as far as the depth allows."""
     if point.kind in BORDERS:
         _cross(run, point, branch, depth)
-    elif point.note.startswith("met from") and point.branch == branch.label and _from_side(run, point):
+    elif point.met_from is not None and point.branch == branch.label and _from_side(run, point):
         _root(run, point, branch, depth)
     elif point.kind in NAMES:
         _switch(run, point, branch, depth)
@@ -38,7 +40,7 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 def _from_side(run: Run, point: SpecialPoint) -> bool:
     event = run.events.get(point.label)
-    return event is None or event.kind == "meets"
+    return event is None or event.role is Role.MEETING
 
 
 def _solved(run: Run, engine: Engine, point: SpecialPoint) -> Solved:
@@ -56,10 +58,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     spectrum = engine.spectrum(_row(run, engine, point))
     generic = point.kind == "branch-point"
     inside = (
-        any(
-            test.kind == point.kind and np.abs(test.part(point.u[None, :])).max() <= 1e-6
-            for test in watch.symmetries
-        )
+        any(test.kind == point.kind and _is_image(test.part(point.u[None, :])) for test in watch.symmetries)
         and problem.flip_kind != point.kind
     )
     if generic or inside:
@@ -106,7 +105,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     departure.problem,
                     departure.origin.u,
                     departure.origin.p,
-                    kind="switch",
+                    kind=Origin.SWITCH,
                     depth=depth + 1,
                     source=branch.label,
                     point=point.label,
@@ -117,6 +116,11 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     first_step=min(run.settings.first_step, departure.amplitude),
                 )
             )
+
+
+def _is_image(part: np.ndarray) -> bool:
+    """Whether a solution is its own image: the part that the symmetry changes is rounding."""
+    return bool(np.abs(part).max() <= OWN_IMAGE)
 
 
 def _row(run: Run, engine: Engine, point: SpecialPoint) -> np.ndarray:
@@ -142,8 +146,15 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     if depth + 1 > run.depth:
         return
     _, watch = run.engine(point.problem)
-    event = run.events[point.label]
-    symmetry = watch.symmetries[event.index].symmetry
+    event = run.events.get(point.label)
+    if event is None:  # of a graph that was loaded
+        met = [t for t in watch.symmetries if t.kind == point.kind and _is_image(t.part(point.u[None, :]))]
+        if not met:
+            run.remark(point.label, "the problem has no symmetry that this point has")
+            return
+    else:
+        met = [watch.symmetries[event.index]]
+    symmetry = met[0].symmetry
     root = getattr(symmetry, "root", None)
     if root is not None:
         problem, u = root(point.u)
@@ -152,7 +163,7 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 problem,
                 np.asarray(u, dtype=float),
                 point.value,
-                kind="root",
+                kind=Origin.ROOT,
                 depth=depth + 1,
                 source=branch.label,
                 point=point.label,
@@ -173,7 +184,7 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 start.u,
                 start.p,
                 start.tangent,
-                kind="root",
+                kind=Origin.ROOT,
                 depth=depth + 1,
                 source=branch.label,
                 point=point.label,
@@ -202,7 +213,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     np.asarray(seed["u"], dtype=float),
                     float(seed["p"]),
                     None if seed["tangent"] is None else np.asarray(seed["tangent"], dtype=float),
-                    kind="border",
+                    kind=Origin.BORDER,
                     depth=depth + cost,
                     source=branch.label,
                     point=point.label,
@@ -226,7 +237,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 point.u,
                 point.value,
                 outward,
-                kind="rest",
+                kind=Origin.REST,
                 depth=depth,
                 source=branch.label,
                 point=point.label,

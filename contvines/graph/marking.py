@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -9,23 +10,23 @@ import numpy as np
 
 from ..branches.assembly import a_sliver
 from ..branches.branch import Branch
+from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
-from ..events.examine import Located
 from ..events.kinds import BORDERS, kind_of
+from ..events.located import Located, Role
 from ..forms.coefficients import pair_form
 from ..interrupts import OPEN
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
 from .identity import same_form
-from .pending import Pending
+from .pending import Origin, Pending
 from .run import Run
 
 BACK_AT_BORDER = (
     1e-6  # a branch seeded beyond a border comes back to it within this part of the parameter's unit
 )
-SIDE = "comes back to more symmetric solutions at"
 TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
 BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
@@ -35,21 +36,21 @@ def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pe
     """Label the events and interval ends of a branch in order along it; returns what is new on it."""
     marks: list[tuple[int, str]] = []
     fresh: list[SpecialPoint] = []
-    ends: dict[int, str] = {}
+    ends: dict[int, Ending] = {}
     last = len(branch) - 1
     events = list(half.events)
     if not branch.closed:
         for index, side in ((0, 0), (last, 1)):
-            if branch.ended[side].startswith("reaches the end of the interval"):
+            if branch.endings[side].reason is Reason.LEFT_INTERVAL:
                 events.append((index, _end(run, engine, half, index)))
-    if pending.point is not None and pending.kind in ("switch", "rest") and not branch.closed:
+    if pending.point is not None and pending.kind in (Origin.SWITCH, Origin.REST) and not branch.closed:
         origin = origin_index(half, pending)
         if origin is not None:
             marks.append((origin, pending.point))
     events.sort(key=lambda pair: pair[0])
     for index, event in events:
-        meets = event.kind == "meets"
-        kind = engine.problem.symmetries[event.index].kind if meets else _kind(run, engine, event)
+        meets = event.role is Role.MEETING
+        kind = _kind(run, engine, event)
         label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
         if label is None:
             label = run.new_label(kind_of(kind).label)
@@ -69,26 +70,23 @@ def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pe
                     known.multipliers_beyond = engine.multipliers(event.point.row)
                 if known.branch != branch.label:
                     run.connect(label, known.branch, branch.label)
-            elif known.note.startswith("met from"):
+            elif known.met_from is not None:
                 # now seen on the branch of the more symmetric solutions: that one owns it
                 point = _special(run, label, kind, engine, branch, event, index)
-                point.note = known.note
+                point.met_from, point.remarks = known.met_from, known.remarks
                 for other in run.graph.branches.values():
-                    says = [
-                        e.replace(f"{SIDE} {label},", f"meets {branch.label} at {label},")
-                        for e in other.ended
-                    ]
-                    other.ended = (says[0], says[1])
+                    first, last = (_met(ending, label, branch.label) for ending in other.endings)
+                    other.endings = (first, last)
                 run.graph.special[label] = point
                 fresh.append(point)
             elif known.branch != branch.label:
                 run.connect(label, known.branch, branch.label)
         marks.append((index, label))
-        if index in (0, last) and (meets or event.note == "border"):
-            ends[0 if index == 0 else 1] = _sentence(run, label, kind, branch, meets)
+        if index in (0, last) and event.ends_branch:
+            ends[0 if index == 0 else 1] = _ending(run, label, kind, branch, meets)
     branch.marks = tuple(sorted(marks))
     _tell_slivers(run, branch)
-    branch.ended = (ends.get(0, branch.ended[0]), ends.get(1, branch.ended[1]))
+    branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
     return fresh
 
 
@@ -150,7 +148,7 @@ def _known(
     problem, point = engine.problem, event.point
     if kind == "end":
         return None
-    if kind in BORDERS and at_end and pending.kind == "border" and pending.point is not None:
+    if kind in BORDERS and at_end and pending.kind is Origin.BORDER and pending.point is not None:
         source = run.graph.special[pending.point]
         gaps = np.abs(branch.values[[0, -1]] - source.value)
         home = abs(source.value - point.p) <= gaps.min()  # the other end is a border of its own, however near
@@ -162,7 +160,7 @@ def _known(
             return source.label
     if kind in BORDERS and at_end:
         for other in run.queue:
-            if other.kind != "border" or other.point is None:
+            if other.kind is not Origin.BORDER or other.point is None:
                 continue
             source = run.graph.special[other.point]
             if abs(source.value - point.p) > BACK_AT_BORDER * run.unit(point.p):
@@ -184,7 +182,7 @@ def _known(
             or known.problem is None
         ):
             continue
-        if kind == "user" and known.note != event.note:
+        if kind == "user" and known.name != event.name:
             continue
         form = problem.canonical(point.u, point.p) if form is None else form
         if same_form(form, run.form(known), engine.scale):
@@ -226,7 +224,7 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         )
     wrong = None if check is None or special.kind == "end" else check(special.u, special.value)
     if wrong is not None:
-        special.note = f"{special.note}; {wrong}" if special.note else wrong
+        special.remarks = (*special.remarks, str(wrong))
         special.location_error = float("inf")
 
 
@@ -253,21 +251,21 @@ def _special(
         residual=float(residual),
         location_error=float(event.error),
         real=branch.real,
-        note=event.note if kind == "user" else "",
+        name=event.name,
         margin_index=int(event.index) if kind in BORDERS else None,
         index=index,
         problem=engine.problem,
     )
     special.replay = _replay(run, special)
     _doubt(engine, special)
-    if event.kind == "meets":
-        special.note = f"met from {branch.label}"
+    if event.role is Role.MEETING:
+        special.met_from = branch.label
     if kind == "fold":
         special.coefficient = fold_coefficient(engine, point)
     if kind in ("neimark-sacker", "hopf"):
         form = pair_form(engine.problem, special.u, special.value, engine.spectrum(point.row))
         special.coefficient, special.criticality = form.coefficient, form.criticality
-        special.note = special.note or form.note
+        special.remarks = (*special.remarks, form.note) if form.note else special.remarks
     run.events[label] = event
     return special
 
@@ -285,13 +283,18 @@ def _replay(run: Run, special: SpecialPoint) -> float | None:
     return known["error"]
 
 
-def _sentence(run: Run, label: str, kind: str, branch: Branch, meets: bool) -> str:
+def _ending(run: Run, label: str, kind: str, branch: Branch, meets: bool) -> Ending:
     known = run.graph.special[label]
-    value = f"{branch.parameter} = {known.value:.10g}"
+    own = known.branch == branch.label
     if meets:
-        if known.branch == branch.label:
-            return f"{SIDE} {label}, {value}"
-        return f"meets {known.branch} at {label}, {value}"
-    if known.branch != branch.label:
-        return f"meets {known.branch} at {label} ({kind}), {value}"
-    return f"reaches {label} ({kind}) at {value}"
+        reason = Reason.COMES_BACK if own else Reason.MEETS_SYMMETRIC
+    else:
+        reason = Reason.REACHES if own else Reason.MEETS
+    return Ending(reason, known.value, label, None if own else known.branch, kind)
+
+
+def _met(ending: Ending, label: str, owner: str) -> Ending:
+    """An ending at a point of more symmetric solutions, whose branch is known now."""
+    if ending.reason is Reason.COMES_BACK and ending.point == label:
+        return replace(ending, reason=Reason.MEETS_SYMMETRIC, other=owner)
+    return ending

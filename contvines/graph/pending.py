@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
 from ..continuation.engine import Solved
+
+
+class Origin(StrEnum):
+    """From what a branch is reached."""
+
+    START = "start"  # of the diagram: both ways
+    SWITCH = "switch"  # the first points of a departure from a branch point
+    BORDER = "border"  # a solution on the other side of a border: both ways
+    ROOT = "root"  # a more symmetric solution to which a side branch has come back: both ways
+    REST = "rest"  # a border, beyond which the same equations go on: one way
 
 
 @dataclass
@@ -20,9 +31,7 @@ class Pending:
     u, p : ndarray, float
         Where to begin.
     tangent : ndarray or None
-    kind : {"start", "switch", "border", "root", "rest"}
-        "start", "border", "root": both ways from (u, p). "switch": from the first points of a departure. "rest": on from a
-        border in the same problem, one way.
+    kind : Origin
     depth : int
         Switches used so far.
     source : str or None
@@ -42,7 +51,7 @@ class Pending:
     u: np.ndarray
     p: float
     tangent: np.ndarray | None = None
-    kind: str = "start"
+    kind: Origin = Origin.START
     depth: int = 0
     source: str | None = None
     point: str | None = None

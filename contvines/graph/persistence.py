@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..branches.branch import Branch
+from ..branches.ending import Ending
 from ..branches.special_point import SpecialPoint
 from ..problems.registry import UnknownFactory, rebuild
 from .attractor import Attractor
@@ -52,13 +53,19 @@ def graph_from_entries(
     built: dict[str, Any] = {}
     for label, content in entries.get("branch", {}).items():
         content = dict(content)
-        content["ended"] = _pair(content["ended"])
+        content["endings"] = _pair(
+            [Ending.said(text) for text in content.pop("ended")]  # version 0.1 kept the sentences
+            if "ended" in content
+            else [Ending.from_dict(ending) for ending in content["endings"]]
+        )
         content["marks"] = tuple((int(i), str(name)) for i, name in content["marks"])
         problem = _problem(content["description"], built, trust) if problems else None
         graph.branches[label] = Branch(problem=problem, **content)
     for label, content in entries.get("special", {}).items():
         content = dict(content)
         content["bracket"] = _pair(content["bracket"])
+        note = content.pop("note", "")  # of version 0.1
+        content["remarks"] = tuple(content.get("remarks", (note,) if note else ()))
         branch = graph.branches.get(content["branch"])
         graph.special[label] = SpecialPoint(problem=branch.problem if branch else None, **content)
     graph.switches += [Switch(**content) for content in entries.get("switch", {}).values()]
@@ -69,7 +76,10 @@ def graph_from_entries(
 
 
 def _content(thing: Any) -> dict[str, Any]:
-    return {f.name: getattr(thing, f.name) for f in fields(thing) if f.name != "problem"}
+    content = {f.name: getattr(thing, f.name) for f in fields(thing) if f.name != "problem"}
+    if "endings" in content:
+        content["endings"] = [ending.to_dict() for ending in content["endings"]]
+    return content
 
 
 def _pair(values: Any) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import deque
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
@@ -10,10 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..branches.ending import Ending, Reason
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, parameter_unit
 from ..continuation.settings import Settings
-from ..events.examine import Located
+from ..events.located import Located
 from ..events.watch import Watch
 from .graph import Graph, Switch
 from .identity import Register
@@ -94,9 +94,12 @@ class Run:
         return engine, watch
 
     def new_label(self, prefix: str) -> str:
-        """The next label with this prefix."""
-        self.numbers[prefix] = self.numbers.get(prefix, 0) + 1
-        return f"{prefix}{self.numbers[prefix]}"
+        """The next label with this prefix; labels that the graph has already are passed over."""
+        while True:
+            self.numbers[prefix] = self.numbers.get(prefix, 0) + 1
+            label = f"{prefix}{self.numbers[prefix]}"
+            if label not in self.graph:
+                return label
 
     def connect(self, point: str | None, source: str | None, target: str, note: str = "") -> None:
         """Add a switch unless these two branches are already tied at this point."""
@@ -120,12 +123,8 @@ class Run:
         for branch in graph.branches.values():
             if any(mark == label for _, mark in branch.marks):
                 branch.marks = tuple((i, into if mark == label else mark) for i, mark in branch.marks)
-                meets = rf"meets {graph.special[into].branch} at {into}"
-                ends = [
-                    re.sub(rf"\breaches {label} (\(.*?\)) at ", rf"{meets} \1, ", e) for e in branch.ended
-                ]
-                ends = [re.sub(rf"\b{label}\b", into, end) for end in ends]
-                branch.ended = (ends[0], ends[1])
+                first, last = (self._tied(ending, label, into) for ending in branch.endings)
+                branch.endings = (first, last)
             if branch.seed == label:
                 branch.seed = into
         for pending in self.queue:
@@ -137,8 +136,16 @@ class Run:
             self.connect(switch.point, switch.source, switch.target, switch.note)
         del graph.special[label]
 
+    def _tied(self, ending: Ending, label: str, into: str) -> Ending:
+        """An ending at a point that turns out to be another one, on another branch."""
+        if ending.point != label:
+            return ending
+        if ending.reason is Reason.REACHES:
+            return replace(ending, reason=Reason.MEETS, point=into, other=self.graph.special[into].branch)
+        return replace(ending, point=into)
+
     def remark(self, label: str, sentence: str) -> None:
-        """Add a sentence to the note of a special point."""
+        """Add a sentence to the remarks on a special point."""
         special = self.graph.special[label]
-        if sentence not in special.note:
-            special.note = f"{special.note}; {sentence}" if special.note else sentence
+        if sentence not in special.remarks:
+            special.remarks = (*special.remarks, sentence)

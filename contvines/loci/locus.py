@@ -10,6 +10,7 @@ import numpy as np
 
 from ..branches.assembly import make_branch
 from ..branches.branch import Branch
+from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..branches.tracing import trace_half
@@ -17,7 +18,7 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..continuation.status import Status
-from ..events.examine import Located
+from ..events.located import Located, Role
 from ..events.watch import Watch
 from ..journal import NullJournal
 from .kernels import BRANCH, MARGIN
@@ -292,7 +293,8 @@ def trace_locus(
         whole = back.reversed().extended(ahead, skip=1)
         flags = np.append(back_real[::-1], ahead_real[1:])
         ended = (back_ended, ahead_ended)
-    branch = make_branch(label, engine, whole, real, ended, ahead.status == Status.CLOSED, seed)
+    endings = (Ending.said(ended[0]), Ending.said(ended[1]))
+    branch = make_branch(label, engine, whole, real, endings, ahead.status == Status.CLOSED, seed)
     branch.description["unfolded"] = problem.unfolded
     if problem.condition == BRANCH and _unfolds(problem, branch.points):
         return None
@@ -316,7 +318,7 @@ def _border(half: HalfBranch) -> Located | None:
     if half.status != Status.BORDER or not half.events:
         return None
     last = half.events[-1][1]
-    return last if last.note == "border" else None
+    return last if last.role is Role.BORDER else None
 
 
 def _sentence(problem: LocusProblem, half: HalfBranch) -> str:

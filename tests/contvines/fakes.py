@@ -3,6 +3,7 @@
 import numpy as np
 
 from contvines.branches.branch import Branch
+from contvines.branches.ending import Ending
 from contvines.branches.special_point import SpecialPoint
 from contvines.graph.graph import Graph, Switch
 
@@ -49,7 +50,7 @@ def _branch(label: str, points: np.ndarray, values: np.ndarray, eigenvalues: np.
         multipliers=eigenvalues.astype(complex),
         margin=np.full(len(values), np.inf),
         stable=eigenvalues[:, 0] <= 0,
-        ended=("reached the lower end", "reached the upper end"),
+        endings=(Ending.said("reached the lower end"), Ending.said("reached the upper end")),
         description={"name": "pitchfork", "factory": None},
         parameter="p",
         **more,

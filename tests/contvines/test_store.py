@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from contvines.branches.ending import Ending
 from contvines.graph.persistence import same_graph
 from contvines.store import APPLICATION_ID, VERSION, Store, StoreError, load, save
 from tests.contvines import fakes
@@ -101,7 +102,10 @@ def test_later_checkpoints_replace_what_has_changed_and_drop_what_is_gone(tmp_pa
     graph = fakes.pitchfork_graph(False)
     with Store.create(tmp_path / "c.vines", "f") as store:
         store.checkpoint(graph)
-        graph.branches["B1"].ended = ("closed", "closed")  # an earlier branch learns something
+        graph.branches["B1"].endings = (
+            Ending.said("closed"),
+            Ending.said("closed"),
+        )  # an earlier branch learns something
         graph.special["VG1"].u = np.array([0.25])
         del graph.branches["B3"]
         graph.switches.pop()

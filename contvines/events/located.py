@@ -1,0 +1,53 @@
+"""Located: what was found on a stretch of a branch, and what that means for following it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from ..continuation.engine import Solved
+
+
+class Role(StrEnum):
+    """What a located point means for following the branch."""
+
+    SPECIAL = "special"  # a special point of the branch
+    BORDER = "border"  # a margin vanishes: the branch ends
+    MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
+    PLAIN = "plain"  # just a point between two special points
+    LEAP = "leap"  # the point before a step to another branch: to be traced again
+
+
+class Located(NamedTuple):
+    """A point that was located on a chunk.
+
+    Attributes
+    ----------
+    position : float
+        Index of the point before it plus the fraction of the segment.
+    kind : str
+        See :mod:`contvines.events.kinds`; of a meeting that of the symmetry. Empty for a plain point and a leap.
+    index : int
+        Which multiplier, margin, symmetry or user function.
+    point : Solved
+    bracket : (float, float)
+    error : float
+        Estimated error of the parameter value.
+    role : Role
+    name : str
+        Of the user function.
+    """
+
+    position: float
+    kind: str
+    index: int
+    point: Solved
+    bracket: tuple[float, float]
+    error: float
+    role: Role = Role.SPECIAL
+    name: str = ""
+
+    @property
+    def ends_branch(self) -> bool:
+        """Whether what lies behind it is left out."""
+        return self.role in (Role.BORDER, Role.MEETING)
