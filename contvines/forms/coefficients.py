@@ -20,6 +20,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .taylor import Line, along_line
 
@@ -80,6 +81,11 @@ class Forms:
             self.open = embedding.problem
             self.open_work, self.whole = self.open.workspace(), np.array(embedding.u, dtype=float)
         self.lines: dict[bytes, Line] = {}
+
+    @property
+    def eigenvalues(self) -> NDArray[np.complex128]:
+        """Of J: those of an equilibrium, in the user's own unit of time."""
+        return np.asarray(np.linalg.eigvals(self.J), dtype=complex)
 
     def _jacobian(self, problem: Any, work: Any, u: np.ndarray) -> np.ndarray | None:
         residual = problem.kernels.linearise(problem.data, np.ascontiguousarray(u), self.p, work)

@@ -14,6 +14,7 @@ from .problem import LocusProblem
 
 COSTLY = ("quadratic", "cubic", "lyapunov")
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
+ENDING = 1e-8  # a locus that ends at a resonance ends this close to it
 CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
 APART = 1e-5  # a pair is complex if its imaginary part exceeds this
 DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
@@ -46,9 +47,14 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
             assert test is not None
             pairs.append((look, test, values[i], values[i + 1]))
         for look, test, a, b in pairs:
-            if not a * b < 0.0:
+            at_end = (
+                look.test == "angle"
+                and min(abs(a) if i == 0 else 1.0, abs(b) if i == len(places) - 2 else 1.0) < ENDING
+            )
+            if not (a * b < 0.0 or at_end):
                 continue
-            guess, gap = _between(places[i], places[i + 1], a / (a - b)), _gap(places[i], places[i + 1])
+            share = float(np.clip(a / (a - b), 0.0, 1.0)) if a != b else 0.5
+            guess, gap = _between(places[i], places[i + 1], share), _gap(places[i], places[i + 1])
             if look in costly:  # first with a few digits
                 rough = test_of(look, problem, at, rough=True)
                 assert rough is not None

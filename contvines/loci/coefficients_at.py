@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..forms.coefficients import Forms
+from .conditions import critical_eigenvalue
 from .linear import Linearisation
 from .plane_point import PlanePoint
 
@@ -57,11 +58,13 @@ def _of(kind: str, forms: Forms, point: PlanePoint) -> dict[str, float]:
 
 def _pair(forms: Forms) -> complex | None:
     """The raw critical pair, upper one; None if there is none on the boundary."""
+    if forms.flow:
+        return critical_eigenvalue(forms)
     line = Linearisation(forms.problem)
     line.at(forms.u, forms.p)
     spectrum = line.spectrum()
     upper = spectrum[spectrum.imag > 1e-6]
     if not len(upper):
         return None
-    distance = np.abs(upper.real) if forms.flow else np.abs(np.abs(upper) - 1.0)
+    distance = np.abs(np.abs(upper) - 1.0)
     return complex(upper[np.argmin(distance)]) if distance.min() < 1e-6 else None

@@ -108,12 +108,20 @@ def _forms(plane: Plane, rough: bool = False) -> Forms:
     return Forms(plane.locus.at(place.q), place.u, place.p, rough)
 
 
+def critical_eigenvalue(forms: Forms) -> complex | None:
+    """The eigenvalue of a flow nearest to the imaginary axis, of those with positive imaginary part."""
+    upper = forms.eigenvalues[forms.eigenvalues.imag > 1e-9 * np.abs(forms.eigenvalues).max()]
+    return complex(upper[np.argmin(np.abs(upper.real))]) if len(upper) else None
+
+
 def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> float:
     place = plane.pair(reference)[1]
     if plane.flow:
         if place <= 0.0:
             return np.nan
-        return _forms(plane, rough).lyapunov(1j * np.sqrt(place))[0].value
+        forms = _forms(plane, rough)
+        critical = critical_eigenvalue(forms)
+        return np.nan if critical is None else forms.lyapunov(critical)[0].value
     if abs(place) >= 1.0:
         return np.nan
     return _forms(plane, rough).lyapunov(complex(place, np.sqrt(1.0 - place * place)))[0].value

@@ -22,6 +22,9 @@ CONDITIONS = {
 }
 
 
+UNSEEN = 1e-12  # typical sizes below this part of the largest one are those of zeros
+
+
 def condition(problem: Any, kind: str) -> int:
     """What is followed for a special point of this kind, seen in this problem.
 
@@ -213,7 +216,10 @@ class LocusProblem(ProblemDefaults):
         own = getattr(self.base, "scale_within", None)
         if own is not None and np.isfinite(self.bounds).all():
             typical = own(self.bounds)
-            scale[: self.size], scale[self.size] = typical[:-1], typical[-1]
+            largest = float(typical[:-1].max())
+            # an unknown that is zero all along the branch has shown no size of its own
+            scale[: self.size] = np.where(typical[:-1] < UNSEEN * largest, largest, typical[:-1])
+            scale[self.size] = typical[-1]
         return scale
 
     # ------------------------------------------------------------------ what a solution is

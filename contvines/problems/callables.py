@@ -10,6 +10,7 @@ import numpy as np
 
 from . import dense, sparse
 from .breaks import find_break
+from .checks import disagreement
 from .derivatives import Differentiated
 from .functions import NotEvaluable
 from .parameters import ParameterSet
@@ -199,11 +200,11 @@ class CallableProblem(ProblemDefaults):
 
     def check(self, u: np.ndarray, p: float) -> str | None:
         """A sentence on given derivatives that disagree with the equations at a solution; None if they agree."""
-        return self.functions.disagreement(u, p)
+        return disagreement(self.functions, u, p)
 
     def _check_start(self, u: np.ndarray) -> None:
         try:
-            wrong = self.functions.disagreement(u, self.p0)
+            wrong = disagreement(self.functions, u, self.p0)
         except NotEvaluable as error:
             wrong = str(error)
         if wrong is not None:

@@ -11,12 +11,12 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from .differences import Difference, along, bend, noise_of
-from .functions import NotEvaluable, UserFunction
+from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
 
 COMPLEX_STEP = 1e-40
+AGREE = 1e-6  # relative difference at which the complex step counts as wrong
 SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
-AGREE = 1e-6  # relative difference at which a derivative counts as wrong
 EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
@@ -87,12 +87,12 @@ class Differentiated:
         if isinstance(given, Mapping):
             given = given.get(self.parameters.varying)
         self._value = UserFunction(self.f, self.name, self.parameters)
-        self._jacobian = (
+        self.given_matrix = (
             None
             if self.given_jacobian is None
             else UserFunction(self.given_jacobian, "jacobian", self.parameters)
         )
-        self._derivative = None if given is None else UserFunction(given, "derivative", self.parameters)
+        self.given_slope = None if given is None else UserFunction(given, "derivative", self.parameters)
         self._gives_derivative = given is not None
 
     def against(self, parameters: ParameterSet) -> Differentiated:
@@ -124,8 +124,8 @@ class Differentiated:
 
     def find_structure(self, u: np.ndarray) -> str:
         """ "dense", "sparse" or "operator": what a given Jacobian is at the start; remembered as ``structure``."""
-        if self._jacobian is not None:
-            matrix = as_matrix(self._jacobian.raw(u, self.parameters.start), len(u))
+        if self.given_matrix is not None:
+            matrix = as_matrix(self.given_matrix.raw(u, self.parameters.start), len(u))
             self.structure = (
                 "sparse" if hasattr(matrix, "tocsc") else "operator" if hasattr(matrix, "matvec") else "dense"
             )
@@ -158,9 +158,9 @@ class Differentiated:
     def jacobian(self, u: np.ndarray, p: float) -> Any:
         """df/du, shape (n, n), as an array, or as it was given if that is sparse or a LinearOperator."""
         n = len(u)
-        if self._jacobian is not None:
+        if self.given_matrix is not None:
             self.errors = np.zeros(n)
-            return as_matrix(self._jacobian.raw(u, p), n)
+            return as_matrix(self.given_matrix.raw(u, p), n)
         result, worst = np.empty((self.rows or n, n)), np.zeros(n)
         for j in range(n):
             if self.complex_step:
@@ -168,13 +168,15 @@ class Differentiated:
                 shifted[j] += 1j * COMPLEX_STEP
                 result[:, j] = np.imag(self._value(shifted, p)) / COMPLEX_STEP
             else:
-                found = self._column(u, p, j)
+                found = self.column(u, p, j)
                 result[:, j] = found.value
                 worst[j] = found.error.max()
         self.errors = worst
         return result
 
-    def _column(self, u: np.ndarray, p: float, j: int) -> Difference:
+    def column(self, u: np.ndarray, p: float, j: int) -> Difference:
+        """df/du_j by differences."""
+
         def shifted(t: float) -> np.ndarray:
             moved = u.copy()
             moved[j] += t
@@ -191,16 +193,17 @@ class Differentiated:
 
     def derivative(self, u: np.ndarray, p: float) -> np.ndarray:
         """df/dp, shape (n,)."""
-        if self._derivative is not None:
-            return self._derivative(u, p)
+        if self.given_slope is not None:
+            return self.given_slope(u, p)
         if self.complex_step:
             return np.imag(self._value(u.astype(complex), complex(p, COMPLEX_STEP))) / COMPLEX_STEP
         line = self._quietly(lambda t: self._value(u, p + t), len(self.noise))
-        found = self._evaluable(along(line, self._parameter_length(u, p), self.noise))
+        found = self._evaluable(along(line, self.parameter_length(u, p), self.noise))
         return found.value
 
     # ------------------------------------------------------------------ what f is like
-    def _parameter_length(self, u: np.ndarray, p: float) -> float:
+    def parameter_length(self, u: np.ndarray, p: float) -> float:
+        """Length over which f bends in the parameter that varies; measured once for each parameter."""
         name = self.parameters.varying
         if name not in self.parameter_lengths:
             found = bend(
@@ -258,7 +261,7 @@ class Differentiated:
         rng = np.random.default_rng(0)
         u = u + 1e-3 * self.lengths * rng.standard_normal(len(u))
         direction = self.lengths * rng.standard_normal(len(u))
-        slope = 0.7 * self._parameter_length(u, p)
+        slope = 0.7 * self.parameter_length(u, p)
         try:
             with np.errstate(all="ignore"), catch_warnings():
                 simplefilter(
@@ -273,110 +276,3 @@ class Differentiated:
             return False
         rows = np.abs(near.value) + 1e-9 * np.abs(near.value).max(initial=0.0)
         return bool(np.all(np.abs(exact - near.value) <= AGREE * rows + 10.0 * near.error))
-
-    # ------------------------------------------------------------------ checks
-    def disagreement(self, u: np.ndarray, p: float) -> str | None:
-        """A sentence on where given derivatives disagree with differences of f at a point; None if they do not.
-
-        One random direction tells; entries are looked at one by one only if it does.
-        """
-        with np.errstate(all="ignore"):
-            try:
-                return self._wrong_jacobian(u, p) or self._wrong_derivative(u, p)
-            except NotEvaluable:
-                return None
-
-    def _wrong_derivative(self, u: np.ndarray, p: float) -> str | None:
-        if self._derivative is None:
-            return None
-        given = self._derivative(u, p)
-        if len(given) != len(u):
-            return f"derivative returns {len(given)} numbers for {len(u)} equations"
-        near = along(lambda t: self._value(u, p + t), self._parameter_length(u, p), self.noise)
-        gap = (
-            np.abs(given - near.value)
-            - AGREE * np.maximum(np.abs(given), np.abs(near.value))
-            - 10.0 * near.error
-        )
-        gap -= 1e-9 * np.abs(near.value).max()
-        if not np.isfinite(near.value).all() or not (gap > 0.0).any():
-            return None
-        i = int(np.argmax(gap))
-        return (
-            f"derivative disagrees with {self.name} in row {i}: it says {given[i]:.10g}, "
-            f"differences of {self.name} say {near.value[i]:.10g}, at {self.parameters.varying} = {p:.10g}"
-        )
-
-    def _wrong_jacobian(self, u: np.ndarray, p: float) -> str | None:
-        if self._jacobian is None:
-            return None
-        n = len(u)
-        matrix = as_matrix(self._jacobian.raw(u, p), n)
-        direction = self.lengths * np.random.default_rng(4).uniform(0.5, 1.0, n) * (-1.0) ** np.arange(n)
-        near = along(lambda t: self._value(u + t * direction, p), 0.3, self.noise)
-        if not np.isfinite(near.value).all():
-            return None
-        product = matrix @ direction
-        rows = np.abs(near.value)
-        if hasattr(matrix, "toarray") or isinstance(matrix, np.ndarray):
-            rows = np.maximum(rows, np.asarray(abs(matrix) @ np.abs(direction)).reshape(-1))
-        gap = np.abs(product - near.value) - AGREE * rows - 10.0 * near.error
-        if np.isfinite(product).all() and not (gap > 1e-9 * rows.max()).any():
-            return None
-        i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))
-        where = f"at {self.parameters.varying} = {p:.10g}"
-        entry = self._wrong_entry(matrix, u, p, i)
-        if entry is None:
-            return f"jacobian disagrees with differences of {self.name} in row {i}, {where}"
-        j, given, found = entry
-        turned = ""
-        if (
-            isinstance(matrix, np.ndarray)
-            and (np.abs(matrix.T @ direction - near.value) <= AGREE * rows + 10.0 * near.error).all()
-        ):
-            turned = "; it seems to be transposed"
-        return (
-            f"jacobian disagrees with {self.name} in row {i}, column {j}: it says {given:.10g}, "
-            f"differences of {self.name} say {found:.10g}, {where}{turned}"
-        )
-
-    def _wrong_entry(self, matrix: Any, u: np.ndarray, p: float, i: int) -> tuple[int, float, float] | None:
-        """Of a row the entry that is most wrong: its column, the given number and the one by differences."""
-        n = len(u)
-        if isinstance(matrix, np.ndarray):
-            row = matrix[i]
-        elif hasattr(matrix, "tocsr"):
-            row = np.asarray(matrix.tocsr()[[i]].todense()).reshape(-1)
-        else:
-            return None
-        columns = range(n) if n <= 400 else [int(j) for j in np.flatnonzero(row)]
-        worst, result = 0.0, None
-        for j in columns:
-            found = float(self._column(u, p, j).value[i])
-            gap = abs(found - row[j]) * self.lengths[j]
-            if not gap <= worst:
-                worst, result = gap, (j, float(row[j]), found)
-        return result
-
-
-def as_matrix(given: Any, n: int) -> Any:
-    """What a user's jacobian returned, as a float array, a sparse matrix or a LinearOperator of shape (n, n).
-
-    Raises
-    ------
-    NotEvaluable
-        If it is none, or has another shape.
-    """
-    if hasattr(given, "tocsc") or hasattr(given, "matvec"):
-        if given.shape != (n, n):
-            raise NotEvaluable(f"jacobian returns shape {given.shape}; ({n}, {n}) is needed")
-        return given
-    try:
-        matrix = np.array(given, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise NotEvaluable(f"jacobian returns no matrix of numbers: {error}") from error
-    if matrix.shape != (n, n):
-        if matrix.size == 1 == n:
-            return matrix.reshape(1, 1)
-        raise NotEvaluable(f"jacobian returns shape {matrix.shape}; ({n}, {n}) is needed")
-    return matrix

@@ -68,3 +68,26 @@ class UserFunction:
         except (TypeError, ValueError) as error:
             raise NotEvaluable(f"{self.name} returns no array of numbers: {error}") from error
         return result.reshape(-1)
+
+
+def as_matrix(given: Any, n: int) -> Any:
+    """What a user's jacobian returned, as a float array, a sparse matrix or a LinearOperator of shape (n, n).
+
+    Raises
+    ------
+    NotEvaluable
+        If it is none, or has another shape.
+    """
+    if hasattr(given, "tocsc") or hasattr(given, "matvec"):
+        if given.shape != (n, n):
+            raise NotEvaluable(f"jacobian returns shape {given.shape}; ({n}, {n}) is needed")
+        return given
+    try:
+        matrix = np.array(given, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise NotEvaluable(f"jacobian returns no matrix of numbers: {error}") from error
+    if matrix.shape != (n, n):
+        if matrix.size == 1 == n:
+            return matrix.reshape(1, 1)
+        raise NotEvaluable(f"jacobian returns shape {matrix.shape}; ({n}, {n}) is needed")
+    return matrix

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..graph.proving import mark
 from ..graph.shortening import short_word
 from ..plots.diagram import default_measure
 from ..plots.style import MARKS, PLAIN, axis_label
@@ -50,7 +51,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "axes": {"x": graph.parameter, "y": y},
         "names": {name: _plain(axis_label(name, unit=graph.units.get(name))) for name in _measures(graph, y)},
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
-        "special": [_point(point) for point in graph.special.values()],
+        "special": [_point(point, mark(graph, point.label)) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],
         "orbits": _orbits(graph),
     }
@@ -83,9 +84,14 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
     }
 
 
-def _point(point: SpecialPoint) -> dict[str, Any]:
-    mark = MARKS.get(point.kind, PLAIN)
-    return point.to_dict() | {"name": mark.name, "marker": mark.marker, "index": int(point.index)}
+def _point(point: SpecialPoint, proof: str) -> dict[str, Any]:
+    look = MARKS.get(point.kind, PLAIN)
+    return point.to_dict() | {
+        "name": look.name,
+        "marker": look.marker,
+        "proof": proof,
+        "index": int(point.index),
+    }
 
 
 def _orbits(graph: Graph) -> dict[str, Any]:

@@ -121,6 +121,7 @@
     else if (sizes.length) facts.push("multipliers not defined at a graze");
     if (about.margin[index] !== null) facts.push(`smallest margin ${number(about.margin[index], 6)}`);
     if (special && special.criticality) facts.push(special.criticality);
+    if (special && special.proof) facts.push(special.proof);
     if (special && special.note) facts.push(special.note);
     $("orbit-about").textContent = facts.join("; ");
     $("orbit-about").classList.toggle("virtual", !about.real);
@@ -221,7 +222,7 @@
   table("special", ["point", "kind", "on", data.parameter, "", "leads to"], data.special, (p) => {
     const leads = data.switches.filter((s) => s.point === p.label).map((s) => `${s.from} → ${s.to}${s.note ? ` (${s.note})` : ""}`).join("; ");
     const row = cells(element("tr", undefined, { id: `row-${p.label}` }), [p.label, p.name, p.branch, number(p.value[data.parameter], 12),
-      [p.criticality, p.real ? "" : "virtual"].filter(Boolean).join(" "), leads]);
+      [p.criticality, p.proof || (p.real ? "" : "virtual")].filter(Boolean).join(" "), leads]);
     return p.index >= 0 && branches[p.branch] ? clickable(row, () => jump(p.branch, p.index, p.label)) : row;
   });
   table("branches", ["branch", "what", data.parameter, "stable", "points"], data.branches, (b) => {

@@ -136,6 +136,13 @@ def check_closure(n):
     assert abs(n["closure paper: distance in B, C^2 at eps -> 0"][1]) > 1e-3
 
 
+def check_charts(n):
+    for over in ("friction", "restitution"):
+        assert n[f"{over}: largest distance of fold and symmetry breaking from their closed forms"] < 1e-12
+    # the meeting of the second doubling with the border is confirmed by an independent solve in the tests of loci
+    assert (1.151736, 0.552311) in n["friction: points of codimension two"].values()
+
+
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_script(name, gallery, tmp_path):
     script = importlib.import_module(name)

@@ -1,0 +1,98 @@
+"""Given derivatives compared with differences of the equations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .derivatives import AGREE, Differentiated
+from .differences import along
+from .functions import NotEvaluable, as_matrix
+
+
+def disagreement(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+    """A sentence on where given derivatives disagree with differences of f at a point; None if they do not.
+
+    One random direction tells; entries are looked at one by one only if it does.
+    """
+    with np.errstate(all="ignore"):
+        try:
+            return _wrong_jacobian(functions, u, p) or _wrong_derivative(functions, u, p)
+        except NotEvaluable:
+            return None
+
+
+def _wrong_derivative(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+    if functions.given_slope is None:
+        return None
+    given = functions.given_slope(u, p)
+    if len(given) != len(u):
+        return f"derivative returns {len(given)} numbers for {len(u)} equations"
+    near = along(lambda t: functions.value(u, p + t), functions.parameter_length(u, p), functions.noise)
+    gap = (
+        np.abs(given - near.value) - AGREE * np.maximum(np.abs(given), np.abs(near.value)) - 10.0 * near.error
+    )
+    gap -= 1e-9 * np.abs(near.value).max()
+    if not np.isfinite(near.value).all() or not (gap > 0.0).any():
+        return None
+    i = int(np.argmax(gap))
+    return (
+        f"derivative disagrees with {functions.name} in row {i}: it says {given[i]:.10g}, "
+        f"differences of {functions.name} say {near.value[i]:.10g}, at {functions.parameters.varying} = {p:.10g}"
+    )
+
+
+def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+    if functions.given_matrix is None:
+        return None
+    n = len(u)
+    matrix = as_matrix(functions.given_matrix.raw(u, p), n)
+    direction = functions.lengths * np.random.default_rng(4).uniform(0.5, 1.0, n) * (-1.0) ** np.arange(n)
+    near = along(lambda t: functions.value(u + t * direction, p), 0.3, functions.noise)
+    if not np.isfinite(near.value).all():
+        return None
+    product = matrix @ direction
+    rows = np.abs(near.value)
+    if hasattr(matrix, "toarray") or isinstance(matrix, np.ndarray):
+        rows = np.maximum(rows, np.asarray(abs(matrix) @ np.abs(direction)).reshape(-1))
+    gap = np.abs(product - near.value) - AGREE * rows - 10.0 * near.error
+    if np.isfinite(product).all() and not (gap > 1e-9 * rows.max()).any():
+        return None
+    i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))
+    where = f"at {functions.parameters.varying} = {p:.10g}"
+    entry = _wrong_entry(functions, matrix, u, p, i)
+    if entry is None:
+        return f"jacobian disagrees with differences of {functions.name} in row {i}, {where}"
+    j, given, found = entry
+    turned = ""
+    if (
+        isinstance(matrix, np.ndarray)
+        and (np.abs(matrix.T @ direction - near.value) <= AGREE * rows + 10.0 * near.error).all()
+    ):
+        turned = "; it seems to be transposed"
+    return (
+        f"jacobian disagrees with {functions.name} in row {i}, column {j}: it says {given:.10g}, "
+        f"differences of {functions.name} say {found:.10g}, {where}{turned}"
+    )
+
+
+def _wrong_entry(
+    functions: Differentiated, matrix: Any, u: np.ndarray, p: float, i: int
+) -> tuple[int, float, float] | None:
+    """Of a row the entry that is most wrong: its column, the given number and the one by differences."""
+    n = len(u)
+    if isinstance(matrix, np.ndarray):
+        row = matrix[i]
+    elif hasattr(matrix, "tocsr"):
+        row = np.asarray(matrix.tocsr()[[i]].todense()).reshape(-1)
+    else:
+        return None
+    columns = range(n) if n <= 400 else [int(j) for j in np.flatnonzero(row)]
+    worst, result = 0.0, None
+    for j in columns:
+        found = float(functions.column(u, p, j).value[i])
+        gap = abs(found - row[j]) * functions.lengths[j]
+        if not gap <= worst:
+            worst, result = gap, (j, float(row[j]), found)
+    return result
