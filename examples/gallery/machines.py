@@ -27,7 +27,8 @@ RUNS = {
     "elastic_stop": ("frequency", (0.6, 1.6), "max_x", 2, {"frequency": 1.5}, "elastic stop"),
     "impact_duffing": ("frequency", (0.5, 1.8), "approach_speed", 1, {}, "two masses that collide"),
     "two_absorbers": (
-        "forcing", (0.012, 0.05), "max_q", 1, {"start": {"s1": 0.3, "s2": 0.3}}, "two unlike absorbers",
+        "frequency", (1.0, 1.06), "max_q", 1,
+        {"start": {"s1": 0.3, "s2": 0.3}, "forcing": 0.03, "frequency": 1.01}, "two unlike absorbers",
     ),
     "absorber": ("amplitude", (0.17, 1.27), "approach_speed", 2, {"word": "LR"}, "reduced absorber"),
     "coupled": ("frequency", (0.97, 1.04), "max_q1", 1, {"word": "LR"}, "absorber on its oscillator"),
@@ -48,12 +49,13 @@ def diagram(name: str):
 def simulated(machine, name: str, count: int = 24) -> list[tuple[float, float]]:
     """(parameter, measure) of the periodic attractors that simulation reaches, one start per value."""
     parameter, within, measure, _, how, _ = RUNS[name]
+    settled = {k: v for k, v in how.items() if k not in ("start", "word")}
     generator = np.random.default_rng(3)
     found = []
     for value in np.linspace(*within, count + 2)[1:-1]:
         start = how.get("start") or {s: float(generator.uniform(-0.2, 0.2)) for s in machine.states}
         try:
-            attractor = machine.attractor(start, **{parameter: float(value)})
+            attractor = machine.attractor(start, **{**settled, parameter: float(value)})
         except ValueError:  # a start beyond a wall
             continue
         if attractor.orbit is not None and attractor.orbit.stable:

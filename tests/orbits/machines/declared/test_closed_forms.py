@@ -119,7 +119,7 @@ def test_den_hartogs_onset_of_sticking():
     start = machine.attractor(frequency=W, friction=f)
     x0 = math.sqrt((1 / (1 - W**2)) ** 2 - (f * S / (W * (1 + C))) ** 2)
     assert np.abs(start.orbit.nodes[:, 1]).max() == pytest.approx(x0, abs=1e-11)
-    graph = cv.diagram(start, over="forcing", within=(0.25, 1.2), depth=1)
+    graph = cv.diagram(start, over="forcing", within=(0.35, 1.1), depth=0)
     assert min(specials(graph, "stick"), key=lambda v: abs(v - exact)) == pytest.approx(exact, abs=1e-10)
     assert graph["B1"].description["word"] == "tt"
 
