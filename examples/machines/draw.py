@@ -1,7 +1,7 @@
-"""Nine machines on a page each: one diagram per machine, from `examples/machines`.
+"""Nine machines on a page each: one diagram per machine, from the pages beside this file.
 
-No figure of the paper. Each panel is an automatic diagram of a page of at most thirty lines; dots are attractors that simulation reaches from
-random starts. `python examples/gallery/machines.py [FOLDER] [NAME ...]` draws them all, or only those named.
+Each panel is an automatic diagram of a page of at most thirty lines; dots are attractors that simulation reaches from
+random starts. `python examples/machines/draw.py [FOLDER] [NAME ...]` draws them all, or only those named.
 """
 
 import sys
@@ -12,7 +12,7 @@ import numpy as np
 import contvines as cv
 from orbits.machines.declared.page import load_page
 
-PAGES = Path(__file__).resolve().parents[1] / "machines"
+PAGES = Path(__file__).resolve().parent
 GREY = "#9a9a9a"
 
 # page: parameter, interval, measure, depth, how the first orbit is found, what a panel is called
