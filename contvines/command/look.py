@@ -52,6 +52,12 @@ def show(file: FileArgument, json: JsonOption = False) -> None:
     if not graph.finished:
         _unfinished(file)
     typer.echo(str(graph))
+    if "page" in graph.model:
+        from orbits.machines.declared.stored import page_changed
+
+        changed = page_changed(graph.model)
+        if changed:
+            typer.echo(f"{file}: {changed}", err=True)
 
 
 def orbit(

@@ -86,7 +86,7 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
     steady = [row for row in rows if row.recurrent]
     if study.machine is not None:  # impact speeds, or how far the first state goes
         walls = any(hasattr(contact, "gap") for contact in study.machine.contacts)
-        measure = "impact_speed" if walls else f"max_{study.machine.states[0]}"
+        measure = "approach_speed" if walls else f"max_{study.machine.states[0]}"
     else:
         measure = model_class(study.name).swept_measure
     if measure != "B":  # one number for the whole motion

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cmp_to_key
 from typing import Any
 
 import numpy as np
@@ -85,3 +86,13 @@ def smallest_image(u: np.ndarray, images: list[Callable], scale: np.ndarray) -> 
         if len(different) and other[different[0]] < best[different[0]]:
             best = other
     return best
+
+
+def in_order(scale: np.ndarray) -> Any:
+    """A key of dictionary order, in which differences at roundoff do not count."""
+
+    def compare(a: np.ndarray, b: np.ndarray) -> int:
+        different = np.flatnonzero(np.abs(a - b) > scale)
+        return 0 if not len(different) else (-1 if a[different[0]] < b[different[0]] else 1)
+
+    return cmp_to_key(compare)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from functools import cmp_to_key
 from typing import Any
 
 import numpy as np
 
 from .callables import CallableProblem
+from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
-from .images import image_map
+from .images import image_map, in_order
 from .outputs import Outputs
 from .parameters import ParameterSet
 from .pieces import Pieces
@@ -23,7 +23,7 @@ from .spectra import without_roundoff
 SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
 
 
-class MapProblem(CallableProblem):
+class MapProblem(CycleMeasures, CallableProblem):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
 
     Parameters
@@ -290,39 +290,7 @@ class MapProblem(CallableProblem):
             forms.append(self._mirrored(nodes.reshape(-1)).reshape(root, self.node))
         turned = [np.roll(form, -first, axis=0).reshape(-1) for form in forms for first in range(root)]
         pieces = min(tuple(np.roll(signs, -first, axis=0).reshape(-1).tolist()) for first in range(n))
-        return ("cycle", root, self.node, pieces), min(turned, key=_in_order(np.tile(scale, root)))
-
-    @property
-    def measure_names(self) -> tuple[str, ...]:
-        """Mean, smallest and largest of each coordinate over the cycle, and the coordinates of its first point."""
-        names = [f"{what}{j}" for what in ("x", "mean", "min", "max") for j in range(self.node)]
-        return (*self.outputs.names, "norm", *names)
-
-    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-        """Measures for an array of solutions."""
-        nodes = np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)
-        own = [name for name in names if name in self.outputs.names]
-        result = self.outputs.measures(own, nodes[:, 0], p)
-        for name in names:
-            if name not in self.measure_names:
-                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
-            if name in own:
-                continue
-            what = name.rstrip("0123456789")
-            j = int(name[len(what) :] or 0)
-            if what == "norm":
-                result[name] = np.sqrt((nodes**2).sum(axis=(1, 2)) / self.cycle)
-            elif what == "x":
-                result[name] = nodes[:, 0, j]
-            else:
-                result[name] = getattr(nodes[:, :, j], what)(axis=1)
-        return result
-
-    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
-        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
-        if name not in {f"x{j}" for j in range(self.node)}:
-            return None
-        return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+        return ("cycle", root, self.node, pieces), min(turned, key=in_order(np.tile(scale, root)))
 
     def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
@@ -378,13 +346,3 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Map
         scale=description.get("scale"),
         **functions,
     )
-
-
-def _in_order(scale: np.ndarray) -> Any:
-    """A key of dictionary order, in which differences at roundoff do not count."""
-
-    def compare(a: np.ndarray, b: np.ndarray) -> int:
-        different = np.flatnonzero(np.abs(a - b) > scale)
-        return 0 if not len(different) else (-1 if a[different[0]] < b[different[0]] else 1)
-
-    return cmp_to_key(compare)

@@ -17,19 +17,19 @@ GREY = "#9a9a9a"
 
 # page: parameter, interval, measure, depth, how the first orbit is found, what a panel is called
 RUNS = {
-    "impact_oscillator": ("frequency", (2.05, 3.2), "impact_speed", 2, {}, "rigid impact oscillator"),
+    "impact_oscillator": ("frequency", (2.05, 3.2), "approach_speed", 2, {}, "rigid impact oscillator"),
     "bouncing_ball": (
-        "amplitude", (0.02, 0.16), "impact_speed", 2,
+        "amplitude", (0.02, 0.16), "approach_speed", 2,
         {"start": {"y": 0.1, "v": 0.33, "phase": -0.8}, "amplitude": 0.05}, "ball on a shaking table",
     ),
     "den_hartog": ("frequency", (0.15, 0.95), "max_x", 1, {}, "Den Hartog's oscillator"),
     "belt_slider": ("belt", (0.1, 2.2), "period", 1, {"start": {"x": 1.0, "v": 0.5}}, "slider on a belt"),
     "elastic_stop": ("frequency", (0.6, 1.6), "max_x", 2, {"frequency": 1.5}, "elastic stop"),
-    "impact_duffing": ("frequency", (0.5, 1.8), "impact_speed", 1, {}, "two masses that collide"),
+    "impact_duffing": ("frequency", (0.5, 1.8), "approach_speed", 1, {}, "two masses that collide"),
     "two_absorbers": (
         "forcing", (0.012, 0.05), "max_q", 1, {"start": {"s1": 0.3, "s2": 0.3}}, "two unlike absorbers",
     ),
-    "absorber": ("amplitude", (0.17, 1.27), "impact_speed", 2, {"word": "LR"}, "reduced absorber"),
+    "absorber": ("amplitude", (0.17, 1.27), "approach_speed", 2, {"word": "LR"}, "reduced absorber"),
     "coupled": ("frequency", (0.97, 1.04), "max_q1", 1, {"word": "LR"}, "absorber on its oscillator"),
 }  # fmt: skip
 

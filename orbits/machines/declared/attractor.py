@@ -223,7 +223,10 @@ def polished(orbit: DeclaredOrbit, far: float = 0.1) -> DeclaredOrbit | None:
     u, _, residual, _ = newton(problem, problem.reduce(orbit.nodes), p)
     nodes = problem.expand(u)
     near = far * (1.0 + np.abs(orbit.nodes[:, 1:]).max())
-    if not residual < SOLVED or np.abs(nodes - orbit.nodes).max() > near:
+    moved = nodes - orbit.nodes
+    for j in problem.loose:  # shifted as a whole it is the same motion
+        moved[:, 1 + j] -= moved[:, 1 + j].mean()
+    if not residual < SOLVED or np.abs(moved).max() > near:
         return None
     found = DeclaredOrbit(orbit.machine, word, orbit.periods, nodes, orbit.params)
     return plainest(found.root()) if found.margin > -1e-9 else None

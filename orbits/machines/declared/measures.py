@@ -14,7 +14,7 @@ OF_STATES = ("max", "min", "first", "strobe")
 
 def names(machine: Any) -> tuple[str, ...]:
     """max_x, min_x (over the period), first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
-    event, `period`, `rate` (2 pi / period), `impact_speed` (fastest approach)."""
+    event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact)."""
     what = OF_STATES if machine.forced else OF_STATES[:3]
     own = [f"{kind}_{state}" for state in machine.states for kind in what]
     walls = any(letter.kind == HIT for letter in machine.alphabet.letters.values())
@@ -23,7 +23,7 @@ def names(machine: Any) -> tuple[str, ...]:
         *(["phase"] if machine.forced else []),
         "period",
         "rate",
-        *(["impact_speed"] if walls else []),
+        *(["approach_speed"] if walls else []),
     )
 
 
@@ -52,8 +52,8 @@ def measure(
             result[name] = period
         elif name == "rate":
             result[name] = 2.0 * np.pi / period
-        elif name == "impact_speed":
-            result[name] = _impact_speeds(machine, word, nodes, params)
+        elif name == "approach_speed":
+            result[name] = _approach_speeds(machine, word, nodes, params)
         elif kind == "first":
             result[name] = nodes[:, 0, 1 + machine.states.index(state)].copy()
         elif kind == "strobe":
@@ -117,7 +117,7 @@ def _strobed(machine: Any, word: Word, periods: int, nodes: np.ndarray, params: 
     return out
 
 
-def _impact_speeds(machine: Any, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+def _approach_speeds(machine: Any, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     """Fastest approach at an impact: the gap's rate before it, from the one after it and the restitution."""
     compiled = machine.compiled
     best = np.zeros(len(nodes))

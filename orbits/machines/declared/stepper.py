@@ -16,6 +16,7 @@ TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
 TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the depth is roundoff
 NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
+SLOW = 1e-6  # squared approach speed below which impacts may be piling up
 FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
 
 
@@ -44,6 +45,11 @@ class Stepper:
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
         self._cache: dict[tuple[int, ...], tuple[Any, Any, Any, np.ndarray, Any]] = {}
+        self._touched = {  # frictions whose velocity an impact changes
+            w: [j for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
+            for w, contact in enumerate(machine.contacts)
+            if isinstance(contact, Wall)
+        }
         self._fresh = False  # something starts from rest: leave the surface before looking for events
 
     # ------------------------------------------------------------------ beginning
@@ -136,20 +142,20 @@ class Stepper:
 
     def _impact(self, wall: int) -> int:
         """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
-        numbers = self.compiled.numbers(self.params, self.modes)
+        numbers = self._tools(self.modes)[3]
         row = self.compiled.impact_map(wall)(self.state[None], np.array([self.clock]), numbers[None])[0]
         before = float(row[-1])
         self.state[:] = row[:-1]
-        modes = list(self.modes)
-        values = self.contact_values()
-        for j, contact in enumerate(self.machine.contacts):
-            touched = isinstance(contact, DryFriction) and (wall, j) in self.machine.alphabet.flips
-            if touched and j not in self.absent and values[j] != 0.0:
-                modes[j] = 1 if values[j] > 0.0 else -1
-        self.modes = tuple(modes)
-        push = self._push_back(wall)
-        if push < 0.0 and before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
-            return self._hold(wall)
+        if self._touched[wall]:
+            modes, values = list(self.modes), self.contact_values()
+            for j in self._touched[wall]:
+                if values[j] != 0.0:
+                    modes[j] = 1 if values[j] > 0.0 else -1
+            self.modes = tuple(modes)
+        if before * before < SLOW:
+            push = self._push_back(wall)
+            if push < 0.0 and before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
+                return self._hold(wall)
         return HIT
 
     def _push_back(self, wall: int) -> float:

@@ -30,7 +30,7 @@ class DeclaredRow:
     periods, impacts : int
         Of the cycle; 0 where nothing recurs.
     measures : dict
-        `max_` and `min_` of the first state, `impact_speed`, `impacts_per_period` (of a self-excited machine: per unit of time).
+        `max_` and `min_` of the first state, `approach_speed`, `impacts_per_period` (of a self-excited machine: per unit of time).
     dots : list of float
         What a picture shows: the approach speed of every impact of a cycle (or of the last part of the run); of a machine without walls the
         first state's extremes.
@@ -53,7 +53,7 @@ class DeclaredRow:
 def measure_names(machine: Machine) -> tuple[str, ...]:
     """Measures in a sweep's rows."""
     first = machine.states[0]
-    return (f"max_{first}", f"min_{first}", "impact_speed", "impacts_per_period")
+    return (f"max_{first}", f"min_{first}", "approach_speed", "impacts_per_period")
 
 
 def sweep(
@@ -138,7 +138,7 @@ def _row(value: float, found: DeclaredAttractor, state: np.ndarray) -> DeclaredR
     measures = {
         f"max_{first}": taken[f"max_{first}"],
         f"min_{first}": taken[f"min_{first}"],
-        "impact_speed": max(speeds, default=0.0),
+        "approach_speed": max(speeds, default=0.0),
         "impacts_per_period": hits / span if span > 0.0 else 0.0,
     }
     walls = any(isinstance(contact, Wall) for contact in machine.contacts)

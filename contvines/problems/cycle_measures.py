@@ -1,0 +1,49 @@
+"""Measures of the cycles of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .outputs import Outputs
+
+
+class CycleMeasures:
+    """What is measured on cycles of ``cycle`` points with ``node`` coordinates each, the user's ``outputs`` included."""
+
+    outputs: Outputs
+    node: int
+    cycle: int
+
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Mean, smallest and largest of each coordinate over the cycle, and the coordinates of its first point."""
+        names = [f"{what}{j}" for what in ("x", "mean", "min", "max") for j in range(self.node)]
+        return (*self.outputs.names, "norm", *names)
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures for an array of solutions."""
+        nodes = np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)
+        own = [name for name in names if name in self.outputs.names]
+        result = self.outputs.measures(own, nodes[:, 0], p)
+        for name in names:
+            if name not in self.measure_names:
+                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
+            if name in own:
+                continue
+            what = name.rstrip("0123456789")
+            j = int(name[len(what) :] or 0)
+            if what == "norm":
+                result[name] = np.sqrt((nodes**2).sum(axis=(1, 2)) / self.cycle)
+            elif what == "x":
+                result[name] = nodes[:, 0, j]
+            else:
+                result[name] = getattr(nodes[:, :, j], what)(axis=1)
+        return result
+
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
+        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
+        if name not in {f"x{j}" for j in range(self.node)}:
+            return None
+        return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]

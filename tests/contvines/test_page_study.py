@@ -1,0 +1,88 @@
+"""Studies whose machine is a page of Python."""
+
+import pytest
+from typer.testing import CliRunner
+
+import contvines as cv
+from contvines.command.cli import app
+from contvines.command.study import StudyError, read_study
+
+PAGE = """
+from orbits import Machine, Wall
+from orbits.symbols import cos
+
+machine = Machine(
+    name="stop",
+    states=("x", "v"),
+    parameters={"forcing": 1.0, "frequency": 2.3, "damping": 0.05, "gap": 0.1, "restitution": 0.8},
+    phase_rate="frequency",
+    motion=lambda s, phase, p, contact: (s.v, p.forcing * cos(phase) - 2 * p.damping * s.v - s.x),
+    contacts=[Wall("R", gap=lambda s, phase, p: p.gap - s.x, push={"v": -1.0}, restitution="restitution")],
+)
+"""
+STUDY = """
+[model]
+name = "stop.py:machine"
+gap = 0.05
+[start]
+frequency = 2.3
+[continue]
+parameter = "frequency"
+within = [2.2, 2.5]
+depth = 0
+[sweep]
+count = 4
+transient = 30
+"""
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "stop.py").write_text(PAGE)
+    (tmp_path / "stop.toml").write_text(STUDY)
+    return tmp_path / "stop.toml"
+
+
+def run(*words):
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def test_a_page_from_study_to_file(study):
+    assert run("diagram", study, "-q").exit_code == 0
+    graph = cv.load("stop.vines")
+    assert graph.model["gap"] == 0.05 and "Machine(" in graph.model["source"]
+    assert graph["B1"].description["word"] == "R"
+    assert "R  k = 1  (real)" in run("orbit", study).stdout
+    assert run("sweep", study, "-q", "--plot", "s.png").exit_code == 0
+    rows = (study.parent / "stop-sweep.csv").read_text().splitlines()
+    assert len(rows) == 5 and all(",periodic,R,1,1," in row for row in rows[1:])
+
+
+REFUSED = {
+    'name = "stop.py"': 'names a page but no machine on it; "stop.py:machine" would do',
+    'name = "stop.py:other"': "it has no machine 'other'; it declares machine",
+    'name = "none.py:machine"': "there is no such file",
+    'name = "stop.py:machine"\nmass = 1.0': "the machine 'stop' has no such parameter",
+    'name = "stop.py:machine"\ndamping = "much"': "[model] damping = 'much' is not a number",
+    'name = "stop.py:machine"\nrestitution = 2.0': "the restitution of wall 'R' is above 0 and at most 1",
+}
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_refusals(study, line):
+    study.write_text(STUDY.replace('name = "stop.py:machine"', line))
+    with pytest.raises(StudyError) as refused:
+        read_study(study)
+    assert REFUSED[line] in str(refused.value)
+
+
+def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
+    run("diagram", study, "-q")
+    from orbits.machines.declared import stored
+
+    monkeypatch.setattr(stored, "loaded", lambda settings: None)  # as in another process
+    assert cv.load("stop.vines")["B1"].problem is None
+    assert cv.load("stop.vines", trust=True)["B1"].problem is not None
+    (study.parent / "stop.py").write_text(PAGE + "# another\n")
+    assert "the page has changed since this file was made" in run("show", "stop.vines").output
