@@ -44,7 +44,10 @@ def test_trace_of_a_problem_keeps_its_start():
 
 def test_one_branch_and_both_ends():
     parabola = cv.AlgebraicProblem(lambda u, p: u**2 - p, [1.0], 1.0)
-    table = str(cv.diagram(parabola, within=(-2.0, 2.0)))
-    assert table.startswith("1 branch in p within") and "p = 2 (both ends)" in table
+    graph = cv.diagram(parabola, within=(-2.0, 2.0))
+    table = str(graph)
+    assert table.startswith("1 branch in p within") and "EP1 .. EP2" in table
+    assert all(end.endswith("p = 2") for end in graph["B1"].ended)
     line = cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0)
-    assert "p = -2; reaches the end of the interval, p = 2" in str(cv.diagram(line, within=(-2.0, 2.0)))
+    ends = cv.diagram(line, within=(-2.0, 2.0))["B1"].ended
+    assert [end.rpartition(" ")[2] for end in ends] == ["-2", "2"]
