@@ -25,9 +25,9 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
     """The graph as (kind, key, content): one "graph", then every "branch", "special" and "switch" in order."""
     yield "graph", "graph", {f.name: getattr(graph, f.name) for f in fields(graph) if f.name not in _MEMBERS}
     for branch in graph.branches.values():
-        yield "branch", branch.label, _content(branch)
+        yield "branch", branch.label, content_of(branch)
     for point in graph.special.values():
-        yield "special", point.label, _content(point)
+        yield "special", point.label, content_of(point)
     for label, proof in graph.proofs.items():
         yield "proof", label, proof
     for kind, entries in (("attractor", graph.attractors), ("missing", graph.missing)):
@@ -52,15 +52,8 @@ def graph_from_entries(
     graph = Graph(**{**head, "within": _pair(head["within"])} if head else {})
     built: dict[str, Any] = {}
     for label, content in entries.get("branch", {}).items():
-        content = dict(content)
-        content["endings"] = _pair(
-            [Ending.said(text) for text in content.pop("ended")]  # version 0.1 kept the sentences
-            if "ended" in content
-            else [Ending.from_dict(ending) for ending in content["endings"]]
-        )
-        content["marks"] = tuple((int(i), str(name)) for i, name in content["marks"])
         problem = _problem(content["description"], built, trust) if problems else None
-        graph.branches[label] = Branch(problem=problem, **content)
+        graph.branches[label] = branch_of(content, problem)
     for label, content in entries.get("special", {}).items():
         content = dict(content)
         content["bracket"] = _pair(content["bracket"])
@@ -75,7 +68,20 @@ def graph_from_entries(
     return graph
 
 
-def _content(thing: Any) -> dict[str, Any]:
+def branch_of(content: Mapping[str, Any], problem: Any) -> Branch:
+    """The branch that `content_of` took apart."""
+    own = dict(content)
+    own["endings"] = _pair(
+        [Ending.said(text) for text in own.pop("ended")]  # version 0.1 kept the sentences
+        if "ended" in own
+        else [Ending.from_dict(ending) for ending in own["endings"]]
+    )
+    own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
+    return Branch(problem=problem, **own)
+
+
+def content_of(thing: Any) -> dict[str, Any]:
+    """A branch or special point as arrays and JSON values, its problem apart."""
     content = {f.name: getattr(thing, f.name) for f in fields(thing) if f.name != "problem"}
     if "endings" in content:
         content["endings"] = [ending.to_dict() for ending in content["endings"]]

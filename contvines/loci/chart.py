@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-from ..branches.branch import Branch
+from ..graph.persistence import branch_of, content_of
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
 from .plane_point import PlanePoint
@@ -110,11 +110,7 @@ class Chart:
         for locus in self.loci.values():
             own = {f.name: getattr(locus, f.name) for f in fields(locus) if f.name != "branch"}
             own["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
-            branch = {
-                f"branch_{f.name}": getattr(locus.branch, f.name)
-                for f in fields(locus.branch)
-                if f.name != "problem"
-            }
+            branch = {f"branch_{name}": value for name, value in content_of(locus.branch).items()}
             yield "locus", locus.label, {**own, **branch}
         for point in self.points.values():
             own = {f.name: getattr(point, f.name) for f in fields(point) if f.name != "problem"}
@@ -134,8 +130,6 @@ def chart_from_entries(
     for label, content in entries.get("locus", {}).items():
         own = {k: v for k, v in content.items() if not k.startswith("branch_")}
         parts = {k.removeprefix("branch_"): v for k, v in content.items() if k.startswith("branch_")}
-        parts["ended"] = tuple(parts["ended"])
-        parts["marks"] = tuple((int(i), str(name)) for i, name in parts["marks"])
         problem = None
         if problems:
             try:
@@ -145,7 +139,7 @@ def chart_from_entries(
         own["parameters"], own["within"] = tuple(own["parameters"]), tuple(own["within"])
         own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
         own["turns"] = tuple(Turn(int(i), (float(p), float(q))) for i, p, q in own["turns"])
-        chart.loci[label] = Locus(branch=Branch(problem=problem, **parts), **own)
+        chart.loci[label] = Locus(branch=branch_of(parts, problem), **own)
     for label, content in entries.get("plane-point", {}).items():
         own = dict(content)
         for name in ("parameters", "value", "margins"):
