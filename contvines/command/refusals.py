@@ -77,9 +77,11 @@ def _bad_value(error: Any, message: str, words: list[str]) -> str:
     names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
     if not names or not names[-1].startswith("-"):
         return ""
-    given = [w.split("=", 1)[1] for w in words if w.startswith(f"{names[-1]}=")]
+    typed = next((n for n in names if any(w == n or w.startswith(f"{n}=") for w in words)), names[-1])
+    typed = typed if typed.startswith("--") else names[-1]
+    given = [w.split("=", 1)[1] for w in words if w.startswith(f"{typed}=")]
     given += [value for name, value in pairwise(words) if name in names]
-    place = " ".join([names[-1], *given[:1]])
+    place = " ".join([typed, *given[:1]])
     if " is not one of " in message:
         choices = re.findall(r"'([^']*)'", message.rsplit(" is not one of ", 1)[1])
         return f"{place}: there is no such choice; choose one of {', '.join(choices)}."

@@ -252,6 +252,7 @@ def _look(graph: Any, study: Any, target: Path) -> None:
     if look(graph, population_of(model, study.parameter, **fixed)):
         with Store.open(target, write=True) as store:
             store.checkpoint(graph)
+            store.tidy()
 
 
 def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:
