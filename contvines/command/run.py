@@ -190,8 +190,8 @@ def _run(
             seed = first_orbit(study)
             graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)
         say(f"kept in {target}", quiet)
-    if command == "diagram" and look and not graph.attractors:
-        _look(graph, study, target)
+        if command == "diagram" and look:
+            _look(graph, study, target)
     if not quiet:
         typer.echo(str(graph))
     if command == "diagram" and graph.missing:

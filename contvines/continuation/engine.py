@@ -271,7 +271,7 @@ class Engine:
 
     def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
         """Smallest margin of each row, +inf where there are none."""
-        if rows.shape[-1] == 2 * self.m:
+        if rows.shape[-1] <= 2 * self.m:
             return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
         if margins.shape[-1] > 16:

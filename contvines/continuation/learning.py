@@ -127,8 +127,13 @@ class Scout:
         rest = np.where(bends, first, np.where(size > 0.0, size, 1.0))
         seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
+        far = (extent[:-1] > 1e-2 * size) | (np.where(bends, extent[:-1], 0.0) > first)
+        travelled = bool(np.any(far)) or bool(extent[-1] > 1e-3 * self.width)
+        if not travelled:  # nothing was learned: the unknowns' own sizes, and the whole interval
+            own = np.where(size > 0.0, size, 1.0)
         unknowns = in_fields(own) if given is None else given
-        unit = self.width if extent[-1] <= 0.0 else float(min(self.width, 2.0 * extent[-1]))
+        seen_unit = min(self.width, 2.0 * extent[-1])
+        unit = float(seen_unit) if travelled and extent[-1] > 0.0 else self.width
         rows = np.where(self.rows > 0.0, self.rows, 1.0)
         rate = float(np.exp(np.mean(np.log(self.rates)))) if self.rates else 1.0
         return Scales(unknowns, unit, rows, rate, self.noise)

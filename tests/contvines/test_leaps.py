@@ -98,7 +98,7 @@ def test_resumed_at_every_record():
 
     whole = MemoryJournal()
     graph = run(whole)
-    assert any("leap" in entry.get("kind", ()) for entry in whole.entries.values())
+    assert any("leap" in entry.get("role", ()) for entry in whole.entries.values())
     for kept in range(len(whole.entries)):
         partial = MemoryJournal()
         partial.entries = dict(list(whole.entries.items())[:kept])

@@ -24,7 +24,7 @@ class Plain(OrbitProblem):
             problem.model, problem.word, problem.periods, problem.parameter, problem.params, problem.symmetric
         )
         self.u0, self.p0, self.inner = u, p, self.data
-        self.data = self
+        self.data = Data(self)
 
     @property
     def kernels(self):
@@ -42,7 +42,7 @@ class Plain(OrbitProblem):
     def model_kernels(self):
         return super().kernels
 
-    def equations(self, u, p):
+    def plain_equations(self, u, p):
         F, A, D, Q = self.linearised(u, p)[:4]
         length, n = F.shape
         jacobian = np.zeros((length * n, length * n))
@@ -52,6 +52,16 @@ class Plain(OrbitProblem):
             jacobian[rows, rows] += A[i]
             jacobian[rows, after * n : after * n + n] += D[i] @ (closure if i + 1 == length else np.eye(n))
         return F.ravel(), jacobian, Q.ravel()
+
+
+class Data:
+    """What the plain kernels are handed: the problem, under the name by which they ask for its equations."""
+
+    def __init__(self, problem):
+        self.problem, self.equations = problem, problem.plain_equations
+
+    def __getattr__(self, name):
+        return getattr(self.problem, name)
 
 
 def inspect(problem, u, p, work, row):

@@ -47,12 +47,14 @@ def test_fold_and_symmetry_breaking_of_the_repeated_orbit(times, tolerance):
     breaking = graph.of_kind("symmetry-breaking") + graph.of_kind("branch-point")
     assert [point.value**2 for point in breaking] == pytest.approx([BREAKING], abs=1e-10)
     branch = graph["B1"]
+    problem = branch.problem  # what repeats a shorter orbit is followed as that one
+    assert len(problem.word) == 2
     residuals = [
         problem.kernels.linearise(problem.data, branch.points[i], branch.values[i], problem.workspace())
         for i in range(0, len(branch), 10)
     ]
     assert max(residuals) < 1e-14 * 40 * times
     # every point is the symmetric orbit: the second impact is the mirror image of the first, half a period later
-    nodes = branch.points.reshape(len(branch), times, 2, 2)
+    nodes = problem.expand(branch.points).reshape(len(branch), 1, 2, 2)
     np.testing.assert_allclose(nodes[:, :, 1, 0] - nodes[:, :, 0, 0], np.pi, atol=1e-9)
     np.testing.assert_allclose(nodes[:, :, 1, 1], -nodes[:, :, 0, 1], atol=1e-9)
