@@ -19,6 +19,7 @@ LONGEST = 0.25  # step, in the metric
 TURN = 0.6  # largest angle between tangents
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
+SMALLEST_BEND = 1e-4
 SAMPLES = 4  # points at which eigenvalues are looked at
 
 
@@ -36,7 +37,8 @@ class Scout:
         self.problem, self.within, self.n = problem, within, int(problem.dimension)
         self.width = within[1] - within[0]
         self.kernels, self.work = problem.kernels, problem.workspace()
-        self.first = np.array(problem.lengths, dtype=float)
+        # a bend over less than this share of the unknown itself is rounding
+        self.first = np.maximum(problem.lengths, SMALLEST_BEND * np.abs(np.asarray(problem.u0, dtype=float)))
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)
         self.rows = np.zeros(self.n)

@@ -15,7 +15,14 @@ def problem(flow, start, regular, manifold="impacting"):
     u, p = response.start(start)
     spectrum = "none" if regular else "flow"
     return cv.AlgebraicProblem(
-        response, u, p, "detuning", response.jacobian, response.derivative, spectrum=spectrum
+        response,
+        u,
+        p,
+        "detuning",
+        response.jacobian,
+        response.derivative,
+        spectrum=spectrum,
+        scale=np.ones(len(np.atleast_1d(u))),  # dimensionless: unknowns of order one
     )
 
 
