@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import basins, chart, design, look, prove, report, run, survey, sweep
+from contvines.command import basins, chart, circle, design, look, prove, report, run, survey, sweep
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -54,6 +54,7 @@ app.command()(run.atlas)
 app.command()(basins.basins)
 app.command()(chart.locus)
 app.command()(chart.chart)
+app.command()(circle.circle)
 app.command()(look.show)
 app.command()(look.orbit)
 app.command()(prove.prove)
