@@ -10,7 +10,7 @@ Source of the method: Schilder, Osinga and Vogt, SIAM J. Appl. Dyn. Syst. 4 (200
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -134,7 +134,7 @@ def solve(
         matrix[:size, size] = -np.real(turning).reshape(-1)
         moved = [np.array([other.step(x) for x in points]) for other in (beside, before)]
         matrix[:size, size + 1] = ((moved[0] - moved[1]) / (2.0 * STEP * frame.unit)).reshape(-1)
-        along = np.outer(first, frame.left.conj()).reshape(-1)
+        along: Any = np.outer(first, frame.left.conj()).reshape(-1)
         matrix[size, :size] = along.imag
         if amplitude is None:
             matrix[size + 1, size + 1] = 1.0
