@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import basins, chart, design, look, prove, report, run, survey, sweep
+from contvines.command import basins, chart, design, editor_schema, look, prove, report, run, survey, sweep
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -63,6 +63,7 @@ app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(survey.survey)
 app.command()(design.design)
+app.command()(editor_schema.schema)
 
 
 def main(arguments: list[str] | None = None) -> None:
