@@ -93,6 +93,11 @@ def table(graph: Graph, width: int | None = None) -> str:
     return "\n".join(lines)
 
 
+def shown(graph: Graph) -> str:
+    """The same as it fits the terminal, if one shows it."""
+    return table(graph, terminal_width())
+
+
 def terminal_width() -> int | None:
     """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
     return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None

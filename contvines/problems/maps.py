@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
@@ -295,9 +296,9 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
 
     def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
-        from ..coexistence.maps import MapPopulation
-
-        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
+        return above("MapPopulation")(
+            self if over in (None, self.parameter) else self.against(str(over)), box
+        )
 
     def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
         """The points of the cycle, shape (n, d)."""
