@@ -63,6 +63,8 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
     except OSError:
         return None
     helpers[name] = process
+    if usual(name)[0].node > 2:
+        helpers[periodic_multipliers.__name__] = process
     return process
 
 
@@ -89,6 +91,10 @@ def compile_now(name: str, *more: str) -> None:
     for place in more:
         module, _, function = place.partition(":")
         getattr(importlib.import_module(module), function)()
+    n = model.node
+    if n > 2:
+        factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
+        periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
     settle_all(
@@ -100,12 +106,8 @@ def compile_now(name: str, *more: str) -> None:
         tolerance=1e-8,
         workers=1,
     )
-    if model.node == 2:
+    if n == 2:
         by_address.functions()
-    else:
-        n = model.node
-        factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
-        periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
 
 
 def _cores() -> int:

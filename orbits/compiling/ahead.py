@@ -7,13 +7,13 @@ import time
 from typing import Any
 
 helpers: dict[str, subprocess.Popen[bytes]] = {}
-"""Processes that compile for the machine of that name."""
+"""Processes that compile for the machine of that name, or the function of that name for many machines."""
 
 PATIENCE = 60.0  # seconds to wait for one function
 
 
 def wait_for(name: str, function: Any) -> None:
-    """Wait while the helper of the machine called `name` is at work and numba's cache lacks `function`.
+    """Wait while the helper called `name` is at work and numba's cache lacks `function`.
 
     If that takes too long the function is compiled here as well.
     """
