@@ -29,9 +29,7 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
     population : Population
     """
     low, high = graph.within
-    names = Settings().to_dict()
-    settings = Settings.of({name: value for name, value in graph.settings.items() if name in names})
-    run = Run(graph, settings, NullJournal(), 0, True, None, None)
+    run = Run(graph, Settings.kept(graph.settings), NullJournal(), 0, True, None, None)
     adopt(run)
     found: list[Attractor] = []
     for t in (np.arange(VALUES) + 0.5) / VALUES:

@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 
 from ..problems.scales import Scales, in_fields
+from .reach import MOVED
 
-STEPS, FEW = 24, 6  # each way; few of them where there are many unknowns
-LARGE = 500  # unknowns
-LONGEST = 0.25  # step, in the metric
+STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
+FEW = 6
+LONGEST = 0.5  # step, in the metric
+TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
 TURN = 0.6  # largest angle between tangents
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
@@ -41,6 +43,7 @@ class Scout:
         self.first = np.maximum(problem.lengths, SMALLEST_BEND * np.abs(np.asarray(problem.u0, dtype=float)))
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)
+        self.before = np.zeros(self.n + 1)  # ranges when one of them had doubled last
         self.rows = np.zeros(self.n)
         self.rates: list[float] = []
         self.noise = 0.0
@@ -101,7 +104,7 @@ class Scout:
 
     def walk(self, z: np.ndarray, tangent: np.ndarray, steps: int) -> None:
         """Follow the branch for some steps in the direction of the tangent."""
-        h = 0.02
+        h, turned = 0.02, 0.0
         for _ in range(steps):
             tangent = tangent / self._length(tangent)
             guess, border = z + h * tangent, self.weights() * tangent
@@ -111,14 +114,29 @@ class Scout:
                 continue
             ahead = found[1] / self._length(found[1])
             cosine = float((self.weights() * tangent) @ ahead)
-            if math.sqrt(max(0.0, 2.0 - 2.0 * cosine)) > TURN or self._length(found[0] - guess) > h:
+            turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
+            if turn > TURN or self._length(found[0] - guess) > h:
                 h *= 0.3
                 continue
             if not self.within[0] <= found[0][-1] <= self.within[1]:
                 return
-            z, tangent = found[0], ahead
+            if not self.before.any():
+                self.before = self.high - self.low
+            z, tangent, turned = found[0], ahead, turned + turn
             self._saw(z, False)
+            if turned > TURNED or self._runs_away():
+                return
             h = min(1.7 * h, LONGEST)
+
+    def _runs_away(self) -> bool:
+        """Whether the unknowns have doubled their range while the parameter, which had moved before, hardly did."""
+        extent = self.high - self.low
+        doubled = np.any((extent[:-1] > 2.0 * self.before[:-1]) & (self.before[:-1] > 0.0))
+        if not doubled:
+            return False
+        moved, in_all = extent[-1] - self.before[-1], extent[-1]
+        self.before = extent
+        return bool(moved < MOVED * in_all)
 
     def scales(self, given: np.ndarray | None) -> Scales:
         """What was seen; ``given`` wins over it."""
@@ -162,7 +180,7 @@ def learn(problem: Any, within: tuple[float, float], given: np.ndarray | None = 
     z, tangent = begin
     across = scout.weights() * tangent
     scout.noise = problem.noise_at(scout.work, scout.scale, across / np.abs(across).max())
-    steps = STEPS if scout.n <= LARGE else FEW
+    steps = next((steps for most, steps in STEPS.items() if scout.n <= most), FEW)
     scout.walk(z, tangent, steps)
     scout.walk(z, -tangent, steps)
     return scout.scales(given)

@@ -148,13 +148,10 @@ def switch(
     point = graph.special[label]
     if point.problem is None:
         raise ValueError(without_problem(label, graph.branches[point.branch].description))
-    if settings is None:
-        names = Settings().to_dict()
-        settings = {name: value for name, value in graph.settings.items() if name in names}
     before = list(graph.branches)
     run = Run(
         graph,
-        Settings.of(settings),
+        Settings.kept(graph.settings) if settings is None else Settings.of(settings),
         NullJournal() if journal is None else journal,
         depth + 1,
         bool(graph.settings.get("virtual", False)),

@@ -46,6 +46,8 @@ class Differentiated:
         Where it does.
     noise : ndarray, shape (n,)
         Standard deviation of each entry of f beyond roundoff.
+    grain : ndarray, shape (n,)
+        The same with roundoff.
     errors : ndarray, shape (n,)
         Estimated errors of the columns of the last Jacobian.
 
@@ -75,6 +77,7 @@ class Differentiated:
         value = self.checked_value(u, p)
         cost = perf_counter() - begin
         self.noise, self.errors, self.complex_step = np.zeros(n), np.zeros(n), False
+        self.grain = np.zeros(n)
         self.parameter_lengths: dict[str, float] = {}
         self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
         self._measure_noise(u, p, value)
@@ -118,7 +121,7 @@ class Differentiated:
         other.f, other.given_jacobian, other.given_derivative = f, jacobian, derivative
         other.name, other.rows = name or self.name, rows
         if rows:
-            other.noise = np.zeros(rows)
+            other.noise = other.grain = np.zeros(rows)
         other._bind()
         return other
 
@@ -207,7 +210,7 @@ class Differentiated:
         name = self.parameters.varying
         if name not in self.parameter_lengths:
             found = bend(
-                self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.noise
+                self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.grain
             )
             self.parameter_lengths[name] = found or abs(p) or 1.0
         return self.parameter_lengths[name]
@@ -237,12 +240,12 @@ class Differentiated:
         with np.errstate(all="ignore"):
             if each:
                 for j in range(n):
-                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.noise)
+                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.grain)
                     if found is not None:
                         self.lengths[j], self.bends[j] = found, True
             else:
                 direction = np.where(u == 0.0, largest, u)
-                found = bend(line(direction / np.abs(direction).max()), largest, tries, self.noise)
+                found = bend(line(direction / np.abs(direction).max()), largest, tries, self.grain)
                 self.lengths[:] = largest if found is None else found
                 self.bends[:] = found is not None
 
@@ -254,7 +257,7 @@ class Differentiated:
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
             rough = noise > SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
         if np.isfinite(noise).all() and np.isfinite(change).all():
-            self.noise = np.where(rough, noise, 0.0)
+            self.grain, self.noise = noise, np.where(rough, noise, 0.0)
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         """Whether imaginary parts are derivatives: compared with differences along a direction beside the start."""
