@@ -12,7 +12,7 @@ inserted event sits where the margin vanished. What happens beyond follows from 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from orbits.cycles.margins import EVENT, FLIGHT, PER_NODE, WALL
 from orbits.cycles.sampling import flight, slowest
 from orbits.cycles.solution import Solution
 from orbits.words import Word
+from orbits.words.alphabet import MIRRORED
 
 SHORT = 1e-4  # phase of a stick, or between a turn and the stick after it, that is about to vanish
 NO_SPEED = 1e-7  # an impact slower than this vanishes
@@ -49,6 +50,23 @@ class Edit:
     nodes: np.ndarray
     grows: str
     note: str
+
+    def later(self, rounds: int, unit: int, shift: float, mirrored: bool) -> Edit:
+        """The same change some rounds of `unit` events and `shift` radians later; mirrored in every other one if asked for."""
+        if rounds == 0:
+            return self
+        image = mirrored and rounds % 2 == 1
+        nodes = -self.nodes if image else self.nodes.copy()
+        if nodes.size:
+            nodes[:, 0] = self.nodes[:, 0] + rounds * shift
+        return replace(
+            self,
+            start=self.start + rounds * unit,
+            stop=self.stop + rounds * unit,
+            events=tuple(MIRRORED[letter] for letter in self.events) if image else self.events,
+            modes=tuple(-mode for mode in self.modes) if image else self.modes,
+            nodes=nodes,
+        )
 
 
 def edits_at(orbit: Solution, index: int, unit: int | None = None) -> list[Edit]:
