@@ -119,10 +119,7 @@ def _escapes(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iter
         wider, whole = _repeated(problem, orbit, rounds)
         if not choices:
             first = edits_at(whole, index, problem.length)
-            choices = [
-                [change.later(k, problem.length, problem.shift, problem.symmetric) for change in first]
-                for k in range(ROUNDS)
-            ]
+            choices = [[edit.later(k, problem) for edit in first] for k in range(ROUNDS)]
         for changed in (1, rounds - 1) if rounds > 2 else (1,):
             found = _grown_in(wider, whole, p, choices, rounds, changed)
             if found is None:
@@ -156,7 +153,7 @@ def _grown_in(
         ways = SIZES if rounds == 2 else SIZES[:2]
         found = grown(wider, whole, p, list(edits), ways, steady=rounds > 2)
         if found is not None:
-            return found, edits[0].note
+            return found, edits[0].change.what.value
     return None
 
 
