@@ -63,7 +63,7 @@ def test_pairs_of_any_size_in_products_of_any_order(size):
     """Long products are scaled by powers of two on the way; real and imaginary parts must come back alike."""
     draw = np.random.default_rng(3)
     length, n = 12, 3
-    basis = draw.normal(size=(n, n))
+    basis = np.eye(n) + 0.1 * draw.normal(size=(n, n))
     angle = 0.4
     turn = np.array(
         [[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 0.5]]
