@@ -66,9 +66,9 @@ def test_the_stuck_absorber_slips_where_gravity_helps(slope, frictions):
 
 def test_friction_takes_its_force_times_the_way_on_either_side():
     machine = made()
-    steps = np.array([[0.5, -0.2, 0.0, -0.3]])
+    steps = np.array([[0.7, -0.2, 0.0, -0.3]])
     force = 0.5 * math.cos(0.4)
-    expected = force * (0.3 * 0.5 + 0.8 * (0.2 + 0.3))
+    expected = force * (0.3 * 0.7 + 0.8 * (0.2 + 0.3))
     assert machine.friction_loss(steps, vector(machine)[None]) == pytest.approx([expected])
 
 
