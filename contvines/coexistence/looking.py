@@ -17,7 +17,6 @@ from .census import census
 from .population import Population
 
 
-
 def look(graph: Graph, population: Population) -> list[Attractor]:
     """Attractors that a few simulated starts reach and that lie on no branch of the graph; kept as ``graph.missing``.
 

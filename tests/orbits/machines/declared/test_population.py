@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits import Machine, Wall
-from orbits import Absorber
+from orbits import Absorber, Machine, Wall
 from orbits.machines.declared.growth import growth
 from orbits.machines.declared.stepper import Stepper
 from tests.orbits.machines.declared.pages import page
