@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors.motion import Motion
+from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.machines.declared.attractor import RETURNED, look, returning, skip
 from orbits.machines.declared.growth import growth
@@ -19,7 +20,6 @@ from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.orbit import DeclaredOrbit
 from orbits.machines.declared.simulation import Trajectory, collect, letter_of, outside
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
-from orbits.machines.declared.words import RELEASE
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
 LONGEST = 16  # forcing periods of the longest recurrence looked for
