@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from orbits import Cavity
+from orbits import Cavity, Orbit, Word
 from orbits.machines.cavity import numbers
 
 VALUES = {
@@ -82,3 +82,13 @@ def test_a_ball_bounces_off_the_lower_wall_with_that_wall_s_restitution(slope, w
     assert after == pytest.approx(-r * before)
     b, period = 1.2 * 0.5 * math.sin(slope), 2.0 * math.pi / 1.3
     assert after - before == pytest.approx(b * period)  # v' is the same at both ends of the flight
+
+
+@pytest.mark.parametrize(("slope", "text"), [(0.4, "R"), (-0.4, "L")])
+def test_the_bounces_in_closed_form_solve_the_equations(slope, text):
+    machine = made(slope=slope, friction_left=0.0, friction_right=0.0)
+    params, word = machine.vector({"amplitude": 2.5}), Word.parse(text, frictionless=True)
+    found = [
+        Orbit(machine, word, 1, nodes, params).residual for nodes in machine.start_nodes(word, 1, params)
+    ]
+    assert len(found) == 2 and max(found) < 1e-12
