@@ -163,6 +163,11 @@ class AlgebraicProblem(CallableProblem):
         """Whether they bend in each unknown at all."""
         return np.append(super().bends, np.ones(self.dimension - self.node, dtype=bool))
 
+    @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the equations or from the start."""
+        return np.append(super().known, np.ones(self.dimension - self.node, dtype=bool))
+
     # ------------------------------------------------------------------ numerics
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
         """F alone."""

@@ -155,6 +155,11 @@ class MapProblem(CycleMeasures, CallableProblem):
         """Whether it bends in each unknown at all."""
         return np.tile(self.functions.bends, self.cycle)
 
+    @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the map or from the start."""
+        return np.tile(self.functions.known, self.cycle)
+
     def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
         """The same map's cycles of another length, or in other pieces; scales are kept."""
         other = copy(self)
