@@ -236,7 +236,7 @@ class Differentiated:
         self.bends, self.known = np.zeros(n, dtype=bool), u != 0.0
         largest = float(np.abs(u).max()) or 1.0
         each = n <= EACH
-        tries = REACH if (n if each else 1) * 39 * cost < PATIENCE else FEW
+        tries = REACH if (n if each else 1) * 77 * cost < PATIENCE else FEW
 
         def line(direction: np.ndarray) -> Callable[[float], np.ndarray]:
             return self._quietly(lambda t: self._value(u + t * direction, p), n)

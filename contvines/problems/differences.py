@@ -15,6 +15,7 @@ FOURTH = (2.0 / 3.0, -1.0 / 12.0)
 EPS = float(np.finfo(float).eps)
 GOOD = 1e-13  # relative error at which a difference is taken without trying a smaller step
 FACTOR = 64.0  # between the lengths that are tried by `bend`
+ASIDE = 1.37  # ratio of two lengths at which slopes are compared
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
 Line = Callable[[float], np.ndarray]
@@ -124,9 +125,12 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         floor = 1e3 * EPS * np.abs(here) + 30.0 * noise
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
+        beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (ASIDE * lengths[:, None])
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
         seen = np.abs(odd) > floor + 1e3 * EPS * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
+        # where rounding makes stairs of f, or it is a power, it is not linear
+        seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
         found = np.inf
         for r in range(odd.shape[1]):
             first = int(np.argmax(seen[:, r]))
