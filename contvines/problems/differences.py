@@ -125,7 +125,9 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         floor = 1e3 * EPS * np.abs(here) + 30.0 * noise
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
-        beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (ASIDE * lengths[:, None])
+        beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
+            ASIDE * lengths[:, None]
+        )
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
         seen = np.abs(odd) > floor + 1e3 * EPS * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]

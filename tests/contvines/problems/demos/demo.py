@@ -39,6 +39,8 @@ class Demo:
         Further arguments of the problem.
     printed : str
         What the source, or its documentation, prints.
+    exact : dict
+        Values by kind where the defining equations are singular: branch points with two null vectors.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Demo:
     depth: int = 2
     options: dict[str, Any] = field(default_factory=dict)
     printed: str = ""
+    exact: dict[str, float] = field(default_factory=dict)
 
     def function(self, u: np.ndarray, p: Any) -> np.ndarray:
         """For contvines."""

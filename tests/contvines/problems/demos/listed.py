@@ -176,6 +176,8 @@ DEMOS = [
         (0.5, 8.0),
         "lambda",
         depth=1,
+        # det [[2.5 q - 3, 4.41 q], [-3.5 q, -30 - 4.41 q]] = 0: the pattern (1, -1, 0)
+        exact={"branch-point": (61.77 - np.sqrt(61.77**2 - 4 * 4.41 * 90)) / (2 * 4.41)},
     ),
     Demo(
         "two patches",

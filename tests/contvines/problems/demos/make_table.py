@@ -1,6 +1,6 @@
 """Writes table.json: the special points of every demo as the witness has them.
 
-    python -m tests.contvines.problems.demos.make_table
+    python -m tests.contvines.problems.demos.make_table [NAME...]
 
 The guesses come from this package's own graphs; whether there are more is asked by `search.py`.
 """
@@ -8,6 +8,7 @@ The guesses come from this package's own graphs; whether there are more is asked
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -36,16 +37,21 @@ def points_of(graph: Any) -> list[tuple[str, float, list[float]]]:
 def solved(demo: Demo, kind: str, value: float, u: list[float]) -> tuple[float, list[float]]:
     """The witness's value, and its unknowns (those of a cycle's first point)."""
     n = len(demo.u)
+    if kind in demo.exact:
+        return demo.exact[kind], u[:n]
     if n > witness.SMALL:
         return witness.turning(demo, u, value)
     found, p = witness.solve(demo, kind, u[:n], value, len(u) // n)
     return float(p), [float(x) for x in found]
 
 
-def main() -> None:
-    """Make the table anew."""
-    table = {}
-    for demo in [*listed.DEMOS, *maps.DEMOS]:
+def main(names: list[str]) -> None:
+    """Make the table anew, or the rows of some demos."""
+    demos = [*listed.DEMOS, *maps.DEMOS]
+    table = json.loads(TABLE.read_text(encoding="utf-8")) if names else {}
+    for demo in demos:
+        if names and demo.name not in names:
+            continue
         rows = []
         for kind, value, u in points_of(graph_of(demo)):
             p, first = solved(demo, kind, value, u)
@@ -58,8 +64,9 @@ def main() -> None:
                 }
             )
         table[demo.name] = rows
-    TABLE.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    table = {demo.name: table[demo.name] for demo in demos}
+    TABLE.write_text(json.dumps(table).replace("], ", "],\n") + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
