@@ -109,6 +109,12 @@ class SpecialPoint:
 
         return plot_portrait(self.orbit, **options)
 
+    def circles(self, to: float | None = None, **options: Any) -> Any:
+        """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
+        from ..circles.follow import circles
+
+        return circles(self, to, **options)
+
     def _repr_html_(self) -> str:
         from ..graph.table import Table, number
 

@@ -11,7 +11,19 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import basins, chart, design, editor_schema, look, prove, report, run, survey, sweep
+from contvines.command import (
+    basins,
+    chart,
+    circle,
+    design,
+    editor_schema,
+    look,
+    prove,
+    report,
+    run,
+    survey,
+    sweep,
+)
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -54,6 +66,7 @@ app.command()(run.atlas)
 app.command()(basins.basins)
 app.command()(chart.locus)
 app.command()(chart.chart)
+app.command()(circle.circle)
 app.command()(look.show)
 app.command()(look.orbit)
 app.command()(prove.prove)

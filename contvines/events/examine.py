@@ -10,6 +10,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
 from .kinds import BORDERS
+from .limits import before
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
 from .scan import FLAT, MARGIN
@@ -21,7 +22,6 @@ REACHED = 1e-4  # distance from the stability boundary at which a located multip
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 TIED = 1e-9  # margins that differ by less vanish together
-SURE = 1e-10  # tangents at a border whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
@@ -229,8 +229,7 @@ class Examiner:
         if root is None:
             return []
         j = self._which_border(engine.margins(root.point.row), falling)
-        tangent = self._tangent_before(segment, root)
-        root = root._replace(point=root.point._replace(tangent=tangent))
+        root = root._replace(point=before(segment, root))
         return [self._located(root, engine.problem.margin_kind(j), j, Role.BORDER)]
 
     def _which_border(self, margins: np.ndarray, falling: np.ndarray) -> int:
@@ -241,20 +240,6 @@ class Examiner:
         tied = falling[margins[falling] <= margins[falling].min() + TIED]
         kinds = [self.engine.problem.margin_kind(int(j)) for j in tied]
         return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])
-
-    def _tangent_before(self, segment: Segment, root: Root) -> np.ndarray:
-        """The tangent at a border.
-
-        Where a flight or stick of length zero makes the equations singular, the tangent solved for there is rounding: it is
-        extrapolated from the points before.
-        """
-        engine, own = self.engine, root.point.tangent
-        reach = min(BESIDE, root.position / 3.0)
-        near, far = (segment.at(root.position - k * reach) for k in (1.0, 2.0))
-        if near is None or far is None or not reach > 0.0:
-            return own
-        ahead = engine.unit(2.0 * near.tangent - far.tangent)
-        return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""

@@ -281,6 +281,12 @@ RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coef
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
 
 
+def strong_resonance(multiplier: complex) -> str:
+    """The strong resonance at which a multiplier of the full period is, "1:3" for example; "" for none."""
+    angle = abs(float(np.angle(multiplier)))
+    return next((n for n, place in STRONG.items() if abs(angle - place) < RESONANT), "")
+
+
 def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
     """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
 
@@ -310,16 +316,8 @@ def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pi
         return Pitch(None, None, "")
     note = ""
     if not flow:
-        full = complex(np.asarray(problem.to_multipliers(np.array([critical])))[0])
-        angle = abs(float(np.angle(full)))
-        note = next(
-            (
-                f"near the strong resonance {n}"
-                for n, place in STRONG.items()
-                if abs(angle - place) < RESONANT
-            ),
-            "",
-        )
+        resonance = strong_resonance(complex(np.asarray(problem.to_multipliers(np.array([critical])))[0]))
+        note = f"near the strong resonance {resonance}" if resonance else ""
     if found.error > 0.5 * abs(value):
         return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
     return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)

@@ -18,12 +18,13 @@ from .pieces import Pieces
 from .protocol import Embedding, Seed, Symmetry
 from .registry import addresses, find_callables
 from .scales import given_scale
+from .simulated import SimulatedMap
 from .spectra import without_roundoff
 
 SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
 
 
-class MapProblem(CycleMeasures, CallableProblem):
+class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
 
     Parameters

@@ -18,6 +18,7 @@ from orbits.machines.declared.identity import canonical, is_symmetric
 from orbits.machines.declared.identity import root as shortest
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import border_kind, fill_margins, per_node
+from orbits.machines.declared.section import Section
 from orbits.machines.declared.words import HIT, STICK, STROBE, Letter, Word
 from orbits.protocol import Embedding, Symmetry
 
@@ -430,6 +431,10 @@ class DeclaredProblem:
         from orbits.machines.declared.orbit import DeclaredOrbit
 
         return DeclaredOrbit(self.machine, self.word, self.periods, self.expand(u), self.values(p))
+
+    def section(self, p: float) -> Section:
+        """Its motions by simulation, once per period of the cycle."""
+        return Section(self.machine, self.values(p), self.word, self.periods)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
