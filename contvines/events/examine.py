@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -34,10 +34,17 @@ class Examiner:
     engine : Engine
     user_functions : mapping of name to function, optional
         See :func:`contvines.events.functions.user_function`.
+    stops : collection of str
+        Names of those at whose zeros a branch ends.
     """
 
-    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
-        self.engine = engine
+    def __init__(
+        self,
+        engine: Engine,
+        user_functions: Mapping[str, Any] | None = None,
+        stops: Collection[str] = (),
+    ) -> None:
+        self.engine, self.stops = engine, stops
         problem = engine.problem
         self.kind = engine.detection
         # of problems without scales of their own, machines, branches of this sort are not known
@@ -250,7 +257,8 @@ class Examiner:
             f = self.users[name]
             root = locate(segment, lambda point, f=f: float(f(point.u[None, :], np.array([point.p]))[0]))
             if root is not None and root.continuous:
-                events.append(self._located(root, "user", index, name=name))
+                role = Role.STOP if name in self.stops else Role.SPECIAL
+                events.append(self._located(root, "user", index, role, name))
         return events
 
     def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:

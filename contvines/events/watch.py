@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,10 +30,17 @@ class Watch(Examiner):
     engine : Engine
     user_functions : mapping of name to function, optional
         See :func:`contvines.events.functions.user_function`.
+    stops : collection of str
+        Names of those at whose zeros a branch ends.
     """
 
-    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
-        super().__init__(engine, user_functions)
+    def __init__(
+        self,
+        engine: Engine,
+        user_functions: Mapping[str, Any] | None = None,
+        stops: Collection[str] = (),
+    ) -> None:
+        super().__init__(engine, user_functions, stops)
         self.scanner = Scanner(engine, self.symmetries)
 
     def scan(self, chunk: Chunk, real: bool = True) -> Scan:

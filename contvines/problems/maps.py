@@ -304,18 +304,6 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
 
         return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
 
-    def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
-        """The points of the cycle, shape (n, d)."""
-        return np.array(u).reshape(self.cycle, self.node)
-
-    def replay(self, u: np.ndarray, p: float) -> float:
-        """Largest distance after iterating each point of the cycle once."""
-        nodes = np.asarray(u).reshape(self.cycle, self.node)
-        images = self.equations(np.asarray(u, dtype=float), p)[0].reshape(nodes.shape) + np.roll(
-            nodes, -1, axis=0
-        )
-        return float(np.abs(images - np.roll(nodes, -1, axis=0)).max())
-
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""
         where, importable = addresses(self.given)
