@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from ..problems.scales import Scales, in_fields
-from .reach import MOVED
 
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
 LONGEST = 0.5  # step, in the metric
 TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
 TURN = 0.6  # largest angle between tangents
+SLOW = 0.2  # part of its range by which the parameter moves while the unknowns double theirs, on branches that do not run away
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
 SMALLEST_BEND = 1e-4
@@ -155,7 +155,7 @@ class Scout:
             return False
         moved, in_all = extent[-1] - self.before[-1], extent[-1]
         self.before = extent
-        return bool(moved < MOVED * in_all)
+        return bool(moved < SLOW * in_all)
 
     def scales(self, given: np.ndarray | None) -> Scales:
         """What was seen; ``given`` wins over it."""
