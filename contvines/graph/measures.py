@@ -1,12 +1,13 @@
-"""Measures of a graph's branches: the one to show, and whether there are numbers to show."""
+"""What is on the axes of a diagram: measures along branches and at special points, and the one shown when none is named."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .graph import Graph
+if TYPE_CHECKING:
+    from .graph import Graph
 
 
 def default_measure(graph: Graph) -> str:
@@ -23,6 +24,17 @@ def default_measure(graph: Graph) -> str:
         choice = [n for n in (wanted, "max_abs_w", *others) if n in names]
         return next((str(n) for n in choice if _shown(graph, n)), choice[0] if choice else names[0])
     return "norm"
+
+
+def undrawn(graph: Graph, x: str, y: str) -> str:
+    """Which branches have no number to draw, as a line of the legend; empty if all have one."""
+    missing = [b for b in graph.branches.values() if len(b) and not _finite(b, x, y)]
+    if not missing:
+        return ""
+    labels = [b.label for b in missing]
+    listed = ", ".join(labels) if len(labels) <= 4 else f"{', '.join(labels[:3])} +{len(labels) - 3}"
+    still = all(b.description.get("impacts") == 0 for b in missing)
+    return f"not drawn: {listed} ({'no impacts' if still else f'no {y} there'})"
 
 
 def measured(branch: Any, name: str) -> np.ndarray:
@@ -43,9 +55,20 @@ def measured(branch: Any, name: str) -> np.ndarray:
 
 
 def _shown(graph: Graph, name: str) -> bool:
-    return any(has_numbers(b, graph.parameter, name) for b in graph.branches.values() if len(b))
+    return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
 
 
-def has_numbers(branch: Any, x: str, y: str) -> bool:
+def _finite(branch: Any, x: str, y: str) -> bool:
     """Whether some point of a branch has both measures."""
     return bool(np.any(np.isfinite(measured(branch, x)) & np.isfinite(measured(branch, y))))
+
+
+def measure_at(branch: Any, point: Any, name: str) -> float:
+    if name == branch.parameter:
+        return float(point.value)
+    if 0 <= point.index < len(branch):
+        return float(measured(branch, name)[point.index])
+    if branch.problem is None:
+        nearest = int(np.argmin(np.abs(branch.points - point.u).max(axis=1)))
+        return float(measured(branch, name)[nearest])
+    return float(branch.problem.measures((name,), point.u[None, :], np.array([point.value]))[name][0])
