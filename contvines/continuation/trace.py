@@ -98,6 +98,8 @@ def chunks(
             elif away is not None:
                 chunk = chunk.cut(max(away + 1, 2))
                 chunk.status = Status.ESCAPED
+            elif reach.creeps(chunk):
+                chunk.status = Status.CREEPING
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
             if journal is not None and not isinstance(journal, NullJournal):
