@@ -104,6 +104,10 @@ def main(arguments: list[str] | None = None) -> None:
             stopped(str(error))
         print(f"contvines: {sentence(error)}", file=sys.stderr)
         sys.exit(1)
+    if {"-h", "--help"} & set(words):
+        from contvines.command.help_note import help_note
+
+        print(end=help_note(words))
     if status == 130:  # Ctrl-C outside the computation
         stopped()
     sys.exit(status if isinstance(status, int) else 0)

@@ -72,6 +72,8 @@ def chunks(
     closing, reach = Closing(engine, start), Reach(engine, start)
     total, number = 1, 0
     most = min(8 * settings.chunk, LARGEST // (2 * n + engine.row_size))
+    if reach.learned:
+        most = settings.chunk  # the longest step is decided anew for each
     while True:
         name = f"{key}/{number}"
         known = journal.recall(name) if journal is not None else None

@@ -109,6 +109,11 @@ class CallableProblem(ProblemDefaults):
         return self.functions.bends
 
     @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the equations or from the start; else it is 1."""
+        return self.functions.known
+
+    @property
     def noise(self) -> float:
         """Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff."""
         return 0.0 if self.scales is None else self.scales.noise
