@@ -26,6 +26,7 @@ _HOME = {
     "Seed": ".problems.protocol",
     "Settings": ".continuation.settings",
     "SpecialPoint": ".branches.special_point",
+    "StepRule": ".continuation.step_rule",
     "Switch": ".graph.graph",
     "Symmetry": ".problems.protocol",
     "Attractor": ".graph.attractor",
@@ -58,6 +59,7 @@ __all__ = [
     "Seed",
     "Settings",
     "SpecialPoint",
+    "StepRule",
     "Switch",
     "Symmetry",
     "atlas",
@@ -90,6 +92,7 @@ if TYPE_CHECKING:
     from .branches.branch import Branch
     from .branches.special_point import SpecialPoint
     from .continuation.settings import Settings
+    from .continuation.step_rule import StepRule
     from .continuation.trace import trace
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch

@@ -1,9 +1,28 @@
-"""The documentation as a site: `sphinx-build -W docs docs/_build` with the extra `docs` installed."""
+"""The documentation as a site: `sphinx-build -W docs docs/_build` with the extra `docs` installed; it runs the notebooks."""
 
 project = "contvines"
 author = "The contvines developers"
-extensions = ["myst_parser"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc"]
 exclude_patterns = ["_build"]
 html_theme = "alabaster"
+html_theme_options = {
+    "page_width": "1120px",
+    "sidebar_width": "230px",
+    "body_max_width": "860px",
+    "fixed_sidebar": True,
+}
+html_extra_path = ["study.schema.json"]
 myst_heading_anchors = 3
+myst_enable_extensions = ["dollarmath"]
 suppress_warnings = ["myst.xref_missing"]  # links to the repository's own files stay links to files
+
+# notebooks are pages of Markdown whose cells the build runs; a cell that fails, fails the build
+nb_execution_mode = "auto"
+nb_execution_in_temp = True
+nb_execution_timeout = 240
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings have shapes and units
+numpydoc_show_class_members = False

@@ -21,9 +21,11 @@ from orbits.cycles.margins import DURATION, FLIGHT, border_kind, margin_name
 from orbits.doors import above
 from orbits.machines.base import Model
 from orbits.machines.building import build
+from orbits.machines.catalogue import stepper
 from orbits.machines.path import along
 from orbits.orbit import Orbit
 from orbits.protocol import Embedding, Symmetry
+from orbits.simulation.section import Section
 from orbits.words import Word
 
 
@@ -83,6 +85,11 @@ class OrbitProblem:
     def workspace(self) -> tuple[np.ndarray, ...]:
         """Arrays for the kernels."""
         return self.equations.workspace()
+
+    @property
+    def scratch(self) -> tuple[np.ndarray, ...]:
+        """A workspace for single calls, whose contents nobody relies on."""
+        return self.equations.scratch
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -297,6 +304,19 @@ class OrbitProblem:
             key = (text or "", int(motion.periods), motion.kind)
             found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
         return [found[key] for key in sorted(found)]
+
+    def section(self, p: float) -> Section:
+        """Its motions by simulation, once per period of the cycle.
+
+        Raises
+        ------
+        ValueError
+            For the empty word, which has no event to begin with.
+        """
+        if not len(self.word):
+            raise ValueError("the absorber that never slides has no section")
+        code, mode = int(self.word.codes[0]), int(self.word.mode_codes[0])
+        return Section(stepper(self.model.name), self.values(p), code, mode, self.periods)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""

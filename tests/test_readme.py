@@ -36,7 +36,7 @@ def test_main_job_runs_as_written(tmp_path):
 def test_both_commands_start_from_a_bare_python():
     for name in ("run", "tests"):
         assert command(name).startswith("python3 -m venv .venv && .venv/bin/pip install ")
-    assert command("tests").endswith("pytest")
+    assert " && .venv/bin/python -m pytest" in command("tests")
 
 
 def test_python_block_runs(tmp_path, monkeypatch):

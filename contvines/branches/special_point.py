@@ -97,6 +97,37 @@ class SpecialPoint:
         return "; ".join(filter(None, (self.name, met, *self.remarks)))
 
     @property
+    def frequency(self) -> float | None:
+        """Angular frequency of the pair on the stability boundary: omega at a Hopf point, the angle per period at a
+        Neimark-Sacker point; None at other points."""
+        pairs = self.multipliers[np.imag(self.multipliers) > 0.0]
+        if self.kind not in ("hopf", "neimark-sacker") or not len(pairs):
+            return None
+        if self.kind == "hopf":
+            return float(np.imag(pairs[np.argmin(np.abs(np.real(pairs)))]))
+        return float(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))]))
+
+    @property
+    def eigenvectors(self) -> np.ndarray:
+        """Eigenvectors as columns, shape (N, m), of length one; column j belongs to ``multipliers[j]``.
+
+        Of dF/du; of a cycle of a map those of the product of its Jacobians, from its first point.
+
+        Raises
+        ------
+        ValueError
+            If the problem is not attached or does not tell them.
+        """
+        if self.problem is None:
+            raise ValueError(without_problem(self.label))
+        own = getattr(self.problem, "eigenvectors", None)
+        if own is None:
+            raise ValueError(
+                f"{self.label}: its problem tells no eigenvectors; problems made of your own equations do"
+            )
+        return own(self.u, self.value, self.multipliers)
+
+    @property
     def orbit(self) -> Any:
         """The solution as the object that its problem hands to users."""
         if self.problem is None:
@@ -108,6 +139,12 @@ class SpecialPoint:
         from ..plots.portrait import plot_portrait
 
         return plot_portrait(self.orbit, **options)
+
+    def circles(self, to: float | None = None, **options: Any) -> Any:
+        """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
+        from ..circles.follow import circles
+
+        return circles(self, to, **options)
 
     def _repr_html_(self) -> str:
         from ..graph.table import Table, number

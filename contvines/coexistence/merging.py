@@ -34,9 +34,7 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
         If they are of different parameters or machines, or a branch has no problem.
     """
     _refuse_strangers(graph, other)
-    names = Settings().to_dict()
-    settings = Settings.of({name: value for name, value in graph.settings.items() if name in names})
-    run = Run(graph, settings, NullJournal(), 0, True, None, None)
+    run = Run(graph, Settings.kept(graph.settings), NullJournal(), 0, True, None, None)
     adopt(run)
     called: dict[str, str] = {}
     for branch in other.branches.values():

@@ -11,7 +11,22 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command import basins, chart, design, look, prove, report, run, survey, sweep
+from contvines.command import (
+    basins,
+    chart,
+    circle,
+    design,
+    editor_schema,
+    export,
+    orbit,
+    plot,
+    prove,
+    report,
+    run,
+    show,
+    survey,
+    sweep,
+)
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -54,15 +69,17 @@ app.command()(run.atlas)
 app.command()(basins.basins)
 app.command()(chart.locus)
 app.command()(chart.chart)
-app.command()(look.show)
-app.command()(look.orbit)
+app.command()(circle.circle)
+app.command()(show.show)
+app.command()(orbit.orbit)
 app.command()(prove.prove)
-app.command()(look.plot)
-app.command()(look.export)
+app.command()(plot.plot)
+app.command()(export.export)
 app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(survey.survey)
 app.command()(design.design)
+app.command()(editor_schema.schema)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -90,6 +107,10 @@ def main(arguments: list[str] | None = None) -> None:
             stopped(str(error))
         print(f"contvines: {sentence(error)}", file=sys.stderr)
         sys.exit(1)
+    if {"-h", "--help"} & set(words):
+        from contvines.command.help_note import help_note
+
+        print(end=help_note(words))
     if status == 130:  # Ctrl-C outside the computation
         stopped()
     sys.exit(status if isinstance(status, int) else 0)

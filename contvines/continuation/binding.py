@@ -13,8 +13,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import arrays, corrector, lengths
+from . import arrays, corrector, lengths, step_rule
 from . import march as loop
+from .step_rule import BY_ANGLE, StepRule, by_angle
 
 
 class Bound(NamedTuple):
@@ -44,21 +45,21 @@ def copy_with(function: types.FunctionType, suffix: str = "", **names: Any) -> t
     return copy
 
 
-def bind(kernels: Any) -> Bound:
-    """The continuation loop for these kernels; made once per set of kernels and process."""
-    key = (kernels.linearise, kernels.bordered, kernels.inspect, bool(kernels.compiled))
+def bind(kernels: Any, rule: StepRule = BY_ANGLE) -> Bound:
+    """The continuation loop for these kernels and this step rule; made once per set of them and process."""
+    key = (kernels.linearise, kernels.bordered, kernels.inspect, bool(kernels.compiled), rule.judge)
     if key not in _bound:
-        _bound[key] = _make(kernels)
+        _bound[key] = _make(kernels, rule)
     return _bound[key]
 
 
-def _make(kernels: Any) -> Bound:
+def _make(kernels: Any, rule: StepRule) -> Bound:
     functions = {"linearise": kernels.linearise, "bordered": kernels.bordered, "inspect": kernels.inspect}
     if not kernels.compiled:
         sums = {name: getattr(arrays, name) for name in SUMS}
         improve = copy_with(corrector.improve, **sums)
         correct = copy_with(corrector.correct, improve=improve, **sums, **functions)
-        march = copy_with(loop.march, correct=correct, **sums, **functions)
+        march = copy_with(loop.march, correct=correct, judge=rule.judge, **sums, **functions)
         return Bound(march, copy_with(corrector.solve, improve=improve, **sums, **functions))
     from numba import njit
 
@@ -69,13 +70,25 @@ def _make(kernels: Any) -> Bound:
     sums = {name: compile_(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = compile_(copy_with(corrector.improve, suffix, **sums))
     correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **sums, **functions))
-    march = compile_(copy_with(loop.march, suffix, correct=correct, **sums, **functions))
+    own = (
+        rule is not BY_ANGLE
+    )  # a user's function may change while its loop is kept on disk: compiled in every process
+    judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
+    kept = njit(cache=not own, forceinline=True, **OPTIONS)
+    march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
     return Bound(march, compile_(copy_with(corrector.solve, suffix, improve=improve, **sums, **functions)))
+
+
+def compiled_rule(rule: StepRule) -> Any:
+    """A user's rule, compiled; as it is if that has been done."""
+    from numba import njit
+
+    return rule.judge if hasattr(rule.judge, "py_func") else njit(**OPTIONS)(rule.judge)
 
 
 def _loop_digest() -> str:
     """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls."""
     digest = hashlib.blake2b(digest_size=4)
-    for module in (corrector, lengths, loop):
+    for module in (corrector, lengths, loop, step_rule):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()

@@ -8,6 +8,7 @@ from .lengths import add, correction_size, remainder
 # what `solve` does
 LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
 
+SMALL = 1e-11  # corrections below this, and the tolerance, end the iteration however they came about
 ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative to scale + abs(unknown)
 STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
 HUGE = 1e6  # larger corrections are a divergence
@@ -62,7 +63,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
         return p, size, -1
     add(u, step)
     p += step[u.shape[0]]
-    if size <= max(1e-11, noise):
+    if size <= max(min(SMALL, tolerance), noise):
         return p, size, 1
     if sweep > 0:
         ratio = size / before

@@ -61,7 +61,7 @@ class Engine:
         self.lower, self.upper = float(within[0]), float(within[1])
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
-        self.bound = bind(problem.kernels)
+        self.bound = bind(problem.kernels, settings.step_rule)
         self.section = HELD if problem.kernels.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()

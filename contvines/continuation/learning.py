@@ -13,10 +13,12 @@ import numpy as np
 
 from ..problems.scales import Scales, in_fields
 
-STEPS, FEW = 24, 6  # each way; few of them where there are many unknowns
-LARGE = 500  # unknowns
-LONGEST = 0.25  # step, in the metric
+STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
+FEW = 6
+LONGEST = 0.5  # step, in the metric
+TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
 TURN = 0.6  # largest angle between tangents
+SLOW = 0.2  # part of its range by which the parameter moves while the unknowns double theirs, on branches that do not run away
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
 SMALLEST_BEND = 1e-4
@@ -29,11 +31,14 @@ class Scout:
     Parameters
     ----------
     problem : Problem
-        With ``lengths`` (N,), over which its equations bend, and ``bends`` (N,), whether they do.
+        With ``lengths`` (N,), over which its equations bend, ``bends`` (N,), whether they do, and ``known`` (N,), whether the
+        length says anything.
     within : (float, float)
+    given : ndarray, optional
+        Scales of the unknowns where the user has given them.
     """
 
-    def __init__(self, problem: Any, within: tuple[float, float]) -> None:
+    def __init__(self, problem: Any, within: tuple[float, float], given: np.ndarray | None = None) -> None:
         self.problem, self.within, self.n = problem, within, int(problem.dimension)
         self.width = within[1] - within[0]
         self.kernels, self.work = problem.kernels, problem.workspace()
@@ -41,9 +46,13 @@ class Scout:
         self.first = np.maximum(problem.lengths, SMALLEST_BEND * np.abs(np.asarray(problem.u0, dtype=float)))
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)
+        self.before = np.zeros(self.n + 1)  # ranges when one of them had doubled last
         self.rows = np.zeros(self.n)
         self.rates: list[float] = []
         self.noise = 0.0
+        self.given = given is not None
+        if given is not None:
+            self.first, self.scale = given, given.copy()
 
     # ------------------------------------------------------------------ one point
     def weights(self) -> np.ndarray:
@@ -95,13 +104,26 @@ class Scout:
             border[i] = 1.0
             found = self._correct(z, border, 40)
             if found is not None and self.within[0] <= found[0][-1] <= self.within[1]:
+                self._take_from_tangent(found[1])
                 self._saw(found[0], True)
                 return found
         return None
 
+    def _take_from_tangent(self, tangent: np.ndarray) -> None:
+        """Sizes of unknowns of which nothing is known: how far they get while another one, or the parameter, covers its own."""
+        known = np.asarray(self.problem.known)
+        rates, sizes = np.abs(tangent), np.append(self.first, self.width)
+        moving = np.append(known, True) & (rates > 0.0)
+        free = ~known & (rates[:-1] > 0.0)
+        if self.given or not moving.any() or not free.any():
+            return
+        way = float((sizes[moving] / rates[moving]).min())
+        self.first = np.where(free, np.maximum(rates[:-1] * way, 1e-300), self.first)
+        self.scale = self.first.copy()
+
     def walk(self, z: np.ndarray, tangent: np.ndarray, steps: int) -> None:
         """Follow the branch for some steps in the direction of the tangent."""
-        h = 0.02
+        h, turned = 0.02, 0.0
         for _ in range(steps):
             tangent = tangent / self._length(tangent)
             guess, border = z + h * tangent, self.weights() * tangent
@@ -111,14 +133,29 @@ class Scout:
                 continue
             ahead = found[1] / self._length(found[1])
             cosine = float((self.weights() * tangent) @ ahead)
-            if math.sqrt(max(0.0, 2.0 - 2.0 * cosine)) > TURN or self._length(found[0] - guess) > h:
+            turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
+            if turn > TURN or self._length(found[0] - guess) > h:
                 h *= 0.3
                 continue
             if not self.within[0] <= found[0][-1] <= self.within[1]:
                 return
-            z, tangent = found[0], ahead
+            if not self.before.any():
+                self.before = self.high - self.low
+            z, tangent, turned = found[0], ahead, turned + turn
             self._saw(z, False)
+            if turned > TURNED or self._runs_away():
+                return
             h = min(1.7 * h, LONGEST)
+
+    def _runs_away(self) -> bool:
+        """Whether the unknowns have doubled their range while the parameter, which had moved before, hardly did."""
+        extent = self.high - self.low
+        doubled = np.any((extent[:-1] > 2.0 * self.before[:-1]) & (self.before[:-1] > 0.0))
+        if not doubled:
+            return False
+        moved, in_all = extent[-1] - self.before[-1], extent[-1]
+        self.before = extent
+        return bool(moved < SLOW * in_all)
 
     def scales(self, given: np.ndarray | None) -> Scales:
         """What was seen; ``given`` wins over it."""
@@ -126,7 +163,8 @@ class Scout:
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         bends, first = np.asarray(self.problem.bends), self.first
         moved = extent[:-1] > 1e-6 * np.where(bends, first, np.maximum(size, 1e-300))
-        rest = np.where(bends, first, np.where(size > 0.0, size, 1.0))
+        sure = bends | np.asarray(self.problem.known)
+        rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
         seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
         far = (extent[:-1] > 1e-2 * size) | (np.where(bends, extent[:-1], 0.0) > first)
@@ -152,17 +190,14 @@ def learn(problem: Any, within: tuple[float, float], given: np.ndarray | None = 
     given : ndarray, optional
         Scales of the unknowns where the user has given them.
     """
-    scout = Scout(problem, within)
-    if given is not None:
-        scout.first = given
-        scout.scale = given.copy()
+    scout = Scout(problem, within, given)
     begin = scout.start()
     if begin is None:
         return Scales(in_fields(scout.first), scout.width, np.ones(scout.n), 1.0, 0.0)
     z, tangent = begin
     across = scout.weights() * tangent
     scout.noise = problem.noise_at(scout.work, scout.scale, across / np.abs(across).max())
-    steps = STEPS if scout.n <= LARGE else FEW
+    steps = next((steps for most, steps in STEPS.items() if scout.n <= most), FEW)
     scout.walk(z, tangent, steps)
     scout.walk(z, -tangent, steps)
     return scout.scales(given)

@@ -1,7 +1,7 @@
 """The continuation loop: predict, correct, judge the step, many points a call.
 
 This source runs compiled and interpreted: :mod:`contvines.continuation.binding` makes copies of these functions in which
-``linearise``, ``bordered`` and ``inspect`` are the kernels of a problem. For compiled problems the copies are compiled as
+``linearise``, ``bordered`` and ``inspect`` are the kernels of a problem and ``judge`` is the step rule of a run. For compiled problems the copies are compiled as
 well. Nothing is allocated here, and nothing is known of events.
 
 Metric: <a, b> = metric_u a_u.b_u + metric_p a_p b_p with metric_u = 1/N and metric_p = 1/(hi - lo)^2, so that step lengths
@@ -13,6 +13,7 @@ import math
 
 from .corrector import correct, inspect
 from .lengths import compare, extrapolate, fix_parameter, plane, put
+from .step_rule import by_angle as judge
 
 # entries of the control vector
 (
@@ -58,9 +59,8 @@ def march(
 
     Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
 
-    Step rule (COCO): the next step aims at the set angle between tangents; an angle beyond twice of it, or a predictor
-    error beyond the angle times the step, rejects the step. At the ends of the interval the last point is corrected at
-    the fixed parameter value, so it lies on the end exactly.
+    Each step is judged, and the next one chosen, by ``judge`` (:mod:`contvines.continuation.step_rule`). At the ends of the
+    interval the last point is corrected at the fixed parameter value, so it lies on the end exactly.
 
     Parameters
     ----------
@@ -151,8 +151,9 @@ def march(
             if tangent[n] * norm < 0.0:
                 sign = -sign
         turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
-        if not (turn <= 2.0 * angle and error <= angle * length + max(1e-12, noise)):
-            h = 0.5 * length
+        factor = judge(turn, error, sweeps, length, angle, max(1e-12, noise))
+        if not factor > 0.0:
+            h = length * (-factor if -1.0 < factor < 0.0 else 0.5)
             continue
         if p > upper or p < lower:
             bound = upper if p > upper else lower
@@ -171,11 +172,6 @@ def march(
         i += 1
         if fixed:
             return i, h, LEFT_INTERVAL
-        factor = 2.0
-        if turn > 0.5 * angle:
-            factor = max(0.5, angle / turn)
-        if sweeps > 3:
-            factor = min(factor, 0.8)
         h = min(h * factor, control[MAX_STEP])
         if control[STOP_AT_BORDER] > 0.0:
             for j in range(row_margins, row_size):

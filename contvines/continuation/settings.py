@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Any
+
+from .step_rule import BY_ANGLE, StepRule
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,8 @@ class Settings:
         A branch whose unknowns are further than this (rms) from its start has run away.
     max_branches : int
         The automatic diagram stops there.
+    step_rule : StepRule
+        Whether a step is accepted, and how long the next one is; by default the rule that aims at `angle`.
     """
 
     tolerance: float = 1e-8
@@ -46,6 +50,7 @@ class Settings:
     amplitude: float = 2e-3
     escape: float = 50.0
     max_branches: int = 200
+    step_rule: StepRule = BY_ANGLE
 
     def __post_init__(self) -> None:
         for name in ("tolerance", "angle", "first_step", "min_step", "max_step", "amplitude"):
@@ -58,6 +63,8 @@ class Settings:
                 raise ValueError(f"settings: {name} = {value!r} must be a whole number of at least 1")
         if not self.escape > 0.0:
             raise ValueError(f"settings: escape = {self.escape!r} must be a positive number")
+        if not isinstance(self.step_rule, StepRule):
+            raise ValueError(f"settings: step_rule = {self.step_rule!r} must be a contvines.StepRule")
         if self.min_step >= self.max_step:
             raise ValueError(
                 f"settings: min_step = {self.min_step!r} must be smaller than max_step = {self.max_step!r}"
@@ -75,6 +82,15 @@ class Settings:
                 raise ValueError(f"settings: there is no {name!r}; choose from {', '.join(names)}")
         return cls(**given)
 
+    @classmethod
+    def kept(cls, values: Mapping[str, Any]) -> Settings:
+        """The settings of a run, from what its graph keeps of them: the numbers; a rule of the user's own has to be given again."""
+        names = {field.name for field in fields(cls)} - {"step_rule"}
+        return cls(**{name: value for name, value in values.items() if name in names})
+
     def to_dict(self) -> dict[str, Any]:
-        """As a JSON-able dict."""
-        return asdict(self)
+        """As a JSON-able dict; of a step rule of the user's own the name."""
+        values = {
+            field.name: getattr(self, field.name) for field in fields(self) if field.name != "step_rule"
+        }
+        return values if self.step_rule is BY_ANGLE else {**values, "step_rule": self.step_rule.name}

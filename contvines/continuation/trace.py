@@ -14,6 +14,7 @@ from . import march as source
 from .chunk import Chunk
 from .closing import Closing
 from .engine import Engine, Solved
+from .reach import Reach
 from .settings import Settings
 from .status import Status
 
@@ -68,28 +69,31 @@ def chunks(
         return
     history = [start]
     h = settings.first_step if first_step is None else first_step
-    closing = Closing(engine, start)
+    closing, reach = Closing(engine, start), Reach(engine, start)
     total, number = 1, 0
     most = min(8 * settings.chunk, LARGEST // (2 * n + engine.row_size))
+    if reach.learned:
+        most = settings.chunk  # the longest step is decided anew for each
     while True:
         name = f"{key}/{number}"
         known = journal.recall(name) if journal is not None else None
         if known is not None:
             chunk = Chunk(*(np.asarray(known[part]) for part in ARRAYS), status=Status(int(known["status"])))
             h = float(known["h"])
+            reach.escapes(chunk)
         else:
-            room, longest = capacity, settings.max_step
+            room, longest = capacity, settings.max_step * reach.growth(history[-1])
             if retrace is not None:
                 room, longest = AGAIN, min(retrace.longest, longest)
                 h = min(h, longest)
             room = min(room, max(settings.max_points - total, 1))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
             closed = closing.cut(chunk)
-            away = _away(chunk.points, start.u, settings.escape, engine.scale[:-1])
+            away = reach.escapes(chunk)
             if closed is not None:
                 chunk = closed
-            elif away.any():
-                chunk = chunk.cut(max(int(np.argmax(away)) + 1, 2))
+            elif away is not None:
+                chunk = chunk.cut(max(away + 1, 2))
                 chunk.status = Status.ESCAPED
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
@@ -153,18 +157,6 @@ def _march(
         ),
         float(h),
     )
-
-
-def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -> np.ndarray:
-    """Which points are further than `escape` times the scale from u (root mean square)."""
-    if not (scale == 1.0).all():
-        points, u = points / scale, u / scale
-    limit = escape * escape * len(u)
-    squares = np.einsum("ij,ij->i", points, points)
-    # nothing as large as the points is made, unless unknowns are so large that their squares cancel
-    if squares.max() + u @ u < 1e9 * limit:
-        return squares - 2.0 * (points @ u) + u @ u > limit
-    return ~(((points - u) ** 2).sum(axis=1) <= limit)
 
 
 def _pack(solved: list[Solved], status: Status) -> Chunk:

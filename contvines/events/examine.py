@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
+from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
 from .kinds import BORDERS
+from .limits import before
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
 from .scan import FLAT, MARGIN
@@ -21,7 +22,6 @@ REACHED = 1e-4  # distance from the stability boundary at which a located multip
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 TIED = 1e-9  # margins that differ by less vanish together
-SURE = 1e-10  # tangents at a border whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
@@ -34,12 +34,21 @@ class Examiner:
     engine : Engine
     user_functions : mapping of name to function, optional
         See :func:`contvines.events.functions.user_function`.
+    stops : collection of str
+        Names of those at whose zeros a branch ends.
     """
 
-    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
-        self.engine = engine
+    def __init__(
+        self,
+        engine: Engine,
+        user_functions: Mapping[str, Any] | None = None,
+        stops: Collection[str] = (),
+    ) -> None:
+        self.engine, self.stops = engine, stops
         problem = engine.problem
         self.kind = engine.detection
+        # of problems without scales of their own, machines, branches of this sort are not known
+        self.exchanges = getattr(problem, "scales", None) is not None and self.kind != "none"
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -83,11 +92,36 @@ class Examiner:
         for event in self._sharpen(segment, crossings):
             events.append(event)
             singular += event.kind == "branch-point"
+        if not singular and (double := self._exchange(segment)) is not None:
+            events.append(double)
         if a.sign * b.sign < 0.0 and (singular + len(met)) % 2 == 0:
             root = self._determinant(segment)
             if root is not None and not _near(root.position, met + [e.position for e in folds]):
                 events.append(self._located(root, "branch-point", 0))
         return events + self._borders(segment, real)
+
+    def _exchange(self, segment: Segment) -> Located | None:
+        """A branch point where one multiplier leaves the circle while another enters; see :func:`balance`."""
+        if not self.exchanges:
+            return None
+
+        def test(point: Solved) -> float:
+            return float(balance(self.engine.spectrum(point.row)[None, :], self.kind)[0])
+
+        ends = test(segment.a), test(segment.b)
+        if not ends[0] * ends[1] < 0.0:
+            return None
+        rough = locate(segment, test, tolerance=1e-6)
+        if rough is None:
+            return None
+        count = counts(self.engine.spectrum(rough.point.row[None, :]), self.kind)[0, 0]
+        if (
+            max(abs(self._multiplier("plus", max(int(count), 1))(rough.point)), abs(test(rough.point)))
+            > REACHED
+        ):
+            return None
+        root = locate_singular(segment, test, rough.position) or rough
+        return self._located(root, "branch-point", 0)
 
     def _kind(self, name: str) -> str:
         if name == "minus":
@@ -202,8 +236,7 @@ class Examiner:
         if root is None:
             return []
         j = self._which_border(engine.margins(root.point.row), falling)
-        tangent = self._tangent_before(segment, root)
-        root = root._replace(point=root.point._replace(tangent=tangent))
+        root = root._replace(point=before(segment, root))
         return [self._located(root, engine.problem.margin_kind(j), j, Role.BORDER)]
 
     def _which_border(self, margins: np.ndarray, falling: np.ndarray) -> int:
@@ -215,20 +248,6 @@ class Examiner:
         kinds = [self.engine.problem.margin_kind(int(j)) for j in tied]
         return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])
 
-    def _tangent_before(self, segment: Segment, root: Root) -> np.ndarray:
-        """The tangent at a border.
-
-        Where a flight or stick of length zero makes the equations singular, the tangent solved for there is rounding: it is
-        extrapolated from the points before.
-        """
-        engine, own = self.engine, root.point.tangent
-        reach = min(BESIDE, root.position / 3.0)
-        near, far = (segment.at(root.position - k * reach) for k in (1.0, 2.0))
-        if near is None or far is None or not reach > 0.0:
-            return own
-        ahead = engine.unit(2.0 * near.tangent - far.tangent)
-        return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
-
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""
         events = []
@@ -238,7 +257,8 @@ class Examiner:
             f = self.users[name]
             root = locate(segment, lambda point, f=f: float(f(point.u[None, :], np.array([point.p]))[0]))
             if root is not None and root.continuous:
-                events.append(self._located(root, "user", index, name=name))
+                role = Role.STOP if name in self.stops else Role.SPECIAL
+                events.append(self._located(root, "user", index, role, name))
         return events
 
     def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:

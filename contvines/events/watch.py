@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,10 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
 from .dips import before_border, below_zero
 from .examine import Examiner, changes
+from .functions import balance
 from .leaps import leap
 from .located import Located, Role
-from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, SHALLOW, Scan, Scanner
+from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, MULTIPLIER, SHALLOW, Scan, Scanner
 from .segment import Segment
 
 USER = 256  # beside the bits of a scan: a user function changes its sign
@@ -29,10 +30,17 @@ class Watch(Examiner):
     engine : Engine
     user_functions : mapping of name to function, optional
         See :func:`contvines.events.functions.user_function`.
+    stops : collection of str
+        Names of those at whose zeros a branch ends.
     """
 
-    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
-        super().__init__(engine, user_functions)
+    def __init__(
+        self,
+        engine: Engine,
+        user_functions: Mapping[str, Any] | None = None,
+        stops: Collection[str] = (),
+    ) -> None:
+        super().__init__(engine, user_functions, stops)
         self.scanner = Scanner(engine, self.symmetries)
 
     def scan(self, chunk: Chunk, real: bool = True) -> Scan:
@@ -63,6 +71,9 @@ class Watch(Examiner):
             size = np.abs(part).max(axis=1)
             far = (size[:-1] > APART) & (size[1:] > APART)
             flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
+        if self.exchanges:
+            sums = balance(self.engine.spectrum(chunk.rows), self.kind)
+            flags[changes(np.nan_to_num(sums))] |= MULTIPLIER
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             flags[changes(values)] |= USER

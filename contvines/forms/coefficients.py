@@ -129,19 +129,29 @@ class Forms:
                 found = self._jacobian(self.open, self.open_work, u)
                 return None if found is None else found[: self.n]
 
-            found = along_line(
-                rows, self.whole, direction, max(float(np.sqrt(np.mean(self.u**2))), 1.0), self.rough
-            )
+            found = along_line(rows, self.whole, direction, self._reach(direction), self.rough)
             if found is None:
                 raise ValueError("the equations cannot be evaluated near the special point")
             self.lines[key] = found
         return self.lines[key]
 
+    def _reach(self, direction: np.ndarray) -> float:
+        """Size of the largest entry of a direction where some unknown changes by its typical size."""
+        scales = getattr(self.problem, "scales", None)
+        if scales is None:
+            return max(float(np.sqrt(np.mean(self.u**2))), 1.0)
+        parts = np.abs(direction).reshape(-1, self.n)
+        shares = float((parts / scales.unknowns).max())
+        return float(parts.max()) / shares if shares > 0.0 else 1.0
+
     # ------------------------------------------------------------------ one real critical direction
     def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
-        """Unit right and left null vector of J closed by a multiplier."""
-        left, values, right = np.linalg.svd(self.closed_by(factor))
-        return right[-1].conj(), left[:, -1].conj()
+        """Unit right and left null vector of J closed by a multiplier; found with unknowns and rows in units of their scales."""
+        scales = getattr(self.problem, "scales", None)
+        units, rows = (1.0, 1.0) if scales is None else (scales.unknowns, scales.rows)
+        left, _, right = np.linalg.svd(self.closed_by(factor) * units / np.reshape(rows, (-1, 1)))
+        v, w = right[-1].conj() * units, left[:, -1].conj() / rows
+        return v / np.linalg.norm(v), w / np.linalg.norm(w)
 
     def quadratic(self, along: np.ndarray | None = None) -> Coefficient:
         """a at a fold: z + a z^2, or z' = a z^2; its sign is that along a direction, if one is given."""
@@ -271,6 +281,12 @@ RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coef
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
 
 
+def strong_resonance(multiplier: complex) -> str:
+    """The strong resonance at which a multiplier of the full period is, "1:3" for example; "" for none."""
+    angle = abs(float(np.angle(multiplier)))
+    return next((n for n, place in STRONG.items() if abs(angle - place) < RESONANT), "")
+
+
 def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
     """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
 
@@ -300,16 +316,33 @@ def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pi
         return Pitch(None, None, "")
     note = ""
     if not flow:
-        full = complex(np.asarray(problem.to_multipliers(np.array([critical])))[0])
-        angle = abs(float(np.angle(full)))
-        note = next(
-            (
-                f"near the strong resonance {n}"
-                for n, place in STRONG.items()
-                if abs(angle - place) < RESONANT
-            ),
-            "",
-        )
+        resonance = strong_resonance(complex(np.asarray(problem.to_multipliers(np.array([critical])))[0]))
+        note = f"near the strong resonance {resonance}" if resonance else ""
     if found.error > 0.5 * abs(value):
         return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
     return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
+
+
+def cubic_form(problem: Any, u: np.ndarray, p: float, flip: bool) -> float | None:
+    """The cubic coefficient at a flip or pitchfork of a problem that says how long critical vectors are; else None.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ``amplitude``: the length of a direction that is to be one.
+    u, p
+        The point.
+    flip : bool
+        Critical multiplier -1.
+    """
+    amplitude = getattr(problem, "amplitude", None)
+    if amplitude is None or problem.spectrum == "none" or getattr(problem.kernels, "matrix", None) is None:
+        return None
+    factor = -1.0 if flip else (0.0 if problem.spectrum == "flow" else 1.0)
+    try:
+        forms = Forms(problem, u, p)
+        found, length = forms.cubic(factor), amplitude(np.real(forms.null(factor)[0]))
+    except (ValueError, IndexError, np.linalg.LinAlgError):
+        return None
+    value = found.value / length**2
+    return float(value) if np.isfinite(value) and found.error < 1e-3 * abs(found.value) else None

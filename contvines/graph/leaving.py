@@ -12,6 +12,7 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..events.kinds import BORDERS
 from ..events.located import Role
+from ..forms.coefficients import cubic_form
 from ..interrupts import OPEN
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
@@ -19,6 +20,7 @@ from ..switching.normal_forms import criticality, crossing_speed
 from .pending import Origin, Pending
 from .run import Run
 
+DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
 OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
 
@@ -93,6 +95,8 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     speed,
                     flip=name == "minus",
                 )
+                if point.criticality is not None and (exact := _cubic(point, name)) is not None:
+                    point.coefficient = exact
             elif transcritical:
                 run.remark(point.label, "transcritical")
             if departure.family:
@@ -116,6 +120,14 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     first_step=min(run.settings.first_step, departure.amplitude),
                 )
             )
+
+
+def _cubic(point: SpecialPoint, name: str) -> float | None:
+    """The coefficient from derivatives of the equations, where these can be had."""
+    if len(point.u) > DERIVATIVES:
+        return None
+    with OPEN:
+        return cubic_form(point.problem, point.u, point.value, flip=name == "minus")
 
 
 def _is_image(part: np.ndarray) -> bool:

@@ -109,9 +109,19 @@ class CallableProblem(ProblemDefaults):
         return self.functions.bends
 
     @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the equations or from the start; else it is 1."""
+        return self.functions.known
+
+    @property
     def noise(self) -> float:
         """Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff."""
         return 0.0 if self.scales is None else self.scales.noise
+
+    @property
+    def scales_learned(self) -> bool:
+        """Whether sizes of the unknowns come from a look round the start, not from the user."""
+        return self.scales is not None and self.given_scale is None
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""

@@ -10,7 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from .differences import Difference, along, bend, noise_of
+from .differences import REACH, Difference, along, bend, coupling, noise_of
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
 
@@ -18,6 +18,8 @@ COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
 SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
 EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
+PAIRS = 12  # up to so many, couplings between two of them are looked at
+FEW = 2  # lengths tried on either side where the function is slow
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
 
@@ -44,8 +46,12 @@ class Differentiated:
         Over which f bends in each unknown; where it does not, the unknown's size, or 1.
     bends : ndarray of bool, shape (n,)
         Where it does.
+    known : ndarray of bool, shape (n,)
+        Where the length comes from f or from the unknown itself, and is not just 1.
     noise : ndarray, shape (n,)
         Standard deviation of each entry of f beyond roundoff.
+    grain : ndarray, shape (n,)
+        The same with roundoff.
     errors : ndarray, shape (n,)
         Estimated errors of the columns of the last Jacobian.
 
@@ -75,6 +81,7 @@ class Differentiated:
         value = self.checked_value(u, p)
         cost = perf_counter() - begin
         self.noise, self.errors, self.complex_step = np.zeros(n), np.zeros(n), False
+        self.grain = np.zeros(n)
         self.parameter_lengths: dict[str, float] = {}
         self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
         self._measure_noise(u, p, value)
@@ -118,7 +125,7 @@ class Differentiated:
         other.f, other.given_jacobian, other.given_derivative = f, jacobian, derivative
         other.name, other.rows = name or self.name, rows
         if rows:
-            other.noise = np.zeros(rows)
+            other.noise = other.grain = np.zeros(rows)
         other._bind()
         return other
 
@@ -207,7 +214,7 @@ class Differentiated:
         name = self.parameters.varying
         if name not in self.parameter_lengths:
             found = bend(
-                self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.noise
+                self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.grain
             )
             self.parameter_lengths[name] = found or abs(p) or 1.0
         return self.parameter_lengths[name]
@@ -226,10 +233,10 @@ class Differentiated:
 
     def _measure_lengths(self, u: np.ndarray, p: float, cost: float) -> None:
         n = len(u)
-        self.bends = np.zeros(n, dtype=bool)
+        self.bends, self.known = np.zeros(n, dtype=bool), u != 0.0
         largest = float(np.abs(u).max()) or 1.0
         each = n <= EACH
-        tries = 9 if (n if each else 1) * 39 * cost < PATIENCE else 2
+        tries = REACH if (n if each else 1) * 77 * cost < PATIENCE else FEW
 
         def line(direction: np.ndarray) -> Callable[[float], np.ndarray]:
             return self._quietly(lambda t: self._value(u + t * direction, p), n)
@@ -237,14 +244,35 @@ class Differentiated:
         with np.errstate(all="ignore"):
             if each:
                 for j in range(n):
-                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.noise)
+                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.grain)
                     if found is not None:
-                        self.lengths[j], self.bends[j] = found, True
+                        self.lengths[j], self.bends[j], self.known[j] = found, True, True
+                if tries > FEW and n <= PAIRS:
+                    self._measure_couplings(u, p)
             else:
                 direction = np.where(u == 0.0, largest, u)
-                found = bend(line(direction / np.abs(direction).max()), largest, tries, self.noise)
+                found = bend(line(direction / np.abs(direction).max()), largest, tries, self.grain)
                 self.lengths[:] = largest if found is None else found
                 self.bends[:] = found is not None
+                self.known |= self.bends
+
+    def _measure_couplings(self, u: np.ndarray, p: float) -> None:
+        """Lengths of unknowns that are zero and in which f is linear, but which decide how it changes with others."""
+        n, unit = len(u), np.eye(len(u))
+        for j in np.flatnonzero(~self.known):
+            sizes = []
+            for k in range(n):
+                if k != j:
+
+                    def plane(t: float, s: float, j: int = int(j), k: int = k) -> np.ndarray:
+                        return self._quietly(
+                            lambda t: self._value(u + t * unit[j] + s * self.lengths[k] * unit[k], p), n
+                        )(t)
+
+                    sizes.append(coupling(plane, 1.0))
+            found = [size for size in sizes if size]
+            if found:
+                self.lengths[j], self.known[j] = min(found), True
 
     def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))
@@ -254,7 +282,7 @@ class Differentiated:
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
             rough = noise > SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
         if np.isfinite(noise).all() and np.isfinite(change).all():
-            self.noise = np.where(rough, noise, 0.0)
+            self.grain, self.noise = noise, np.where(rough, noise, 0.0)
 
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         """Whether imaginary parts are derivatives: compared with differences along a direction beside the start."""

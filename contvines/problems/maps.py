@@ -18,12 +18,13 @@ from .pieces import Pieces
 from .protocol import Embedding, Seed, Symmetry
 from .registry import addresses, find_callables
 from .scales import given_scale
+from .simulated import SimulatedMap
 from .spectra import without_roundoff
 
 SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
 
 
-class MapProblem(CycleMeasures, CallableProblem):
+class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
 
     Parameters
@@ -154,6 +155,11 @@ class MapProblem(CycleMeasures, CallableProblem):
     def bends(self) -> np.ndarray:
         """Whether it bends in each unknown at all."""
         return np.tile(self.functions.bends, self.cycle)
+
+    @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the map or from the start."""
+        return np.tile(self.functions.known, self.cycle)
 
     def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
         """The same map's cycles of another length, or in other pieces; scales are kept."""
@@ -297,18 +303,6 @@ class MapProblem(CycleMeasures, CallableProblem):
         from ..coexistence.maps import MapPopulation
 
         return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
-
-    def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
-        """The points of the cycle, shape (n, d)."""
-        return np.array(u).reshape(self.cycle, self.node)
-
-    def replay(self, u: np.ndarray, p: float) -> float:
-        """Largest distance after iterating each point of the cycle once."""
-        nodes = np.asarray(u).reshape(self.cycle, self.node)
-        images = self.equations(np.asarray(u, dtype=float), p)[0].reshape(nodes.shape) + np.roll(
-            nodes, -1, axis=0
-        )
-        return float(np.abs(images - np.roll(nodes, -1, axis=0)).max())
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""

@@ -57,6 +57,11 @@ class Pieces:
     def _at(self, u: np.ndarray, p: float) -> np.ndarray:
         return np.array([float(switch(u, p)[0]) for switch in self.switches])
 
+    def choose(self, u: np.ndarray, p: float) -> None:
+        """Take the piece of one node in which a state lies."""
+        self.signs = np.where(self._at(u, p) >= 0.0, 1, -1).reshape(1, -1)
+        self.current = 0
+
     @property
     def count(self) -> int:
         """Number of margins."""

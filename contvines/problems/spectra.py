@@ -19,6 +19,17 @@ def without_roundoff(values: np.ndarray) -> np.ndarray:
     return np.where(tiny, np.real(values) + 0.0j, values)
 
 
+def vectors_of(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Unit eigenvectors as columns, in the order of eigenvalues that are known."""
+    found, vectors = np.linalg.eig(matrix)
+    left, order = list(range(len(found))), []
+    for value in values:
+        nearest = min(left, key=lambda j: abs(found[j] - value))
+        order.append(nearest)
+        left.remove(nearest)
+    return vectors[:, order]
+
+
 def watched(jacobian: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """Eigenvalues of a Jacobian relative to a fixed one: zero where it is singular, whatever the scale of its rows."""
     return without_roundoff(np.linalg.eigvals(reference @ jacobian))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -38,6 +38,12 @@ def is_symmetric(word: Word, periods: int, nodes: np.ndarray, tolerance: float =
     return bool(np.max(np.abs(image - nodes[half:])) < tolerance)
 
 
+@cache
+def _direction(size: int) -> np.ndarray:
+    """A direction in which no two different orbits look alike by chance."""
+    return np.sin(np.arange(1, size + 1) * np.sqrt(2.0)) + 0.1
+
+
 def canonical(
     word: Word, periods: int, nodes: np.ndarray, mirror: bool = True
 ) -> tuple[Hashable, np.ndarray]:
@@ -47,26 +53,13 @@ def canonical(
     images, where the machine has them) with the canonical word whose projection on a fixed direction is largest.
     """
     word, periods, nodes = root_orbit(word, periods, nodes)
-    target, readings = _readings(word, mirror)
+    target = word.canonical(mirror)
     flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
-    direction = np.sin(np.arange(1, flat.size + 1) * np.sqrt(2.0)) + 0.1
+    direction = _direction(flat.size)
     best, best_score = flat.ravel(), -np.inf
-    for sign, place in readings:
-        vector = sign * np.roll(flat, -place, axis=0).ravel()
+    for mirrored, place in word.readings(mirror):
+        vector = (-1.0 if mirrored else 1.0) * np.roll(flat, -place, axis=0).ravel()
         score = float(direction @ vector)
         if score > best_score + 1e-12:
             best, best_score = vector, score
     return (target.events, target.modes, periods), best
-
-
-@lru_cache(maxsize=256)
-def _readings(word: Word, mirror: bool) -> tuple[Word, list[tuple[float, int]]]:
-    """The canonical word, and by which signs (-1: mirror image) and rotations this word becomes it."""
-    target = word.canonical(mirror)
-    images = [(word, 1.0), (word.mirror(), -1.0)] if mirror else [(word, 1.0)]
-    return target, [
-        (sign, place)
-        for reading, sign in images
-        for place in range(len(word))
-        if reading.rotate(place) == target
-    ]

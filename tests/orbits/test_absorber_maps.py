@@ -1,5 +1,6 @@
 """The elementary maps against finite differences, the paper's tables and a dense solver."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -158,3 +159,25 @@ def test_pre_impact_maps_have_the_same_multipliers(r, mu, omega, above):
     ours = np.sort_complex(np.round(orbit.multipliers, 14))
     theirs = np.sort_complex(np.round(pre_impact_multipliers(orbit), 14))
     np.testing.assert_allclose(ours, theirs, atol=1e-10, rtol=1e-10)
+
+
+@pytest.mark.parametrize("length", [1e-7, 1e-4, 1.9e-3, 2.1e-3, 0.05])
+def test_short_flights_from_rest_to_rest_keep_their_digits(length):
+    """The map is the mean of w'' over the flight; against fifty digits, with its derivatives."""
+    word = Word.parse("tt")
+    problem = OrbitProblem(MACHINE, word, 1, "amplitude", MACHINE.vector({"amplitude": 0.8}))
+    work = problem.workspace()
+    start = 0.9
+    end = start + length
+    maps.linearise(problem.data, np.array([start, 0.1, end, 0.1]), 0.8, work)
+    with mp.workdps(50):
+        a, Omega, mode = mp.mpf(0.4) * mp.mpf(0.3) * (1 + mp.mpf(0.02)), mp.mpf(1.2), word.modes[0]
+
+        def mean(C, psi0, psi1):
+            return C * Omega**2 * (mp.cos(psi1) - mp.cos(psi0)) / (psi1 - psi0) - mode * a
+
+        at = mp.mpf(0.8), mp.mpf(start), mp.mpf(end)
+        assert work[0][0, 0] == pytest.approx(float(mean(*at)), rel=1e-12)
+        slopes = [float(mp.diff(mean, at, order)) for order in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    found = [work[3][0, 0], work[1][0, 0, 0], work[2][0, 0, 0]]
+    assert found == pytest.approx(slopes, rel=1e-9)

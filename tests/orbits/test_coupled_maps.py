@@ -9,6 +9,7 @@ from orbits.elimination.block_cyclic import workspace
 from orbits.machines.coupled.flow import first_zero, wave
 from orbits.machines.coupled.maps import linearise, margins
 from orbits.machines.path import single
+from tests.orbits.machines.coupled.motion import path
 
 L, R, T, S, U = range(5)
 # arriving event and the modes: every kind of segment
@@ -108,6 +109,56 @@ def test_maps_and_all_their_derivatives(segment):
         for j in range(4):
             np.testing.assert_allclose(A[:, j], slope(8 + j), rtol=1e-12, atol=1e-13)
             np.testing.assert_allclose(D[:, j], slope(12 + j), rtol=1e-12, atol=1e-13)
+
+
+def inner_minima(values):
+    """Values at interior minima, from the parabola through three points."""
+    a, b, c = values[:-2], values[1:-1], values[2:]
+    here = (b < a) & (b <= c)
+    return (b - (c - a) ** 2 / (8.0 * (a - 2.0 * b + c)))[here]
+
+
+@pytest.mark.parametrize("segment", SEGMENTS)
+@pytest.mark.parametrize("case", range(3))
+def test_margins_are_those_of_the_motion(segment, case):
+    """Against the motion sampled finely: what friction has left, the lowest speed, the walls, the events' own margins."""
+    start, mode, arrival, after = segment
+    params = np.array(PARAMETERS[case])
+    eps, r, mu, g = params[3], params[4], params[5], params[6]
+    generator = np.random.default_rng(10 * case + sum(segment))
+    u = np.array([0.3, 0.4, 0.2, -0.6, 5.9, -0.5, 0.35, 0.25]) + 0.2 * generator.standard_normal(8)
+    work = workspace(2, 4, 8)
+    events, modes = np.array([start, arrival], np.int8), np.array([mode, after], np.int8)
+    data = (events, modes, params, single(8, 0), 1.0, 2 * np.pi, 0)
+    linearise(data, u, params[0], work)
+    found = np.full(8, np.nan)
+    margins(data, u, params[0], work, found)
+    duration = (u[4] - u[0]) / params[1]
+    w, w_rate = (1.0 - 2.0 * start, u[3] - u[1]) if start < 2 else (u[1], 0.0)
+    states, q1_2, q2_2 = path(params, mode, u[0], w, w_rate, u[2], u[3], duration, 20000)
+    a = (1.0 + eps) * mu * g
+    push = q1_2 + eps * q2_2
+    if mode == 0:
+        left = a - np.abs(push)
+        expected = inner_minima(left)
+    else:
+        speed = mode * (states[:, 1] - states[:, 3])
+        after_start = slice(1, None) if start == S else slice(None)
+        expected = inner_minima(speed[after_start])
+    if start != T and start != U:
+        assert found[0] == pytest.approx(expected.min() if expected.size else np.inf, abs=1e-7)
+    assert found[3] == pytest.approx(duration)
+    assert found[2] == (pytest.approx(1.0 - abs(u[1])) if start >= 2 else np.inf)
+    if start == S:
+        assert found[1] == pytest.approx(a - abs(push[0]), abs=1e-12)
+    elif start == T:
+        assert found[1] == pytest.approx(mode * push[0] - a, abs=1e-12)
+    elif start == U:
+        h = duration / 20000
+        jerk = (-3.0 * q1_2[0] + 4.0 * q1_2[1] - q1_2[2]) / (2.0 * h)
+        assert found[1] == pytest.approx(mode * jerk, abs=1e-5)
+    if arrival < 2:
+        assert found[5] == pytest.approx((1.0 - 2.0 * arrival) * (u[5] - u[7]) / r)
 
 
 def test_half_and_whole_words_agree():

@@ -22,7 +22,6 @@ def problem(flow, start, regular, manifold="impacting"):
         response.jacobian,
         response.derivative,
         spectrum=spectrum,
-        scale=np.ones(len(np.atleast_1d(u))),  # dimensionless: unknowns of order one
     )
 
 

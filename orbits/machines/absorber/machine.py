@@ -22,7 +22,7 @@ from orbits.words import Word
 class Absorber(Shaken):
     """A vibro-impact absorber whose cavity moves as v = C sin(Omega tau).
 
-    w'' = -C Omega^2 sin(Psi) - (1 + eps) mu g sign(w'),   |w| <= 1,   w'+ = -r w'- at the walls.
+    ``w'' = -C Omega^2 sin(Psi) - (1 + eps) mu g sign(w'),   |w| <= 1,   w'+ = -r w'-`` at the walls.
 
     Parameters
     ----------

@@ -27,9 +27,9 @@ SLOPE = Limits(-0.5 * np.pi, 0.5 * np.pi)
 class Cavity(Shaken):
     """A reduced absorber with two unlike walls and gravity along the cavity.
 
-    w'' = -C Omega^2 sin(Psi) - (1 + eps) g sin(slope) - s (1 + eps) mu_s g cos(slope),   -distance_right <= w <= distance_left,
+    ``w'' = -C Omega^2 sin(Psi) - (1 + eps) g sin(slope) - s (1 + eps) mu_s g cos(slope),   -distance_right <= w <= distance_left``,
 
-    with s the sign of w', mu_+ = `friction_left` (sliding to the left wall), mu_- = `friction_right`, and w'+ = -r w'- with the
+    with s the sign of w', ``mu_+`` = `friction_left` (sliding to the left wall), ``mu_-`` = `friction_right`, and w'+ = -r w'- with the
     restitution of the wall that is hit. Level and with equal sides this is `orbits.Absorber`; steep, without friction and
     with the left wall out of reach it is a ball that bounces on a sinusoidal table.
 

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 class Coupled(Model):
     """A vibro-impact absorber on a linear oscillator with a shaken base, without approximation.
 
-        q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps mu g S,    q2'' = mu g S,    e = eps G sin(Omega tau),
+    ``q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps mu g S,    q2'' = mu g S,    e = eps G sin(Omega tau)``,
 
-    with S the sign of w' = q1' - q2' while sliding, |S| <= 1 while stuck, |w| <= 1, and w'+ = -r w'- at the walls with
+    with S the sign of w' = q1' - q2' while sliding, ``|S| <= 1`` while stuck, ``|w| <= 1``, and w'+ = -r w'- at the walls with
     v = q1 + eps q2 and v' continuous. Lengths in units of the cavity's half-width b, time tau = omega_0 t.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.contacts.letters import HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.orbit import DeclaredOrbit
@@ -15,7 +16,7 @@ from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.simulation import Trajectory, collect, first_state
 from orbits.machines.declared.solving import SOLVED, newton
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
-from orbits.machines.declared.words import HOLD, RELEASE, SLIP, Word
+from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
@@ -47,7 +48,7 @@ class DeclaredAttractor:
     trajectory: Trajectory = field(repr=False)
 
     @property
-    def word(self) -> Word | None:
+    def word(self) -> PageWord | None:
         """The periodic orbit's word."""
         return None if self.orbit is None else self.orbit.word
 
@@ -131,8 +132,8 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
     """What the motion of a stepper leads to; `find_attractor` says what the numbers are."""
     machine, params = stepper.machine, stepper.params
     for attempt in range(patience + 1):
-        _skip(stepper, transient * 2**attempt)
-        run = _look(stepper, max_period)
+        skip(stepper, transient * 2**attempt)
+        run = look(stepper, max_period)
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
         if orbit is not None:
             return DeclaredAttractor(machine, params, "periodic", orbit, run)
@@ -144,7 +145,8 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
     return DeclaredAttractor(machine, params, kind, None, run)
 
 
-def _skip(stepper: Stepper, count: int) -> None:
+def skip(stepper: Stepper, count: int) -> None:
+    """Move on by so many forcing periods; of a self-excited machine, by so many events."""
     if stepper.machine.forced:
         until = stepper.base + stepper.clock + TWO_PI * count
         while stepper.advance(until) is not None:
@@ -155,7 +157,8 @@ def _skip(stepper: Stepper, count: int) -> None:
             return
 
 
-def _look(stepper: Stepper, max_period: int) -> Trajectory:
+def look(stepper: Stepper, max_period: int) -> Trajectory:
+    """The run in which a recurrence of up to `max_period` periods is looked for."""
     if stepper.machine.forced:
         return collect(stepper, TWO_PI * (2 * max_period + 1), 50 * max_period + 2000)
     return collect(stepper, 1e4, min(2 * LONGEST_WORD, 50 * max_period))
@@ -163,8 +166,8 @@ def _look(stepper: Stepper, max_period: int) -> Trajectory:
 
 def settle(stepper: Stepper, transient: int, max_period: int) -> DeclaredOrbit | None:
     """The periodic orbit to which a stepper's motion settles after a transient, or None."""
-    _skip(stepper, transient)
-    return returning(_look(stepper, max_period), max_period, RETURNED)
+    skip(stepper, transient)
+    return returning(look(stepper, max_period), max_period, RETURNED)
 
 
 def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | None:
@@ -205,7 +208,7 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
 def solved(run: Trajectory, length: int, periods: int) -> DeclaredOrbit | None:
     """The last `length` events of a run as an orbit, if its equations have a solution next to them."""
     machine = run.machine
-    word = Word(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
+    word = PageWord(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
     clocks = run.clocks[-length:]
     if machine.forced:
         first = clocks - TWO_PI * np.floor(clocks[0] / TWO_PI)
@@ -251,7 +254,7 @@ def _eventless(run: Trajectory) -> DeclaredOrbit | None:
     held = any(isinstance(c, Wall) and m == HELD for c, m in zip(machine.contacts, mode))
     if not machine.forced or held:
         return None
-    word = Word((), (mode,), machine.alphabet)
+    word = PageWord((), (mode,), machine.alphabet)
     first = TWO_PI * np.ceil(run.clocks[0] / TWO_PI)
     state = run.sample(np.array([first]))[0]
     return polished(DeclaredOrbit(machine, word, 1, np.array([[0.0, *state]]), run.params), far=np.inf)

@@ -12,14 +12,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.machines.declared import flights
 from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical, is_symmetric
 from orbits.machines.declared.identity import root as shortest
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import border_kind, fill_margins, per_node
-from orbits.machines.declared.words import HIT, STICK, STROBE, Letter, Word
+from orbits.machines.declared.section import Section
 from orbits.protocol import Embedding, Symmetry
+from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
@@ -46,7 +48,7 @@ def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, 
 KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
 
 
-def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
+def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
     """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
@@ -67,7 +69,7 @@ class DeclaredProblem:
     Parameters
     ----------
     machine : Machine
-    word : Word
+    word : PageWord
         Of the whole cycle.
     periods : int
         Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
@@ -88,7 +90,7 @@ class DeclaredProblem:
     def __init__(
         self,
         machine: Machine,
-        word: Word,
+        word: PageWord,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -350,7 +352,7 @@ class DeclaredProblem:
         return image.ravel()
 
     def sibling(
-        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+        self, word: PageWord, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> DeclaredProblem:
         """The problem of another word of the same machine against the same parameter."""
         given = self.params if params is None else params
@@ -413,8 +415,9 @@ class DeclaredProblem:
     @property
     def default_measure(self) -> str:
         """The measure that a diagram shows when none is asked for: impact speeds, or how far the first state goes."""
-        named = "approach_speed" in self.measure_names
-        return "approach_speed" if named else f"max_{self.machine.states[0]}"
+        from orbits.machines.declared.measures import shown_first
+
+        return shown_first(self.machine)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
@@ -430,6 +433,10 @@ class DeclaredProblem:
         from orbits.machines.declared.orbit import DeclaredOrbit
 
         return DeclaredOrbit(self.machine, self.word, self.periods, self.expand(u), self.values(p))
+
+    def section(self, p: float) -> Section:
+        """Its motions by simulation, once per period of the cycle."""
+        return Section(self.machine, self.values(p), self.word, self.periods)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""

@@ -1,0 +1,180 @@
+"""Circle and Circles: invariant circles as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .invariance import Curve
+
+
+@dataclass(frozen=True, eq=False)
+class Circle:
+    """An invariant circle at one parameter value: a modulated motion, seen once per period of its cycle.
+
+    Attributes
+    ----------
+    value : float
+        Parameter value.
+    radius : float
+        Root mean square distance of the circle from its centre, in the coordinates of the section.
+    predicted : float
+        What the normal form says of it.
+    rotation : float
+        Rotation number: turns round the circle per period of the cycle.
+    points : ndarray, shape (n, d)
+        On the section, at equal steps of the phase in which the motion turns evenly.
+    tail : float
+        The last harmonics relative to the first: how smooth the circle is.
+    residual : float
+        Of the invariance equation, relative to the radius.
+    replay : float
+        Largest distance between the circle and a simulation that is started on it, after a period, between the points at which
+        the circle was solved for.
+    simulated : float or None
+        Rotation number of a simulation that has settled; None where it settles on something else.
+    stable : bool or None
+        Whether a displaced simulation comes back; None where that cannot be told.
+    """
+
+    value: float
+    radius: float
+    predicted: float
+    rotation: float
+    points: np.ndarray = field(repr=False)
+    tail: float = 0.0
+    residual: float = 0.0
+    replay: float = np.nan
+    simulated: float | None = None
+    stable: bool | None = None
+
+    def at(self, phases: np.ndarray) -> np.ndarray:
+        """Points of the section at phases in radians, shape (m, d)."""
+        return Curve(self.points, self.rotation, self.value).at(phases)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-able."""
+        return {
+            "value": self.value,
+            "radius": self.radius,
+            "predicted": self.predicted,
+            "rotation": self.rotation,
+            "tail": self.tail,
+            "residual": self.residual,
+            "replay": self.replay,
+            "simulated": self.simulated,
+            "stable": self.stable,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Circles:
+    """The circles that are born at a Neimark-Sacker point, in the order of growing radius.
+
+    Attributes
+    ----------
+    label : str
+        Of the point.
+    parameter : str
+    value : float
+        Parameter value of the point.
+    rotation : float
+        Rotation number there.
+    coefficient : float
+        First Lyapunov coefficient (:mod:`contvines.forms.coefficients`).
+    growth : float
+        d(log abs(multiplier))/dp there; the normal form has radius^2 proportional to -growth (p - value)/coefficient.
+    names : tuple of str
+        Coordinates of the section.
+    centre : ndarray, shape (d,)
+        The cycle at the point, on the section.
+    circles : tuple of Circle
+    ended : str
+        Why the last one is the last: a sentence.
+    beyond : dict
+        What a simulation settles on a little beyond it: "value", "kind" and, of a locked motion, "periods".
+    """
+
+    label: str
+    parameter: str
+    value: float
+    rotation: float
+    coefficient: float
+    growth: float
+    names: tuple[str, ...]
+    centre: np.ndarray = field(repr=False)
+    circles: tuple[Circle, ...] = field(repr=False, default=())
+    ended: str = ""
+    beyond: dict[str, Any] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.circles)
+
+    def __getitem__(self, i: int) -> Circle:
+        return self.circles[i]
+
+    def __repr__(self) -> str:
+        return (
+            f"Circles({self.label}: {len(self)} from {self.parameter} = {self.value:.10g} on; {self.ended})"
+        )
+
+    @property
+    def values(self) -> np.ndarray:
+        """Parameter values."""
+        return np.array([circle.value for circle in self.circles])
+
+    @property
+    def radius(self) -> np.ndarray:
+        """Radii."""
+        return np.array([circle.radius for circle in self.circles])
+
+    @property
+    def rotations(self) -> np.ndarray:
+        """Rotation numbers."""
+        return np.array([circle.rotation for circle in self.circles])
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-able."""
+        return {
+            "label": self.label,
+            "parameter": self.parameter,
+            "value": self.value,
+            "rotation": self.rotation,
+            "coefficient": self.coefficient,
+            "section": list(self.names),
+            "circles": [circle.to_dict() for circle in self.circles],
+            "ended": self.ended,
+            "beyond": self.beyond,
+        }
+
+    def __str__(self) -> str:
+        kind = "stable" if self.coefficient < 0.0 else "unstable"
+        lines = [
+            f"{self.label}: {kind} circles from {self.parameter} = {self.value:.10g} on, "
+            f"{self.rotation:.8g} turns per period there, first Lyapunov coefficient {self.coefficient:.6g}",
+            "",
+        ]
+        head = (self.parameter, "radius", "normal form", "turns per period", "simulated", "replay", "stable")
+        rows = [head] + [
+            (
+                f"{c.value:.10g}",
+                f"{c.radius:.6g}",
+                f"{c.predicted:.6g}",
+                f"{c.rotation:.10g}",
+                "-" if c.simulated is None else f"{c.simulated:.10g}",
+                f"{c.replay:.1e}",
+                {True: "yes", False: "no", None: "?"}[c.stable],
+            )
+            for c in self.circles
+        ]
+        widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
+        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+        return "\n".join([*lines, "", self.ended])
+
+    def plot(self, **options: Any) -> Any:
+        """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""
+        from ..plots.circles import plot_circles
+
+        return plot_circles(self, **options)

@@ -1,0 +1,367 @@
+"""Circles from a Neimark-Sacker point on: normal form, invariance equation, simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..branches.special_point import SpecialPoint
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from ..forms.coefficients import Forms, strong_resonance
+from .averages import rotation_number
+from .circle import Circle, Circles
+from .invariance import Curve, Frame, first_harmonic, solve
+from .section import Section, section_of, slopes
+
+FEWEST, MOST = 17, 129  # points of a circle
+SMOOTH = 1e-7  # the last harmonics of a circle that has enough points, relative to the first
+TORN = 3e-3  # ... beyond which it has broken
+FIRST, GROWTH, SLOWEST = (
+    0.04,
+    1.35,
+    1.02,
+)  # first amplitude relative to the last one, factors from one to the next
+REACH = (
+    0.5  # amplitude, relative to the size of the section, to which circles are followed where no end is given
+)
+COUNT = 40  # circles at most
+RETURNS = 3000  # of a simulation that is compared with a circle
+PATIENCE = 6000  # returns at most until it settles
+LONGEST = 200  # periods of a locked motion
+DISPLACED = 1e-3  # relative displacement whose growth or decay says whether a circle is stable
+
+
+class Birth(NamedTuple):
+    """The normal form on the section.
+
+    size : float
+        Amplitude on the section per amplitude of the normal form.
+    """
+
+    p: float
+    coefficient: float
+    growth: float
+    rotation: float
+    vector: np.ndarray
+    frame: Frame
+    centre: np.ndarray
+    size: float
+
+    def value(self, amplitude: float) -> float:
+        """The parameter at which the circle has this amplitude, to lowest order."""
+        return self.p - self.coefficient * (amplitude / self.size) ** 2 / self.growth
+
+    def amplitude(self, value: float) -> float:
+        """The amplitude at a parameter value; 0 on the other side."""
+        square = -self.growth * (value - self.p) / self.coefficient
+        return self.size * float(np.sqrt(max(square, 0.0)))
+
+    def curve(self, amplitude: float, count: int) -> Curve:
+        """The circle of an amplitude, to first order."""
+        phases = 2.0 * np.pi * np.arange(count) / count
+        points = self.centre + 2.0 * amplitude * np.real(np.exp(1j * phases)[:, None] * self.vector)
+        return Curve(points, self.rotation, self.value(amplitude))
+
+
+def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) -> Circles:
+    """The invariant circles beside a Neimark-Sacker point, until they break.
+
+    Parameters
+    ----------
+    point : SpecialPoint
+        Of kind "neimark-sacker".
+    to : float, optional
+        Parameter value up to which they are followed, on the side on which they exist; if left out, until their amplitude is half the
+        size of the motion.
+    count : int
+        How many at most.
+
+    Raises
+    ------
+    ValueError
+        If there is no circle, its normal form does not decide, or the motion cannot be simulated; the sentence says why.
+    """
+    if point.kind != "neimark-sacker":
+        raise ValueError(
+            f"{point.label} is a point of kind {point.kind}; invariant circles are born at Neimark-Sacker points"
+        )
+    if point.problem is None:
+        raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+    if count < 1:
+        raise ValueError(f"count = {count} must be a whole number of at least 1")
+    birth = _born(point)
+    side = 1.0 if birth.value(1.0) > point.value else -1.0
+    if to is not None and not (to - point.value) * side > 0.0:
+        raise ValueError(
+            f"to = {to:.10g}: the circles of {point.label} lie at {point.parameter} "
+            f"{'above' if side > 0 else 'below'} {point.value:.10g}; give a value there"
+        )
+
+    def section(p: float) -> Section:
+        return section_of(point.problem, p)
+
+    largest = REACH * birth.frame.size if to is None else birth.amplitude(to)
+    found, ended = _followed(section, birth, largest, to, side, count, point.parameter)
+    about = section(point.value)
+    made = tuple(_circle(section, curve, birth) for curve in found)
+    beyond = _beyond(section, found, birth) if found else {}
+    return Circles(
+        point.label,
+        point.parameter,
+        point.value,
+        birth.rotation,
+        birth.coefficient,
+        birth.growth,
+        about.names,
+        birth.centre,
+        made,
+        ended,
+        beyond,
+    )
+
+
+# ---------------------------------------------------------------------- the normal form
+def _born(point: SpecialPoint) -> Birth:
+    problem, u, p = point.problem, point.u, float(point.value)
+    multiplier, growth = _crossing(point)
+    full = complex(np.asarray(problem.to_multipliers(np.array([multiplier])))[0])
+    resonance = strong_resonance(full)
+    if resonance:
+        raise ValueError(
+            f"{point.label} is at the strong resonance {resonance}: no single circle is born there; move a second parameter"
+        )
+    forms = Forms(problem, u, p)
+    found, _ = forms.lyapunov(multiplier)
+    if not abs(found.value) > 2.0 * found.error:
+        raise ValueError(
+            f"{point.label}: its first Lyapunov coefficient is zero within its error, so no side is known"
+        )
+    if growth == 0.0:
+        raise ValueError(f"{point.label}: the multipliers only touch the unit circle there")
+    section = section_of(problem, p)
+    centre = section.through(u)
+    size = float(np.linalg.norm(centre)) or 1.0
+    matrix = slopes(section, centre, 1e-6 * size)
+    values, right = np.linalg.eig(matrix)
+    place = int(np.argmin(np.abs(values - full)))
+    vector = right[:, place] / np.linalg.norm(right[:, place])
+    left = np.linalg.inv(right)[place].conj()
+    left = left / np.vdot(left, vector).conj()
+    q, _ = forms.null(multiplier / abs(multiplier))
+    h = 1e-6 * (float(np.linalg.norm(u)) or 1.0)
+    image = sum(
+        unit * (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)
+        for unit, part in ((1.0, np.real(q)), (1j, np.imag(q)))
+    )
+    frame = Frame(left, size, max(abs(p), 1e-3))
+    turns = float(np.angle(full)) / (2.0 * np.pi)
+    return Birth(p, found.value, growth, turns, vector, frame, centre, float(np.abs(np.vdot(left, image))))
+
+
+def _crossing(point: SpecialPoint) -> tuple[complex, float]:
+    """The raw critical multiplier, and d(log abs)/dp along the cycles."""
+    problem, p = point.problem, float(point.value)
+    unit = max(abs(p), 1e-3)
+    engine = Engine(problem, (p - unit, p + unit), Settings())
+
+    def critical(value: float, near: complex | None) -> Any:
+        solved = engine.at_value(point.u, value)
+        if solved is None:
+            return None
+        upper = engine.spectrum(solved.row)
+        upper = upper[upper.imag > 0.0]
+        distance = np.abs(np.abs(upper) - 1.0) if near is None else np.abs(upper - near)
+        return complex(upper[np.argmin(distance)]) if len(upper) and distance.min() < 0.1 else None
+
+    here = critical(p, None)
+    if here is None:
+        raise ValueError(f"{point.label} has no complex pair of multipliers on the unit circle")
+    for step in (
+        1e-5 * unit,
+        1e-6 * unit,
+        1e-7 * unit,
+        1e-8 * unit,
+    ):  # a fold, or the end of the pair, may be near
+        rates = []
+        for width in (step, 0.5 * step):
+            ends = [critical(p + sign * width, here) for sign in (1.0, -1.0)]
+            if None in ends:
+                break
+            rates.append(np.log(abs(ends[0] / ends[1])) / (2.0 * width))
+        if len(rates) == 2 and abs(rates[1] - rates[0]) <= 0.02 * abs(rates[1]):
+            return here, float((4.0 * rates[1] - rates[0]) / 3.0)
+    raise ValueError(f"{point.label}: its cycle cannot be followed to both sides")
+
+
+# ---------------------------------------------------------------------- from circle to circle
+def _followed(
+    section: Callable[[float], Section],
+    birth: Birth,
+    largest: float,
+    to: float | None,
+    side: float,
+    count: int,
+    name: str,
+) -> tuple[list[Curve], str]:
+    """Circles of growing amplitude, and why there are no more."""
+    amplitude = FIRST * largest
+    found: list[Curve] = []
+    factor, points = GROWTH, FEWEST
+    while len(found) < count:
+        guess = _guess(found, birth, amplitude, points)
+        curve = _smooth(section, guess, birth.frame, amplitude)
+        if curve is None or curve.tail > TORN:
+            factor = 1.0 + 0.5 * (factor - 1.0)
+            if not found:
+                amplitude *= 0.5
+                if amplitude < 1e-4 * FIRST * largest:
+                    raise ValueError(
+                        "no circle was found beside the point; the normal form may not hold there"
+                    )
+                continue
+            if factor < SLOWEST:
+                why = "it cannot be followed any further" if curve is None else "it is no longer smooth"
+                return found, f"the circle breaks near {name} = {found[-1].value:.8g}: {why}"
+            amplitude = factor * abs(first_harmonic(found[-1], birth.frame))
+            continue
+        if to is not None and (curve.value - to) * side >= 0.0:
+            last = solve(section, curve._replace(value=to), birth.frame, None)
+            if last is not None:
+                found.append(last)
+            return found, f"reaches {name} = {to:.8g}"
+        found.append(curve)
+        points = len(curve.points)
+        if to is None and amplitude >= largest:
+            return found, f"has half the size of the motion at {name} = {curve.value:.8g}"
+        amplitude *= factor
+        factor = min(GROWTH, 1.0 + 1.5 * (factor - 1.0))
+        if to is None:
+            amplitude = min(amplitude, largest)
+    return found, f"stopped after {count} circles at {name} = {found[-1].value:.8g}"
+
+
+def _guess(found: list[Curve], birth: Birth, amplitude: float, count: int) -> Curve:
+    """The next circle from the last two: harmonics are linear in the amplitude, rotation and parameter in its square."""
+    if not found:
+        return birth.curve(amplitude, count)
+    last = found[-1].finer(count)
+    r = abs(first_harmonic(last, birth.frame))
+    if len(found) == 1:
+        before = birth.curve(0.0, count)
+        share, bend = amplitude / r - 1.0, (amplitude / r) ** 2 - 1.0
+    else:
+        before = found[-2].finer(count)
+        r0 = abs(first_harmonic(before, birth.frame))
+        share, bend = (amplitude - r) / (r - r0), (amplitude**2 - r**2) / (r**2 - r0**2)
+    return Curve(
+        last.points + share * (last.points - before.points),
+        last.rotation + bend * (last.rotation - before.rotation),
+        last.value + bend * (last.value - before.value),
+    )
+
+
+def _smooth(
+    section: Callable[[float], Section], guess: Curve, frame: Frame, amplitude: float
+) -> Curve | None:
+    """The circle through as many points as it needs."""
+    curve: Curve | None = guess
+    while curve is not None:
+        curve = solve(section, curve, frame, amplitude)
+        if curve is None or curve.tail < SMOOTH or len(curve.points) >= MOST:
+            return curve
+        curve = curve.finer(min(MOST, 2 * len(curve.points) - 1))
+    return None
+
+
+# ---------------------------------------------------------------------- by simulation
+def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> Circle:
+    here = section(curve.value)
+    centre = curve.points.mean(axis=0)
+    radius = float(np.sqrt(np.mean(np.sum((curve.points - centre) ** 2, axis=1))))
+    between = 2.0 * np.pi * (np.arange(2 * len(curve.points)) + 0.5) / (2 * len(curve.points))
+    images = np.array([here.step(x) for x in curve.at(between)])
+    replay = float(np.abs(images - curve.at(between + 2.0 * np.pi * curve.rotation)).max())
+    stable = _attracts(here, curve, birth, centre)
+    simulated = _simulated(here, curve, birth, centre, radius) if stable else None
+    amplitude = birth.amplitude(curve.value)
+    predicted = float(np.sqrt(2.0) * amplitude)  # rms of 2 Re(r q exp(i phi)) with abs(q) = 1
+    return Circle(
+        curve.value,
+        radius,
+        predicted,
+        curve.rotation,
+        curve.points,
+        curve.tail,
+        curve.residual,
+        replay,
+        simulated,
+        stable,
+    )
+
+
+def _displacements(
+    here: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray, count: int
+) -> np.ndarray:
+    """log of (distance along the critical plane from the centre / that of the circle at the same angle), per return."""
+    own = (curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - centre) @ birth.frame.left.conj()
+    angles = np.unwrap(np.angle(own))
+    if angles[-1] < angles[0]:
+        own, angles = own[::-1], angles[::-1]
+    logs = np.empty(count)
+    for i in range(count):
+        x = here.step(x)
+        z = complex((x - centre) @ birth.frame.left.conj())
+        place = angles[0] + (np.angle(z) - angles[0]) % (2.0 * np.pi)
+        logs[i] = np.log(max(abs(z), 1e-300) / np.interp(place, angles, np.abs(own)))
+        if not np.isfinite(logs[i]):
+            return logs[:i]
+    return logs
+
+
+def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
+    """Whether a motion that is displaced outwards comes back to the circle."""
+    rate = 2.0 * abs(birth.growth * (curve.value - birth.p)) or 1e-3
+    count = int(min(PATIENCE, max(200, 2.0 / rate)))
+    start = curve.points[0] + DISPLACED * (curve.points[0] - centre)
+    logs = _displacements(here, curve, birth, centre, start, count)
+    if len(logs) < count:
+        return False
+    part = max(20, count // 10)
+    first, last = float(np.mean(np.abs(logs[:part]))), float(np.mean(np.abs(logs[-part:])))
+    if last < 0.8 * first:
+        return True
+    return False if last > 1.25 * first else None
+
+
+def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float) -> float | None:
+    """Rotation number of a simulation on the circle; None where it leaves the circle."""
+    x, z = curve.points[0], np.empty(RETURNS, dtype=complex)
+    for i in range(RETURNS):
+        x = here.step(x)
+        z[i] = (x - centre) @ birth.frame.left.conj()
+    if not np.isfinite(z).all():
+        return None
+    nearest = np.sqrt(((curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - x) ** 2).sum(axis=1).min())
+    return rotation_number(z, curve.rotation)[0] if nearest < 0.02 * radius else None
+
+
+def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birth) -> dict[str, Any]:
+    """What a simulation settles on a little beyond the last circle."""
+    last = found[-1]
+    before = found[-2].value if len(found) > 1 else birth.p
+    value = last.value + 0.25 * (last.value - before)
+    here, x = section(value), last.points[0]
+    far = 1e3 * birth.frame.size
+    for _ in range(PATIENCE):
+        x = here.step(x)
+        if not np.linalg.norm(x) < far:
+            return {"value": value, "kind": "leaves"}
+    first = x
+    for n in range(1, LONGEST + 1):
+        x = here.step(x)
+        if np.abs(x - first).max() < 1e-8 * birth.frame.size:
+            return {"value": value, "kind": "locked" if n > 1 else "fixed", "periods": n}
+    return {"value": value, "kind": "wandering"}

@@ -1,0 +1,151 @@
+"""The invariance equation of a circle: P(x(phi)) = x(phi + 2 pi rho), solved by collocation and Newton's method.
+
+x(phi) is a trigonometric polynomial through n = 2 K + 1 points. The rotation number rho and the parameter p are unknowns, too; the
+phase is fixed by a first harmonic without imaginary part, and either the first harmonic or p is given. Stable or
+not makes no difference. P is the simulated return map, its derivatives are differences.
+
+Source of the method: Schilder, Osinga and Vogt, SIAM J. Appl. Dyn. Syst. 4 (2005) 459, for flows; here for section maps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .section import Section, slopes
+
+STEP = 1e-6  # of differences of the simulated map, relative to the size of the section
+SWEEPS = 15
+SOLVED = 1e-10  # residual, relative to the size of the circle
+
+
+class Frame(NamedTuple):
+    """Where a circle is looked for: how the first harmonic is measured, and sizes.
+
+    left : ndarray of complex, shape (d,)
+        Left critical vector: z = conj(left).x measures a displacement along the critical plane.
+    size : float
+        Typical size of the section's coordinates.
+    unit : float
+        Typical size of the parameter.
+    """
+
+    left: np.ndarray
+    size: float
+    unit: float
+
+
+class Curve(NamedTuple):
+    """A closed curve on the section with its rotation number and parameter value.
+
+    points : ndarray, shape (n, d)
+        At equal steps of the phase.
+    """
+
+    points: np.ndarray
+    rotation: float
+    value: float
+    residual: float = np.inf
+
+    @property
+    def harmonics(self) -> np.ndarray:
+        """Fourier coefficients, shape (n, d), in the order of numpy's FFT."""
+        return np.fft.fft(self.points, axis=0) / len(self.points)
+
+    @property
+    def tail(self) -> float:
+        """Largest of the last tenth of the harmonics, relative to the first one."""
+        half = len(self.points) // 2
+        sizes = np.abs(self.harmonics[1 : half + 1]).max(axis=1)
+        return float(sizes[-max(1, half // 10) :].max() / sizes[0])
+
+    def at(self, phases: np.ndarray) -> np.ndarray:
+        """Points at phases (radians), shape (m, d)."""
+        n = len(self.points)
+        k = np.fft.fftfreq(n, 1.0 / n)
+        return np.real(np.exp(1j * np.outer(np.asarray(phases), k)) @ self.harmonics)
+
+    def finer(self, count: int) -> Curve:
+        """The same curve through another number of points."""
+        phases = 2.0 * np.pi * np.arange(count) / count
+        return self._replace(points=self.at(phases))
+
+
+def first_harmonic(curve: Curve, frame: Frame) -> complex:
+    """Of the displacement along the critical plane."""
+    return complex(frame.left.conj() @ curve.harmonics[1])
+
+
+def solve(
+    section: Callable[[float], Section], guess: Curve, frame: Frame, amplitude: float | None
+) -> Curve | None:
+    """The invariant circle near a curve; None where Newton's method does not find one.
+
+    Parameters
+    ----------
+    section : callable
+        Parameter value -> section.
+    guess : Curve
+    frame : Frame
+    amplitude : float or None
+        Of the first harmonic; None: at the parameter value of the guess.
+    """
+    n, d = guess.points.shape
+    k = np.fft.fftfreq(n, 1.0 / n)
+    fourier = (
+        np.exp(-2j * np.pi * np.outer(np.arange(n), np.arange(n)) / n) / n
+    )  # harmonics = fourier @ points
+    phases = 2.0 * np.pi * np.arange(n) / n
+    first = np.exp(-1j * phases) / n
+    points, rho, p = guess.points.copy(), guess.rotation, guess.value
+    h, radius = STEP * frame.size, max(abs(first_harmonic(guess, frame)), 1e-300)
+    last = np.inf
+    for _ in range(SWEEPS):
+        here, beside = section(p), section(p + STEP * frame.unit)
+        before = section(p - STEP * frame.unit)
+        images = np.array([here.step(x) for x in points])
+        turned = (
+            np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ fourier
+        )  # values at the phases that come next
+        shifted = np.real(turned @ points)
+        z = complex(first @ (points @ frame.left.conj()))
+        ends = np.array([z.imag, 0.0 if amplitude is None else z.real - amplitude])
+        sides = np.concatenate([(images - shifted).reshape(-1), ends])
+        if not np.isfinite(sides).all():
+            return None
+        error = float(np.abs(sides).max()) / radius
+        if error < SOLVED:
+            return Curve(points, float(rho), float(p), error)
+        if not error < 2.0 * last:
+            return None
+        last = error
+        size = n * d
+        matrix = np.zeros((size + 2, size + 2))
+        blocks = matrix[:size, :size].reshape(n, d, n, d)
+        for j, x in enumerate(points):
+            blocks[j, :, j, :] += slopes(here, x, h)
+        for c in range(d):
+            blocks[:, c, :, c] -= np.real(turned)
+        turning = np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ (
+            (2j * np.pi * k)[:, None] * (fourier @ points)
+        )
+        matrix[:size, size] = -np.real(turning).reshape(-1)
+        moved = [np.array([other.step(x) for x in points]) for other in (beside, before)]
+        matrix[:size, size + 1] = ((moved[0] - moved[1]) / (2.0 * STEP * frame.unit)).reshape(-1)
+        along: Any = np.outer(first, frame.left.conj()).reshape(-1)
+        matrix[size, :size] = along.imag
+        if amplitude is None:
+            matrix[size + 1, size + 1] = 1.0
+        else:
+            matrix[size + 1, :size] = along.real
+        if not np.isfinite(matrix).all():
+            return None
+        try:
+            change = np.linalg.solve(matrix, -sides)
+        except np.linalg.LinAlgError:
+            return None
+        points = points + change[:size].reshape(n, d)
+        rho, p = rho + float(change[size]), p + float(change[size + 1])
+    return None

@@ -1,0 +1,61 @@
+"""What invariant circles ask of a problem: its motion seen once per period, by simulation.
+
+The contract, in words:
+
+1. ``problem.section(p)`` returns a section of the motions at a parameter value; it knows no equations of cycles.
+2. ``section.names`` are its coordinates.
+3. ``section.through(u)`` is the point in which the motion that begins with the unknowns u meets the section, shape (d,). It is
+   smooth in u; of a cycle, it is a fixed point of ``step``.
+4. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Section(Protocol):
+    """See the contract at the top of this module."""
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+
+    def through(self, u: np.ndarray) -> np.ndarray: ...
+
+    def step(self, x: np.ndarray) -> np.ndarray: ...
+
+
+def section_of(problem: Any, p: float) -> Section:
+    """The section of a problem.
+
+    Raises
+    ------
+    ValueError
+        If its motions cannot be simulated.
+    """
+    make = getattr(problem, "section", None)
+    if make is None or problem.spectrum != "map":
+        raise ValueError(
+            f"{type(problem).__name__} has no motions that can be simulated period by period, so no circles; maps and machines have"
+        )
+    return make(p)
+
+
+def slopes(section: Section, x: np.ndarray, size: float) -> np.ndarray:
+    """Derivative of ``step`` at a point, shape (d, d), by central differences.
+
+    Parameters
+    ----------
+    section : Section
+    x : ndarray, shape (d,)
+    size : float
+        Length of the differences.
+    """
+    result = np.empty((len(x), len(x)))
+    for j in range(len(x)):
+        moved = np.zeros(len(x))
+        moved[j] = size
+        result[:, j] = (section.step(x + moved) - section.step(x - moved)) / (2.0 * size)
+    return result

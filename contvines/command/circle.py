@@ -1,0 +1,53 @@
+"""`contvines circle`: the invariant circles beside a Neimark-Sacker point."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from contvines.command.options import FileArgument, TrustOption
+
+
+def circle(
+    file: FileArgument,
+    label: Annotated[str, typer.Argument(metavar="LABEL", help="A Neimark-Sacker point, for example NS1.")],
+    to: Annotated[
+        float | None,
+        typer.Option(
+            "--to", metavar="VALUE", help="Parameter value to go to; by default half the size of the motion."
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", metavar="FILE.png", help="Draw section, radius and rotation number."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+    trust: TrustOption = False,
+) -> None:
+    """Follow the modulated motions that are born at a Neimark-Sacker point until they break."""
+    from contvines.store import load
+
+    if plot is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(plot)
+    graph = load(file, trust=trust)
+    special = getattr(graph, "special", {})
+    if label not in special:
+        known = ", ".join(name for name, point in special.items() if point.kind == "neimark-sacker")
+        raise ValueError(
+            f"{file}: {label} is no label of it; its Neimark-Sacker points are {known or 'none'}."
+        )
+    found = special[label].circles(to)
+    if json:
+        import json as text
+
+        typer.echo(text.dumps(found.to_dict()))
+    else:
+        typer.echo(str(found))
+    if plot is not None:
+        from contvines.plots.figures import save_figure
+
+        save_figure(found.plot(), plot)
+        if not json:
+            typer.echo(f"drawn in {plot}")

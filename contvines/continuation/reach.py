@@ -1,0 +1,78 @@
+"""Reach: how far a branch is from its start, whether it runs away, and how long its steps may be there.
+
+Where typical sizes of the unknowns are known (they were given, or are 1) a branch has run away when it is further from its start
+than so many of them. Sizes that were learned near the start say little of what lies far from it: there a branch has run away
+when its distance has doubled while the parameter has hardly moved; until then it is followed, with steps that
+grow with the distance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .chunk import Chunk
+from .engine import Engine, Solved
+
+MOVED = 0.05  # part of its range so far by which the parameter moves while the distance doubles, on branches that go on
+FAR = 1e6  # times `escape`: further away a branch has run away in any case
+GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
+
+
+class Reach:
+    """Distances along one branch.
+
+    Parameters
+    ----------
+    engine : Engine
+    start : Solved
+    """
+
+    def __init__(self, engine: Engine, start: Solved) -> None:
+        self.engine, self.start = engine, start
+        self.learned = bool(getattr(engine.problem, "scales_learned", False))
+        # largest distances so far, each twice the one before, and the extremes of the parameter since
+        self.doubled = engine.settings.escape
+        self.low = self.high = self.lowest = self.highest = start.p
+
+    def growth(self, point: Solved) -> float:
+        """Factor of the longest step at a point."""
+        if not self.learned:
+            return 1.0
+        return max(1.0, float(self._distances(point.u[None, :])[0]) / GROW)
+
+    def escapes(self, chunk: Chunk) -> int | None:
+        """Index of the first point at which the branch has run away, or None."""
+        escape = self.engine.settings.escape
+        if not self.learned:
+            away = _away(chunk.points, self.start.u, escape, self.engine.scale[:-1])
+            return int(np.argmax(away)) if away.any() else None
+        distances = self._distances(chunk.points)
+        for i in range(1, len(chunk)):
+            value = float(chunk.values[i])
+            self.low, self.high = min(self.low, value), max(self.high, value)
+            if distances[i] <= self.doubled:
+                if distances[i] <= 0.5 * self.doubled:
+                    self.low = self.high = value
+                continue
+            self.lowest, self.highest = min(self.lowest, self.low), max(self.highest, self.high)
+            still = self.high - self.low < MOVED * (self.highest - self.lowest)
+            if self.doubled > escape and (still or distances[i] > FAR * escape):
+                return i
+            self.doubled, self.low, self.high = 2.0 * self.doubled, value, value
+        return None
+
+    def _distances(self, points: np.ndarray) -> np.ndarray:
+        """Root mean square distances from the start, in typical sizes."""
+        return np.sqrt((((points - self.start.u) / self.engine.scale[:-1]) ** 2).mean(axis=1))
+
+
+def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -> np.ndarray:
+    """Which points are further than `escape` times the scale from u (root mean square)."""
+    if not (scale == 1.0).all():
+        points, u = points / scale, u / scale
+    limit = escape * escape * len(u)
+    squares = np.einsum("ij,ij->i", points, points)
+    # nothing as large as the points is made, unless unknowns are so large that their squares cancel
+    if squares.max() + u @ u < 1e9 * limit:
+        return squares - 2.0 * (points @ u) + u @ u > limit
+    return ~(((points - u) ** 2).sum(axis=1) <= limit)

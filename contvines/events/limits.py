@@ -1,0 +1,129 @@
+"""One-sided limits: tangent and multipliers at a border, from points of the branch just before it.
+
+Where something vanishes at a border (an impact's speed, a stick, a flight), the equations there may be singular, and what is
+computed from their derivatives is rounding. The branch is smooth up to the border, though, and so are its tangent and the
+coefficients of the characteristic polynomial of its multipliers: they are extrapolated. Where a multiplier grows without bound, as
+at a wall that is touched without speed, the coefficients times the distance are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..continuation.engine import Solved
+from .locate import Root
+from .segment import Segment
+
+BESIDE = 1e-3  # part of a segment before the border by which the tangent is told
+SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
+DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7)  # from the border, in the metric: spacings of points
+CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
+PLACES = np.arange(1.0, 5.0)
+CONVERGED = 1e-4  # relative difference of extrapolations from two spacings
+SURELY = 1e-9
+AGREEING = 1e-7  # relative difference of coefficients: those computed at the border are not rounding
+POLES = 2  # multipliers that grow without bound, at most
+UNBOUNDED = 1e15  # stands for a multiplier that does
+
+
+def before(segment: Segment, root: Root) -> Solved:
+    """The point at a border, its tangent and multipliers replaced by their limits where they are rounding."""
+    point = root.point
+    return point._replace(tangent=_tangent(segment, root), row=_row(segment, root))
+
+
+def _tangent(segment: Segment, root: Root) -> np.ndarray:
+    """The tangent, extrapolated where the one solved for is something else."""
+    engine, own = segment.engine, root.point.tangent
+    reach = min(BESIDE, root.position / 3.0)
+    near, far = (segment.at(root.position - k * reach) for k in (1.0, 2.0))
+    if near is None or far is None or not reach > 0.0:
+        return own
+    ahead = engine.unit(2.0 * near.tangent - far.tangent)
+    return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
+
+
+def _row(segment: Segment, root: Root) -> np.ndarray:
+    """The row of multipliers and margins, with extrapolated multipliers where those computed are something else."""
+    engine, own = segment.engine, root.point.row
+    m = engine.m
+    if not m or engine.problem.spectrum != "map" or not segment.length > 0.0:
+        return own
+    limits = _limits(segment, root.position, _characteristic(engine.spectrum(own)))
+    if limits is None:
+        return own
+    row, roots = own.copy(), _roots(limits)
+    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = roots.real, roots.imag
+    return row
+
+
+def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.ndarray] | None:
+    """Limits of the characteristic polynomial times powers of the distance, up to the first that is finite.
+
+    None if none converges, or if they agree with the polynomial computed at the border.
+    """
+    best: list[np.ndarray] | None = None
+    error = CONVERGED
+    wider: list[np.ndarray] | None = None  # from the spacing before
+    for spacing in DISTANCES:
+        values = _polynomials(segment, position, spacing)
+        if values is None:
+            continue
+        here = [CUBIC @ (values * (spacing * PLACES[:, None]) ** k) for k in range(POLES + 1)]
+        if _apart(here[0], computed) < AGREEING:
+            return None
+        if wider is not None:
+            changes = [_apart(*pair) for pair in zip(here, wider)]
+            poles = next((k for k, change in enumerate(changes) if change < CONVERGED), POLES)
+            fewer = best is not None and poles < len(best) - 1
+            if changes[poles] < error or (fewer and changes[poles] < CONVERGED):
+                best, error = here[: poles + 1], changes[poles]
+        if best is not None and len(best) == 1 and error < SURELY:
+            break
+        wider = here
+    if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
+        return None
+    return best
+
+
+def _apart(one: np.ndarray, other: np.ndarray) -> float:
+    """Largest difference of two polynomials, as a part of their largest coefficient."""
+    if not (np.isfinite(one).all() and np.isfinite(other).all()):
+        return np.inf
+    return float(np.abs(one - other).max() / max(np.abs(one).max(), np.abs(other).max()))
+
+
+def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
+    """Characteristic polynomials of the multipliers at four points before the border, shape (4, m + 1)."""
+    engine, values = segment.engine, []
+    for place in PLACES:
+        s = position - place * spacing / segment.length
+        point = segment.at(s) if s >= -1.0 else None
+        if point is None:
+            return None
+        values.append(_characteristic(engine.spectrum(point.row)))
+    return np.array(values) if np.isfinite(values).all() else None
+
+
+def _characteristic(spectrum: np.ndarray) -> np.ndarray:
+    """Coefficients of the polynomial with these zeros, highest power first; `numpy.poly` without its generality."""
+    coefficients = [1.0 + 0.0j]
+    for zero in spectrum.tolist():
+        longer = [*coefficients, 0.0j]
+        for k, c in enumerate(coefficients):
+            longer[k + 1] -= zero * c
+        coefficients = longer
+    return np.real(coefficients)
+
+
+def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:
+    """The multipliers, largest modulus first; those that grow without bound have a size of `UNBOUNDED`."""
+    poles = len(limits) - 1
+    finite: NDArray[np.complex128] = np.roots(limits[poles][poles:]).astype(np.complex128)
+    # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
+    growing = np.asarray(np.roots([limits[k][k] for k in range(poles + 1)]), dtype=complex)
+    growing = UNBOUNDED * growing / np.maximum(np.abs(growing), 1e-300)
+    finite = finite[np.lexsort((-finite.imag, -finite.real, -np.abs(finite)))]
+    missing = len(limits[0]) - 1 - len(growing) - len(finite)
+    return np.concatenate([growing, finite, np.zeros(missing, dtype=complex)])

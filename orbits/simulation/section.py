@@ -1,0 +1,57 @@
+"""The motion of a machine seen once per period of a cycle, whenever the forcing passes phase zero, by simulation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from orbits.machines.states import state_of
+from orbits.machines.stepping import FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
+from orbits.simulation.driver import buffers, skip
+
+EVENTS = 4096  # in one period at most
+
+
+class Section:
+    """A stroboscopic section.
+
+    Parameters
+    ----------
+    engine : Machine
+    params : ndarray, shape (P,)
+    code, mode : int
+        First event of the cycle, and the mode after it.
+    periods : int
+        Forcing periods of the cycle.
+    """
+
+    def __init__(self, engine: Machine, params: np.ndarray, code: int, mode: int, periods: int) -> None:
+        self.engine, self.params = engine, params
+        self.code, self.mode, self.periods = code, mode, periods
+        self.places = [W, RATE, V, V_RATE] if engine.state > V else [W, RATE]
+        self.scratch = buffers(engine, 64)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Position and velocity in the cavity, then those of the centre of mass."""
+        return ("w", "w_rate", "v", "v_rate")[: len(self.places)]
+
+    def through(self, u: np.ndarray) -> np.ndarray:
+        """Where the motion that begins with the first of the nodes u passes phase zero next, shape (d,)."""
+        state = state_of(self.engine, self.params, self.code, self.mode, np.asarray(u)[: len(self.places)])
+        return self._after(state, float(state[TURNS]) + 1.0)
+
+    def step(self, x: np.ndarray) -> np.ndarray:
+        """One period of the cycle later; NaN where the motion is no longer finite, or leaves its cavity at once."""
+        state = np.zeros(self.engine.state)
+        state[self.places] = x
+        left, right = self.engine.walls(self.params)
+        if not right <= state[W] <= left:
+            return np.full(len(self.places), np.nan)
+        self.engine.launch(state, self.params)
+        return self._after(state, float(self.periods))
+
+    def _after(self, state: np.ndarray, until: float) -> np.ndarray:
+        status = skip(self.engine, state, self.params, until, EVENTS * self.periods, self.scratch)
+        if status == FAILED or not abs(state[TURNS] + state[PSI] / (2.0 * np.pi) - until) < 1e-9:
+            return np.full(len(self.places), np.nan)
+        return state[self.places]

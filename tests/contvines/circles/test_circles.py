@@ -1,0 +1,140 @@
+"""Invariant circles against closed forms, against plain iteration, and against another simulator."""
+
+import json
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.circles.averages import rotation_number
+from contvines.command.cli import app
+from orbits import Coupled
+
+ANGLE, TWIST = 1.1, 0.4
+SHEAR = np.array([[1.3, 0.4], [-0.2, 0.8]])
+
+
+def sheared(sign):
+    """Radius r -> r (1 + p - sign r^2), angle -> angle + ANGLE + TWIST r^2, in sheared coordinates."""
+    back = np.linalg.inv(SHEAR)
+
+    def f(x, p):
+        y = back @ x
+        square = y[0] * y[0] + y[1] * y[1]
+        c, s = np.cos(ANGLE + TWIST * square), np.sin(ANGLE + TWIST * square)
+        return SHEAR @ ((1 + p - sign * square) * np.array([c * y[0] - s * y[1], s * y[0] + c * y[1]]))
+
+    return cv.MapProblem(f, [0.0, 0.0], -0.1)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_circles_are_those_of_the_closed_form(sign):
+    graph = cv.diagram(sheared(sign), within=(-0.3, 0.3), depth=0)
+    found = graph["NS1"].circles(to=0.2 * sign)
+    assert len(found) > 5 and found.ended == f"reaches p = {0.2 * sign:g}"
+    assert found.rotation == pytest.approx(ANGLE / (2 * np.pi), abs=1e-10)
+    for circle in found.circles:
+        square = sign * circle.value  # r^2 = p / sign
+        assert circle.rotation == pytest.approx((ANGLE + TWIST * square) / (2 * np.pi), abs=1e-9)
+        y = circle.at(np.linspace(0, 6, 50)) @ np.linalg.inv(SHEAR).T
+        assert (y**2).sum(axis=1) == pytest.approx(square, abs=1e-9)
+        # the normal form is exact here: every circle is the image of a round one
+        assert circle.predicted == pytest.approx(circle.radius, rel=1e-6)
+        assert circle.stable is (sign > 0)
+    assert found[-1].value == pytest.approx(0.2 * sign, abs=1e-14)
+    if sign > 0:
+        assert found[3].simulated == pytest.approx(found[3].rotation, abs=1e-8)
+
+
+def test_circles_of_the_delayed_logistic_map_by_iteration():
+    problem = cv.MapProblem(lambda x, p: np.array([p * x[0] * (1 - x[1]), x[0]]), [0.4, 0.4], 1.9)
+    graph = cv.diagram(problem, within=(1.8, 2.2), depth=0)
+    found = graph["NS1"].circles(to=2.1)
+    r = found[-1].value
+    x, y, angle = 0.6, 0.5, []
+    for i in range(60000):
+        x, y = r * x * (1 - y), x
+        if i >= 20000:
+            angle.append(np.arctan2(y - (1 - 1 / r), x - (1 - 1 / r)))
+    turns = np.unwrap(angle)
+    assert abs(turns[-1] - turns[0]) / (2 * np.pi * (len(turns) - 1)) == pytest.approx(
+        found[-1].rotation, abs=2e-5
+    )
+    dense = found[-1].at(np.linspace(0, 2 * np.pi, 20001))
+    assert np.hypot(dense[:, 0] - x, dense[:, 1] - y).min() < 1e-4
+    # the radius grows like the root of the distance, as the normal form says
+    first = found[0]
+    assert first.radius == pytest.approx(first.predicted, rel=2e-3)
+
+
+def test_averages_of_a_quasi_periodic_sequence():
+    golden = (np.sqrt(5) - 1) / 2
+    phases = 2 * np.pi * golden * np.arange(4000)
+    z = np.exp(1j * (phases + 0.3 * np.sin(phases)))
+    value, error = rotation_number(z, 0.5)
+    assert value == pytest.approx(golden, abs=1e-12) and error < 1e-8
+
+
+@pytest.fixture(scope="module")
+def coupled():
+    machine = Coupled(
+        forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
+    )
+    orbit = machine.orbit("LR", frequency=1.02)
+    return cv.diagram(orbit, over="frequency", within=(1.018, 1.027), depth=0)
+
+
+def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
+    pytest.importorskip("heyoka")
+    from orbits.machines.declared.section import Section
+    from tests.orbits.machines.declared.pages import page
+
+    found = coupled["NS1"].circles(to=1.0245)
+    assert found.coefficient > 0.0 and not any(c.stable for c in found.circles)
+    for circle in found.circles[:2]:
+        assert circle.radius == pytest.approx(circle.predicted, rel=0.15)
+    circle, machine = found[-1], page("coupled")
+    orbit = machine.orbit("LR", frequency=circle.value)
+    section = Section(machine, machine.vector({"frequency": circle.value}), orbit.word, 1)
+    assert found.names == ("w", "w_rate", "v", "v_rate")
+    eps = 0.006  # the page's states are those of the two bodies: w = q1 - q2, v = q1 + eps q2
+    to_bodies = np.kron(np.array([[eps, 1.0], [-1.0, 1.0]]) / (1 + eps), np.eye(2))
+    order = [list(machine.states).index(name) for name in ("q1", "v1", "q2", "v2")]
+    phases = np.linspace(0.1, 6.0, 5)
+    for x, image in zip(circle.at(phases), circle.at(phases + 2 * np.pi * circle.rotation)):
+        start = np.zeros(4)
+        start[order] = to_bodies @ x
+        there = section.step(start)[order]
+        assert np.linalg.inv(to_bodies) @ there == pytest.approx(image, abs=1e-7)
+
+
+def test_what_cannot_be_is_said_in_a_sentence(coupled):
+    with pytest.raises(ValueError, match="NS1 lie at frequency below 1.0254"):
+        coupled["NS1"].circles(to=1.03)
+    with pytest.raises(ValueError, match="EP1 is a point of kind end; invariant circles"):
+        coupled["EP1"].circles()
+    linear = cv.MapProblem(
+        lambda x, p: (
+            (1 + p) * np.array([np.cos(1) * x[0] - np.sin(1) * x[1], np.sin(1) * x[0] + np.cos(1) * x[1]])
+        ),
+        [0.0, 0.0],
+        -0.1,
+    )
+    graph = cv.diagram(linear, within=(-0.2, 0.2), depth=0)
+    with pytest.raises(ValueError, match="zero within its error"):
+        graph["NS1"].circles()
+
+
+def test_command_line(coupled, tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    monkeypatch.chdir(tmp_path)
+    coupled.save("response.vines")
+    line = ["circle", "response.vines", "NS1", "--to", "1.0252", "--json", "--plot", "circle.png"]
+    result = CliRunner().invoke(app, line)
+    assert result.exit_code == 0, result.output
+    data = json.loads(result.output)
+    assert data["parameter"] == "frequency" and data["circles"][-1]["value"] == pytest.approx(1.0252)
+    assert (tmp_path / "circle.png").exists()
+    bad = CliRunner().invoke(app, ["circle", "response.vines", "LP7"])
+    assert "its Neimark-Sacker points are NS1" in str(bad.exception)

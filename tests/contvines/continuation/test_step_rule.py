@@ -1,0 +1,104 @@
+"""The step rule as an object that a user may replace, and what the corrector makes of a tolerance."""
+
+import numpy as np
+import pytest
+from numba import njit
+
+import contvines as cv
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+from contvines.continuation.starts import solve_start
+from contvines.continuation.trace import chunks
+from contvines.problems.protocol import Kernels, ProblemDefaults
+
+
+def linearise(data, u, p, work):
+    """u - p = 0, with a slope that is wrong by the share data[0]."""
+    work[0][0] = u[0] - p
+    work[1][0] = 1.0 + data[0]
+    return abs(work[0][0])
+
+
+def bordered(data, work, border, n, step, tangent):
+    F, slope = work[0][0], work[1][0]
+    det = slope * border[1] + border[0]
+    step[0] = (-F * border[1] + n) / det
+    step[1] = (slope * n + F * border[0]) / det
+    tangent[0], tangent[1] = 1.0 / det, slope / det
+    return 1.0 if det > 0.0 else -1.0
+
+
+def inspect(data, u, p, work, row):
+    row[0], row[1] = 0.0, 0.0
+
+
+class Line(ProblemDefaults):
+    dimension, n_multipliers, spectrum, parameter = 1, 1, "map", "p"
+
+    def __init__(self, kernels, wrong=0.0):
+        self.kernels, self.data = kernels, np.array([wrong])
+
+    def workspace(self):
+        return np.zeros(1), np.zeros(1)
+
+
+INTERPRETED = Kernels(linearise, bordered, inspect, compiled=False)
+COMPILED = Kernels(njit(linearise), njit(bordered), njit(inspect), compiled=True)
+
+
+def constant(turn, error, sweeps, length, angle, roundoff):
+    return 1.0
+
+
+def picky(turn, error, sweeps, length, angle, roundoff):
+    """Nothing above a hundredth; below it three quarters of the step before."""
+    return -0.5 if length > 0.01 else 0.75
+
+
+def points(kernels, rule, **settings):
+    engine = Engine(Line(kernels), (0.0, 1.0), Settings(step_rule=rule, **settings))
+    return np.concatenate([c.values[:-1] for c in chunks(engine, solve_start(engine, [0.0], 0.0))])
+
+
+@pytest.mark.parametrize("kernels", [INTERPRETED, COMPILED], ids=["interpreted", "compiled"])
+def test_a_rule_of_ones_own_is_asked(kernels):
+    steps = np.diff(points(kernels, cv.StepRule(constant, "constant"), first_step=0.02, max_step=0.5))
+    assert steps == pytest.approx(steps[0], rel=1e-9)  # the line is straight: equal lengths, equal steps
+    assert steps[0] == pytest.approx(0.02 / np.sqrt(2.0), rel=1e-9)  # <(1, 1), (1, 1)> = 2
+
+
+def test_a_negative_factor_rejects_the_step_and_shortens_it():
+    steps = np.diff(
+        points(INTERPRETED, cv.StepRule(picky, "picky"), first_step=0.03, max_step=0.5, min_step=1e-5)
+    )
+    assert steps[:3] * np.sqrt(2.0) == pytest.approx([0.0075, 0.0075 * 0.75, 0.0075 * 0.75**2], rel=1e-9)
+
+
+def test_diagrams_take_a_rule_and_keep_its_name():
+    problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1.0, [1.0], 0.0)
+    usual = cv.diagram(problem, within=(-2.0, 2.0), depth=0)
+    short = cv.diagram(
+        problem, within=(-2.0, 2.0), depth=0, settings={"step_rule": cv.StepRule(constant, "constant")}
+    )
+    assert "step_rule" not in usual.settings and short.settings["step_rule"] == "constant"
+    folds = [[p.value for p in graph.of_kind("fold")] for graph in (usual, short)]
+    assert folds[0] == pytest.approx(folds[1], abs=1e-12) and sorted(folds[0]) == pytest.approx([-1, 1])
+    assert Settings.kept(short.settings) == Settings()  # the function itself is no data
+
+
+def test_what_is_no_rule_is_refused():
+    with pytest.raises(ValueError, match=r"step_rule = 'angle' must be a contvines\.StepRule"):
+        Settings(step_rule="angle")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="must be a function of"):
+        cv.StepRule(3.0, "three")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10, 1e-13])
+def test_the_tolerance_bounds_the_last_correction(tolerance):
+    """With a slope that is a tenth too steep each correction is about an eleventh of the one before."""
+    engine = Engine(
+        Line(INTERPRETED, wrong=0.1), (0.0, 1.0), Settings(tolerance=tolerance, max_iterations=30)
+    )
+    start = solve_start(engine, [0.0], 0.0)
+    corrections = np.concatenate([c.corrections[1:] for c in chunks(engine, start)])
+    assert len(corrections) > 5 and corrections.max() <= tolerance

@@ -1,0 +1,130 @@
+"""Multipliers at borders are the limits of those of the orbits beside them, as the simulation has them on each side."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.continuation.engine import Engine, Solved
+from contvines.continuation.settings import Settings
+from contvines.events.segment import Segment
+from orbits import Absorber, Cavity, Coupled
+from orbits.attractors import find_attractor
+from orbits.simulation.driver import machine as engine_of
+from orbits.simulation.return_map import monodromy
+from orbits.starts.find import polish
+
+FIRST = 1.5e-2  # farthest orbit: speed of the impact, or duration of the stick, that vanishes
+
+
+def reduced():
+    machine = Absorber(restitution=0.88432, friction=0.91958, gravity=0.576347, mass_ratio=0.05)
+    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.439}, amplitude=1.96332)
+    return polish(found.orbit), "amplitude", (1.95, 2.05)
+
+
+def tilted():
+    machine = Cavity(
+        restitution_left=0.42777,
+        restitution_right=0.51675,
+        friction_left=0.926035,
+        friction_right=0.820553,
+        gravity=0.577311,
+        slope=0.311532,
+        distance_left=0.642074,
+        distance_right=0.682441,
+        mass_ratio=0.05,
+    )
+    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.4623}, amplitude=1.58765)
+    return polish(found.orbit), "amplitude", (1.24, 1.6)
+
+
+def coupled():
+    machine = Coupled(
+        restitution=0.71165,
+        friction=0.75434,
+        gravity=0.839185,
+        mass_ratio=0.3,
+        damping=0.985537,
+        forcing=2.54884,
+        frequency=0.8785388,
+    )
+    found = find_attractor(machine, {"w": 0.5, "v": 1.0})
+    return polish(found.orbit), "frequency", (0.77, 0.9)
+
+
+def vanishing(orbit):
+    """What grows from nothing: the speeds of impacts and the durations of sticks and flights next to them."""
+    return min(abs(margin.value) for margin in orbit.margins if margin.kind in ("approach", "duration"))
+
+
+def simulated(orbit):
+    """Characteristic polynomial of the simulation's return map, started at the hardest impact, or at a stick."""
+    hard = max((m for m in orbit.margins if m.kind == "approach"), key=lambda m: m.value)
+    place = hard.segment if hard.value > 0.05 else orbit.word.events.index("s")
+    start = orbit.rotate(place)
+    word = start.word
+    matrix = monodromy(engine_of(orbit.model.name), orbit.params, word.codes, word.mode_codes, start.nodes[0])
+    return None if matrix is None else np.poly(matrix).real
+
+
+def seen_beside(branch, end):
+    """Coefficients of the characteristic polynomial of the simulated return map, extrapolated to an end of a branch."""
+    inward = 1 if end == 0 else -1
+    inner = next(
+        k for k in range(end + inward, len(branch) - 1 - end, inward) if vanishing(branch.orbit(k)) > 2e-3
+    )
+
+    engine = Engine(branch.problem, branch.range, Settings())
+    ends = (
+        Solved(
+            branch.points[k],
+            branch.values[k],
+            engine.unit(branch.tangents[k]) * inward,
+            np.zeros(0), 0.0, 0.0, 0.0,
+        )
+        for k in (end, inner)
+    )  # fmt: skip
+    segment = Segment(engine, *ends)
+
+    def beside(share):
+        point = segment.at(share)
+        return branch.problem.orbit(point.u, point.p)
+
+    share = 1.0
+    while vanishing(beside(share)) > FIRST:
+        share *= 0.7
+    orbits = [beside(share * part) for part in np.linspace(0.2, 1.0, 9)]
+    pairs = [(vanishing(orbit), seen) for orbit in orbits if (seen := simulated(orbit)) is not None]
+    assert len(pairs) >= 5
+    sizes, coefficients = zip(*pairs)
+    return np.polynomial.polynomial.polyfit(sizes, np.array(coefficients), 3)[0]
+
+
+@pytest.mark.parametrize("start", [reduced, tilted, coupled])
+def test_limits_at_borders(start):
+    """An impact of vanishing speed that a stick follows at once makes the equations singular, but not the motion."""
+    orbit, over, within = start()
+    graph = cv.diagram(orbit, over=over, within=within, depth=1)
+    checked = 0
+    for branch in graph:
+        for end in (0, len(branch) - 1):
+            label = next((label for place, label in branch.marks if place == end), None)
+            if (
+                label is None
+                or np.ptp(branch.values) < 1e-4
+                or graph[label].kind not in ("stick", "wall-graze", "velocity-graze")
+            ):
+                continue
+            here = branch.orbit(end)
+            soft = [m.segment for m in here.margins if m.kind == "approach" and abs(m.value) < 1e-9]
+            if not any(here.word.events[(place + 1) % len(here.word)] == "s" for place in soft):
+                continue
+            expected = seen_beside(branch, end)
+            assert np.poly(branch.multipliers[end]) == pytest.approx(
+                expected, abs=5e-3 * np.abs(expected).max()
+            )
+            checked += 1
+            point = graph[label]
+            listed = [point.multipliers, point.multipliers_beyond]
+            assert any(m is not None and np.array_equal(m, branch.multipliers[end]) for m in listed)
+    assert checked
