@@ -8,7 +8,7 @@ import numpy as np
 
 from ..graph.proving import mark
 from ..graph.shortening import short_word
-from ..plots.diagram import default_measure
+from ..plots.measures import default_measure
 from ..plots.style import MARKS, PLAIN, axis_label
 from .numbers import plain_label, rounded, shortened
 
