@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -140,8 +141,21 @@ class Branch:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         return self.problem.orbit(self.points[i], float(self.values[i]))
 
-    def prove(self, within: tuple[float, float] | None = None, bits: int | None = None) -> Any:
+    def prove(
+        self,
+        within: tuple[float, float] | None = None,
+        bits: int | None = None,
+        special: Mapping[str, Any] | None = None,
+    ) -> Any:
         """Prove the branch between its special points, or the part of it ``within`` an interval of the parameter.
+
+        Parameters
+        ----------
+        within : (float, float), optional
+        bits : int, optional
+            Of no account: stretches are proved with a fixed precision.
+        special : dict, optional
+            The graph's special points by label: stretches then go up to the points themselves.
 
         Raises
         ------
@@ -153,7 +167,8 @@ class Branch:
             raise ValueError(
                 f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
             )
-        return prove(self.points, self.values, [i for i, _ in self.marks], within)
+        known = {i: special[label] for i, label in self.marks if special and label in special}
+        return prove(self.points, self.values, [i for i, _ in self.marks], within, known)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this branch in the JSON of a graph."""

@@ -10,6 +10,8 @@ import numpy as np
 from ..doors import above
 from ..problems.registry import without_problem
 
+TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
+
 
 @dataclass(eq=False)
 class SpecialPoint:

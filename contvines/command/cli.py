@@ -17,10 +17,13 @@ from contvines.command import (
     circle,
     design,
     editor_schema,
-    look,
+    export,
+    orbit,
+    plot,
     prove,
     report,
     run,
+    show,
     survey,
     sweep,
 )
@@ -67,11 +70,11 @@ app.command()(basins.basins)
 app.command()(chart.locus)
 app.command()(chart.chart)
 app.command()(circle.circle)
-app.command()(look.show)
-app.command()(look.orbit)
+app.command()(show.show)
+app.command()(orbit.orbit)
 app.command()(prove.prove)
-app.command()(look.plot)
-app.command()(look.export)
+app.command()(plot.plot)
+app.command()(export.export)
 app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(survey.survey)

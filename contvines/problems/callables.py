@@ -199,7 +199,9 @@ class CallableProblem(ProblemDefaults):
 
         for reach in (0.05, 2e-3):
             with np.errstate(all="ignore"):
-                found = find_break(line, reach, rows)
+                noise = np.zeros(self.dimension)
+                noise[:] = np.resize(self.functions.noise, self.dimension)
+                found = find_break(line, reach, rows, noise)
             if found is not None:
                 value = p + found.at * float(tangent[-1])
                 where = f"near {self.parameter} = {value:.6g} (row {found.row})"
