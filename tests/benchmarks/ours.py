@@ -18,9 +18,17 @@ MACHINE = Absorber(
 )
 
 
+class AsWritten(OrbitProblem):
+    """Orbits followed with all their events, though they repeat a shorter one."""
+
+    def root(self, u, p):
+        """None: the word is kept."""
+        return None
+
+
 def problem(l):
     """The full word written l/2 times, not reduced by its symmetry."""
-    found = OrbitProblem(MACHINE, Word.parse("LR").repeat(l // 2), l // 2, "amplitude", case.PARAMS)
+    found = AsWritten(MACHINE, Word.parse("LR").repeat(l // 2), l // 2, "amplitude", case.PARAMS)
     found.u0, found.p0, _ = case.start(l)
     return found
 
