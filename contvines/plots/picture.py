@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..events.kinds import KINDS
+from ..graph.measures import measure_at, measured, undrawn
 from ..graph.shortening import short_word
 from .curves import Curve
 from .figures import scale
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
-from .measures import measure_at, measured, undrawn
 from .style import LINES, MARKS, PLAIN, STATE_COLORS, STATES, WIDTHS
 
 if TYPE_CHECKING:
