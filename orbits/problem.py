@@ -300,6 +300,10 @@ class OrbitProblem:
             found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
         return [found[key] for key in sorted(found)]
 
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        return float(np.linalg.norm(direction[: self.dimension // max(self.length, 1)]))
+
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle.
 

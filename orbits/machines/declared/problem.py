@@ -432,6 +432,10 @@ class DeclaredProblem:
 
         return DeclaredOrbit(self.machine, self.word, self.periods, self.expand(u), self.values(p))
 
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        return float(np.linalg.norm(direction[: self.size + 1]))
+
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle."""
         return Section(self.machine, self.values(p), self.word, self.periods)
