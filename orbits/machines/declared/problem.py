@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
-from orbits.machines.declared import flights
+from orbits.machines.declared import flights, loci
 from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical, is_symmetric
 from orbits.machines.declared.identity import root as shortest
@@ -27,13 +27,18 @@ STROBED = Letter("", -1, STROBE)
 
 
 class Kernels(NamedTuple):
-    """The three functions that a continuation loop calls; plain Python."""
+    """The functions that a continuation calls; plain Python."""
 
     linearise: Any
     bordered: Any
     inspect: Any
     compiled: bool = False
     digest: str = "declared"
+    assign: Any = loci.assign
+    flip: Any = loci.flip
+    transpose: Any = loci.transpose
+    column: int = 3
+    matrix: Any = loci.matrix
 
 
 def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
