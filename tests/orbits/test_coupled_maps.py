@@ -3,13 +3,13 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 from orbits import Coupled
 from orbits.elimination.block_cyclic import workspace
 from orbits.machines.coupled.flow import first_zero, wave
 from orbits.machines.coupled.maps import linearise, margins
 from orbits.machines.path import single
+from tests.orbits.machines.coupled.motion import path
 
 L, R, T, S, U = range(5)
 # arriving event and the modes: every kind of segment
@@ -111,28 +111,6 @@ def test_maps_and_all_their_derivatives(segment):
             np.testing.assert_allclose(D[:, j], slope(12 + j), rtol=1e-12, atol=1e-13)
 
 
-def path(params, start, mode, node, duration, count):
-    """States (q1, q1', q2, q2', sin Psi, cos Psi, 1) and accelerations q1'', q2'' along a segment, by matrix exponential."""
-    G, Omega, lam, eps, _, mu, g, chi = params
-    psi, y, v, v_rate = node
-    w, w_rate = (1.0 - 2.0 * start, v_rate - y) if start < 2 else (y, 0.0)
-    matrix = np.zeros((7, 7))
-    matrix[0, 1] = matrix[2, 3] = 1.0
-    matrix[4, 5], matrix[5, 4] = Omega, -Omega
-    force = np.array([-1.0, -eps * lam, 0.0, 0.0, eps * G, eps * G * chi * eps * lam * Omega, 0.0])
-    matrix[1] = force if mode else force / (1.0 + eps)
-    matrix[3] = 0.0 if mode else force / (1.0 + eps)
-    matrix[1, 6] -= eps * mu * g * mode
-    matrix[3, 6] += mu * g * mode
-    state = [(v + eps * w), (v_rate + eps * w_rate), v - w, v_rate - w_rate]
-    states = [np.array([*(np.array(state) / (1.0 + eps)), np.sin(psi), np.cos(psi), 1.0])]
-    step = expm(matrix * duration / count)
-    for _ in range(count):
-        states.append(step @ states[-1])
-    states = np.array(states)
-    return states, states @ matrix[1], states @ matrix[3]
-
-
 def inner_minima(values):
     """Values at interior minima, from the parabola through three points."""
     a, b, c = values[:-2], values[1:-1], values[2:]
@@ -156,7 +134,8 @@ def test_margins_are_those_of_the_motion(segment, case):
     found = np.full(8, np.nan)
     margins(data, u, params[0], work, found)
     duration = (u[4] - u[0]) / params[1]
-    states, q1_2, q2_2 = path(params, start, mode, u[:4], duration, 20000)
+    w, w_rate = (1.0 - 2.0 * start, u[3] - u[1]) if start < 2 else (u[1], 0.0)
+    states, q1_2, q2_2 = path(params, mode, u[0], w, w_rate, u[2], u[3], duration, 20000)
     a = (1.0 + eps) * mu * g
     push = q1_2 + eps * q2_2
     if mode == 0:

@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.letters import HIT, STICK, STROBE, Letter
+from orbits.doors import above
 from orbits.machines.declared import flights, loci
 from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical, is_symmetric
@@ -19,8 +21,8 @@ from orbits.machines.declared.identity import root as shortest
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import border_kind, fill_margins, per_node
 from orbits.machines.declared.section import Section
-from orbits.machines.declared.words import HIT, STICK, STROBE, Letter, Word
 from orbits.protocol import Embedding, Symmetry
+from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
@@ -52,7 +54,7 @@ def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, 
 KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
 
 
-def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
+def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
     """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
@@ -73,7 +75,7 @@ class DeclaredProblem:
     Parameters
     ----------
     machine : Machine
-    word : Word
+    word : PageWord
         Of the whole cycle.
     periods : int
         Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
@@ -94,7 +96,7 @@ class DeclaredProblem:
     def __init__(
         self,
         machine: Machine,
-        word: Word,
+        word: PageWord,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -356,7 +358,7 @@ class DeclaredProblem:
         return image.ravel()
 
     def sibling(
-        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+        self, word: PageWord, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> DeclaredProblem:
         """The problem of another word of the same machine against the same parameter."""
         given = self.params if params is None else params
@@ -444,6 +446,10 @@ class DeclaredProblem:
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle."""
         return Section(self.machine, self.values(p), self.word, self.periods)
+
+    def witness(self, p: float, starts: int = 4) -> list[dict[str, Any]]:
+        """What the machine settles on at a parameter value, simulated from random starts: "word", "periods" and "kind" of each motion."""
+        return above("witness_of_page")(self.machine, self.values(p), starts)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
