@@ -86,6 +86,11 @@ class OrbitProblem(Simulated):
         return self.equations.workspace()
 
     @property
+    def scratch(self) -> tuple[np.ndarray, ...]:
+        """A workspace for single calls, whose contents nobody relies on."""
+        return self.equations.scratch
+
+    @property
     def parameters(self) -> dict[str, float]:
         """All parameters that may vary, by name; of the one that does the starting value."""
         return {
@@ -307,9 +312,10 @@ class OrbitProblem(Simulated):
         values: np.ndarray,
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
+        special: Mapping[int, Any] | None = None,
     ) -> Any:
         """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
-        return above("of_branch")(self, points, values, marks, within)
+        return above("of_branch")(self, points, values, marks, within, special)
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""

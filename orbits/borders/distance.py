@@ -51,7 +51,7 @@ def _largest(gap: np.ndarray, free: bool) -> float:
 
 def position(orbit: Solution, phase: np.ndarray) -> np.ndarray:
     """w at some phases of the forcing: cubics between instants at which w and w' are known."""
-    path = orbit.sample(400 * orbit.periods)
+    path = orbit.path
     ahead = path["phase"] - path["phase"][0]
     wanted = (np.asarray(phase) - path["phase"][0]) % (2.0 * np.pi * orbit.periods)
     before = np.clip(np.searchsorted(ahead, wanted, side="right") - 1, 0, len(ahead) - 2)

@@ -34,9 +34,19 @@ GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution."""
+    return _examined(problem, u, p)[2 * problem.n_multipliers :]
+
+
+def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
+    """Whether all multipliers of a solution lie inside the unit circle."""
+    pairs = _examined(problem, u, p)[: 2 * problem.n_multipliers]
+    return bool(np.all(np.hypot(pairs[::2], pairs[1::2]) < 1.0))
+
+
+def _examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
-    assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
-    return row[2 * problem.n_multipliers :]
+    assemble(problem.model).examine(problem.data, u, p, problem.scratch, row)
+    return row
 
 
 def turned(
@@ -103,10 +113,12 @@ def grown(
     p: float,
     edits: list[Edit],
     ways: tuple[tuple[float, ...], ...] = SIZES,
+    steady: bool = False,
 ) -> Grown | None:
     """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
-    None if there is none that is real and tends to the border orbit.
+    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable (which costs
+    less to see).
     """
     if problem.symmetric:  # edit the half, and mirror it
         half = problem.length
@@ -125,9 +137,11 @@ def grown(
     guess = np.ascontiguousarray(nodes, dtype=float).ravel()
     change = edits[0].change
     if change.grows is Grows.MARGIN:
-        return _beside(other, guess, p, orbit)
+        return _beside(other, guess, p, orbit, steady)
     for sizes in ways:
         found = _climb(other, guess, first, change, p, sizes)
+        if found and steady and not stable_at(other, found[-1].u, found[-1].p):
+            return None
         if found and _begins_at(orbit, other, first, change, p, found):
             return Grown(other, *found[-1][:3])
     return None
@@ -153,7 +167,7 @@ def _hold(
 ) -> _Held | None:
     """Solve with what grows beyond the border at p held at a size."""
     n, size = other.model.node, other.dimension
-    kernels, work = assemble(other.model), other.workspace()
+    kernels, work = assemble(other.model), other.scratch
     step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
     u = guess.copy()
     if change.grows is Grows.GAP:
@@ -164,11 +178,11 @@ def _hold(
             u[(first + 1) * n] = u[first * n] + wanted
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
-        cavity = float(other.orbit(u, q).events.v_rate[first])
+        cavity = _cavity_speed(other, u, q, first)
         node = slice(first * n, (first + 1) * n)
         border[node] = -sign * other.model.cavity_speed_slopes(u[node], other.values(q))
         border[first * n + 1] += sign
-        change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
+        change_with = _cavity_speed(other, u, q + NEAR, first) - cavity
         border[size] = -sign * change_with / NEAR
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
@@ -180,6 +194,12 @@ def _hold(
     if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
         return None
     return _Held(u, float(q_new), tangent, wanted)
+
+
+def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) -> float:
+    """v' at an event."""
+    node = problem.expand(u)[place]
+    return float(problem.model.cavity_motion(node[None, None], problem.values(p)[None])[1][0, 0])
 
 
 def _begins_at(
@@ -221,10 +241,10 @@ def _outwards(
             yield held
 
 
-def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution) -> Grown | None:
+def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, steady: bool) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
-    kernels, work = assemble(other.model), other.workspace()
+    kernels, work = assemble(other.model), other.scratch
     border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
     border[-1] = 1.0
     at_border = guess.copy()
@@ -250,14 +270,16 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution) -
                 break
     if found is None and np.abs(tangent).max() > STEEP:
         found = _along(other, at_border, p, tangent)
-    if found is None or not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):
+    if found is None or (steady and not stable_at(other, found.u, found.p)):
+        return None
+    if not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):
         return None
     return found
 
 
 def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
-    kernels, work = assemble(other.model), other.workspace()
+    kernels, work = assemble(other.model), other.scratch
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
     for distance in (1e-5, 1e-6):
         for side in (1.0, -1.0):

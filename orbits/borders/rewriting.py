@@ -6,6 +6,7 @@ At the border the old and the new description are the same motion, so an inserte
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.margins import DURATION, EVENT, FLIGHT, PER_NODE, WALL
 from orbits.cycles.sampling import flight, slowest
 from orbits.cycles.solution import Solution
+from orbits.protocol import CycleProblem
 from orbits.words import Word
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT
 from orbits.words.rewriting import Watch, applied, changes_at, spliced
@@ -30,6 +32,27 @@ class Edit(NamedTuple):
 
     change: Change
     nodes: np.ndarray
+
+    def later(self, rounds: int, problem: CycleProblem) -> Edit:
+        """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
+        if rounds == 0:
+            return self
+        change, places, alphabet = self.change, rounds * problem.length, problem.word.alphabet
+        nodes, events, modes = self.nodes.copy(), change.events, change.modes
+        if problem.symmetric and rounds % 2:
+            nodes = -nodes
+            events = tuple(alphabet.images[text] for text in events)
+            modes = tuple(alphabet.mirrored_mode(mode) for mode in modes)
+        nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
+        spots = tuple(
+            spot._replace(
+                node=None if spot.node is None else spot.node + places,
+                clock=None if spot.clock is None else spot.clock + places,
+            )
+            for spot in change.spots
+        )
+        start, stop = change.start + places, change.stop + places
+        return Edit(replace(change, start=start, stop=stop, events=events, modes=modes, spots=spots), nodes)
 
 
 class _Touch(NamedTuple):
