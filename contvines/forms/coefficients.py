@@ -221,7 +221,11 @@ class Forms:
         line, weight = self.line(v, closure), float(w @ self.K @ v) or np.nan
         x = self.extended(v, closure)
         regular = self.closed_by(0.0 if self.flow else 1.0)
-        h = self._solve(regular, -(line.second @ x))
+        if factor == (0.0 if self.flow else 1.0):  # singular itself
+            bordered = np.block([[regular, w[:, None]], [v[None, :], np.zeros((1, 1))]])
+            h = np.linalg.solve(bordered, np.append(-(line.second @ x), 0.0))[:-1]
+        else:
+            h = self._solve(regular, -(line.second @ x))
         total = w @ (line.third @ x) + 3.0 * w @ (line.second @ self.extended(h, 1.0))
         error = abs(self.n * (line.third_error + 3.0 * line.second_error) / (6.0 * weight))
         return Coefficient(-float(total) / (6.0 * weight), error)
