@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..graph.proving import mark
+from ..graph.proving import mark, told
 from ..graph.shortening import short_word
 from ..plots.measures import default_measure
 from ..plots.style import MARKS, PLAIN, axis_label
@@ -84,6 +84,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
         "stable_points": branch.stable.astype(int).tolist(),
         "measures": measures,
         "marks": [[int(i), label] for i, label in branch.marks],
+        "proof": told(graph, branch.label),
         "multipliers": [_pairs(row[:8]) for row in branch.multipliers],
         "margin": shortened(branch.margin),
     }

@@ -144,7 +144,7 @@ def of_branch(
             known[place] = _joinable(problem, motif, (special or {}).get(place))
         return known[place]
 
-    pieces = []
+    pieces, between = [], []
     for first, last in pairwise(cuts):
         order = np.argsort(values[first : last + 1])
         x, u = values[first : last + 1][order], points[first : last + 1][order]
@@ -169,10 +169,11 @@ def of_branch(
             columns = [np.interp(p, x, u[:, j]) for j in range(u.shape[1])]
             return np.array(columns).reshape(len(motif), -1)
 
+        between.append((first, last))
         pieces.append(prove_piece(motif, guess, given, varying, low, high, (ends[0], ends[1])))
     if not pieces:
         raise ProofError("the branch has no stretch between special points in this interval")
-    return Pieces(tuple(pieces))
+    return Pieces(tuple(pieces), tuple(between))
 
 
 def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
