@@ -22,6 +22,7 @@ from orbits.proofs.varying import Varying
 from orbits.words import Word
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
+NARROW = 1e-12  # half a tile about a special point, from which floats can go on
 PLAIN = ("end", "user")  # kinds of special points where nothing happens
 
 
@@ -184,7 +185,8 @@ def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
         proof = of_point(problem, found.kind, found.u, float(found.value), found.margin_index)
     except ProofError:
         return None
-    return proof if proof.chain and proof.motif == motif else None
+    wide = bool(proof.chain) and float(proof.chain[1]["half_width"]) > NARROW
+    return proof if wide and proof.motif == motif else None
 
 
 def _critical(
