@@ -100,7 +100,7 @@ def _point(point: SpecialPoint, proof: str) -> dict[str, Any]:
 
 
 def _attractor(about: Attractor) -> dict[str, Any]:
-    name = short_word(about.word) if about.word else about.kind
+    name = short_word(about.name)
     return {
         "value": float(about.value),
         "name": name if about.periods <= 1 else f"{name} k={about.periods}",
