@@ -178,11 +178,11 @@ def _hold(
             u[(first + 1) * n] = u[first * n] + wanted
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
-        cavity = float(other.orbit(u, q).events.v_rate[first])
+        cavity = _cavity_speed(other, u, q, first)
         node = slice(first * n, (first + 1) * n)
         border[node] = -sign * other.model.cavity_speed_slopes(u[node], other.values(q))
         border[first * n + 1] += sign
-        change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
+        change_with = _cavity_speed(other, u, q + NEAR, first) - cavity
         border[size] = -sign * change_with / NEAR
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
@@ -194,6 +194,12 @@ def _hold(
     if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
         return None
     return _Held(u, float(q_new), tangent, wanted)
+
+
+def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) -> float:
+    """v' at an event."""
+    node = problem.expand(u)[place]
+    return float(problem.model.cavity_motion(node[None, None], problem.values(p)[None])[1][0, 0])
 
 
 def _begins_at(
