@@ -21,6 +21,7 @@ class Reason(StrEnum):
     MAX_POINTS = "max-points"
     CLOSED = "closed"
     ESCAPED = "escaped"
+    CREEPING = "creeping"
     LEAVES = "leaves"
     GOES_ON = "goes-on"
     REACHES = "reaches"

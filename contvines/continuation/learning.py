@@ -112,14 +112,26 @@ class Scout:
     def _take_from_tangent(self, tangent: np.ndarray) -> None:
         """Sizes of unknowns of which nothing is known: how far they get while another one, or the parameter, covers its own."""
         known = np.asarray(self.problem.known)
+        if self.given or known.all():
+            return
         rates, sizes = np.abs(tangent), np.append(self.first, self.width)
         moving = np.append(known, True) & (rates > 0.0)
-        free = ~known & (rates[:-1] > 0.0)
-        if self.given or not moving.any() or not free.any():
+        free = ~known & (rates[:-1] > 0.0) & self._confirmed(tangent)[:-1]
+        if not moving.any() or not free.any():
             return
         way = float((sizes[moving] / rates[moving]).min())
         self.first = np.where(free, np.maximum(rates[:-1] * way, 1e-300), self.first)
         self.scale = self.first.copy()
+
+    def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
+        """Which entries of a tangent are no rounding: they are the same when it is solved for with another border."""
+        step, again = np.zeros(self.n + 1), np.zeros(self.n + 1)
+        border = np.random.default_rng(9).uniform(0.5, 1.0, self.n + 1) / np.append(self.first, self.width)
+        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, again)
+        weighed = self.weights() * tangent
+        with np.errstate(all="ignore"):
+            again = again * (float(weighed @ tangent) / float(weighed @ again))
+            return np.abs(again - tangent) <= 0.01 * np.abs(tangent)
 
     def walk(self, z: np.ndarray, tangent: np.ndarray, steps: int) -> None:
         """Follow the branch for some steps in the direction of the tangent."""

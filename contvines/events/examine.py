@@ -23,6 +23,7 @@ STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 TIED = 1e-9  # margins that differ by less vanish together
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
+ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -143,7 +144,14 @@ class Examiner:
         root = locate(segment, lambda point: float(point.tangent[-1]))
         if root is None or not root.continuous:
             return []
-        return [] if _near(root.position, met, 0.02) else [self._located(root, "fold", 0)]
+        if _near(root.position, met, 0.02) or not self._returns(segment, root.point.p):
+            return []
+        return [self._located(root, "fold", 0)]
+
+    def _returns(self, segment: Segment, p: float) -> bool:
+        """Whether the parameter turns back by more than rounding; on a vertical branch it does not."""
+        moved = max(abs(segment.a.p - p), abs(segment.b.p - p))
+        return moved > max(ROUNDING, 10.0 * self.engine.noise) * self.engine.parameter_unit(p)
 
     def _regular(self, point: Solved) -> bool:
         """Whether the branch is alone at a point where a multiplier passes +1: the segment has led from one to another.

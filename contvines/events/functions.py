@@ -81,6 +81,15 @@ def balance(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     return np.where(both, np.where(both, past, 0.0) + np.where(both, before, 0.0), np.nan)
 
 
+def nearest_to_circle(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
+    """Distance from the circle (the axis) of the nearest real positive multiplier of each row, as a logarithm; clipped at LIMIT."""
+    real = np.where(spectrum.imag == 0.0, spectrum.real, np.nan)
+    if kind == "map":
+        with np.errstate(all="ignore"):
+            real = np.where(real > 0.0, np.log(real), np.nan)
+    return np.nan_to_num(np.fmin.reduce(np.abs(real), axis=-1, initial=LIMIT), nan=LIMIT)
+
+
 class SymmetryTest:
     """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 

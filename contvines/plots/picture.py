@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..events.kinds import KINDS
+from ..graph.measures import measure_at, measured, undrawn
 from ..graph.proving import mark as proof_of
 from ..graph.proving import stretches
 from ..graph.shortening import short_word
@@ -15,7 +16,6 @@ from .curves import Curve
 from .figures import scale
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
-from .measures import measure_at, measured, undrawn
 from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATES, WIDTHS
 
 if TYPE_CHECKING:

@@ -82,3 +82,36 @@ def test_eigenvectors_of_a_sparse_jacobian():
     )
     point = cv.diagram(problem, within=(0.0, 1.0)).of_kind("end")[0]
     np.testing.assert_allclose(second @ point.eigenvectors, point.eigenvectors * point.multipliers, atol=1e-7)
+
+
+@pytest.mark.parametrize("spectrum", ["none", "flow"])
+def test_a_small_circle_through_two_branch_points_of_one_step(spectrum):
+    """u (u^2 + (p - 0.3)^2 - 1e-6): both branch points lie between neighbouring points of the line u = 0."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u * (u**2 + (p - 0.3) ** 2 - 1e-6), [0.0], -0.5, spectrum=spectrum
+    )
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert [s.value for s in graph.of_kind("branch-point")] == pytest.approx([0.299, 0.301], rel=1e-10)
+    assert len(graph) == 2 and graph["B2"].closed and len(graph["B2"]) < 200
+
+
+def test_the_table_marks_transcritical_points_and_points_at_the_end():
+    graph = cv.diagram(cv.AlgebraicProblem(lambda u, p: p * u - u**2, [0.0], -0.5), within=(-1.0, 1.0))
+    assert "transcritical" in str(graph)
+    graph = cv.diagram(cv.AlgebraicProblem(parabola, [1.0], 1.0), within=(0.0, 1.0))
+    assert "at the end" in str(graph) or not graph.of_kind("fold")
+
+
+def test_where_one_eigenvalue_leaves_as_another_enters():
+    """The symmetry of a triangle: x' = p z + conj(z)^2 has three branches through 0 along which eigenvalues change places."""
+
+    def triangle(u, p):
+        x, y = u
+        return [p * x + x * x - y * y, p * y - 2.0 * x * y]
+
+    # start on one of the branches, x = -p: no count of eigenvalues changes at p = 0
+    graph = cv.diagram(
+        cv.AlgebraicProblem(triangle, [0.5, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=1
+    )
+    assert [s.value for s in graph.of_kind("branch-point")] == pytest.approx([0.0], abs=1e-10)
+    assert len(graph) == 4

@@ -52,6 +52,8 @@ class Curve:
 
     def __init__(self, g: Any) -> None:
         self.g = sy.Poly(g, X, P)
+        if sy.Poly(g, X).content().has(P) or len(sy.Poly(g, X).all_coeffs()) < 2:
+            raise Unsuitable("a line of constant p")
         self.gx, self.gp = self.g.diff(X), self.g.diff(P)
         lead = sy.Poly(self.g.as_expr(), X).LC()
         discriminant = sy.discriminant(self.g.as_expr(), X)

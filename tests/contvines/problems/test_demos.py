@@ -10,6 +10,7 @@ import json
 import pytest
 
 from tests.contvines.problems.demos import listed, maps
+from tests.contvines.problems.demos.make_page import PAGE, render
 from tests.contvines.problems.demos.make_table import TABLE, graph_of, points_of, solved
 
 DEMOS = [*listed.DEMOS, *maps.DEMOS]
@@ -52,3 +53,7 @@ def test_what_others_print(name, printed):
     for kind, values in printed.items():
         rows = [row["value"] for row in EXPECTED[name] if row["kind"] == kind]
         assert rows == pytest.approx(values, rel=3e-4), kind
+
+
+def test_the_page_of_the_documentation_is_the_table():
+    assert PAGE.read_text(encoding="utf-8") == render()
