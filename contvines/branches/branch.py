@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from ..problems.registry import without_problem
 from .ending import Ending
 
@@ -71,31 +72,15 @@ class Branch:
         return f"Branch({self.label}: {len(self)} points, {self.parameter} in [{lo:.6g}, {hi:.6g}])"
 
     def _repr_html_(self) -> str:
-        from ..graph.table import Table, describe, ends, number
-
-        intervals = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in self.stable_intervals()) or "-"
-        low, high = self.range
-        rows = [
-            ("what", describe(self)),
-            (self.parameter, f"{number(low, 10)}..{number(high, 10)}"),
-            ("stable", intervals),
-            ("points", str(len(self))),
-            ("from .. to", ends(self)),
-            ("special points", ", ".join(label for _, label in self.marks) or "-"),
-        ]
-        return Table((self.label, "branch"), rows).html()
+        return above("branch_page")(self)
 
     def to_pandas(self) -> Any:
         """The points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
-        from ..export.frames import branch_frame
-
-        return branch_frame(self)
+        return above("branch_frame")(self)
 
     def to_xarray(self) -> Any:
         """The branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
-        from ..export.frames import branch_dataset
-
-        return branch_dataset(self)
+        return above("branch_dataset")(self)
 
     @property
     def range(self) -> tuple[float, float]:

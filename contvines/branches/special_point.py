@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from ..problems.registry import without_problem
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
@@ -138,35 +139,14 @@ class SpecialPoint:
 
     def plot(self, **options: Any) -> Any:
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
-        from ..plots.portrait import plot_portrait
-
-        return plot_portrait(self.orbit, **options)
+        return above("plot_portrait")(self.orbit, **options)
 
     def circles(self, to: float | None = None, **options: Any) -> Any:
         """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
-        from ..circles.follow import circles
-
-        return circles(self, to, **options)
+        return above("circles")(self, to, **options)
 
     def _repr_html_(self) -> str:
-        from ..graph.table import Table, number
-
-        sizes = ", ".join(
-            number(m.real, 8) + (f" {'+' if m.imag > 0 else '-'} {number(abs(m.imag), 8)}i" if m.imag else "")
-            for m in self.multipliers[:8]
-        )
-        rows = [
-            (
-                "kind",
-                " ".join(filter(None, (self.criticality or "", self.kind, "" if self.real else "(virtual)"))),
-            ),
-            ("on", self.branch),
-            (self.parameter, number(self.value, 14)),
-            ("located to", number(self.location_error, 2)),
-            ("multipliers", sizes or "-"),
-            *([("note", self.note)] if self.note else []),
-        ]
-        return Table((self.label, "special point"), rows).html()
+        return above("point_page")(self)
 
     def prove(self, **options: Any) -> Any:
         """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.

@@ -33,7 +33,7 @@ def _of_study(path: Path) -> str:
 
 def _of_graph(path: Path) -> str:
     from contvines.graph.graph import Graph
-    from contvines.plots.measures import default_measure
+    from contvines.graph.measures import default_measure
     from contvines.store import load
 
     graph = load(path)

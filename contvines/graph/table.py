@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..branches.special_point import TRANSCRITICAL
-from .proving import mark
+from .proving import mark, told
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
@@ -95,6 +95,11 @@ def table(graph: Graph, width: int | None = None) -> str:
     return "\n".join(lines)
 
 
+def shown(graph: Graph) -> str:
+    """The same as it fits the terminal, if one shows it."""
+    return table(graph, terminal_width())
+
+
 def terminal_width() -> int | None:
     """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
     return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None
@@ -117,8 +122,18 @@ def branches_table(graph: Graph) -> Table:
         low, high = branch.range
         stable = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in branch.stable_intervals()) or "-"
         where = f"{number(low, 6)}..{number(high, 6)}"
-        rows.append((branch.label, describe(branch), where, stable, str(len(branch)), ends(branch)))
-    return Table(("branch", "what", name, "stable", "points", "from .. to"), rows, ("points", "from .. to"))
+        proved = told(graph, branch.label)
+        rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
+    head = (
+        "branch",
+        "what",
+        name,
+        "stable",
+        "proved" if any(row[4] for row in rows) else "",
+        "points",
+        "from .. to",
+    )
+    return Table(head, rows, ("points", "from .. to"))
 
 
 def special_table(graph: Graph) -> Table:

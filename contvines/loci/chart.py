@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
+from ..doors import above
 from ..graph.persistence import branch_of, content_of
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
@@ -29,6 +30,8 @@ class Chart:
     loci : dict of Locus
     points : dict of PlanePoint
     regions : list of Region
+    crossings : list of dict
+        Where two loci cross that have nothing to do with one another: "on", "value", "error".
     model : dict
         Name and parameters of the model.
     settings : dict
@@ -44,6 +47,7 @@ class Chart:
     loci: dict[str, Locus] = field(default_factory=dict)
     points: dict[str, PlanePoint] = field(default_factory=dict)
     regions: list[Region] = field(default_factory=list)
+    crossings: list[dict[str, Any]] = field(default_factory=list)
     model: dict[str, Any] = field(default_factory=dict)
     settings: dict[str, Any] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
@@ -61,9 +65,7 @@ class Chart:
         return label in self.loci or label in self.points
 
     def __str__(self) -> str:
-        from .table import table
-
-        return table(self)
+        return above("chart_table")(self)
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -86,21 +88,18 @@ class Chart:
             "message": self.message,
             "loci": [locus.to_dict() for locus in self.loci.values()],
             "points": [point.to_dict() for point in self.points.values()],
+            "crossings": self.crossings,
             "regions": [region.to_dict(self.parameters) for region in self.regions],
         }
         return {**result, "units": self.units} if self.units else result
 
     def plot(self, **options: Any) -> Any:
         """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
-        from ..plots.chart import plot_chart
-
-        return plot_chart(self, **options)
+        return above("plot_chart")(self, **options)
 
     def save(self, path: str | Path) -> None:
         """Write the chart to a .vines file, as graphs are; ``contvines.load`` reads both."""
-        from ..store import save
-
-        save(self, path)
+        above("save")(self, path)
 
     # ------------------------------------------------------------------ to and from a file
     def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:

@@ -10,7 +10,7 @@ from ..continuation.starts import check_interval
 from ..graph.graph import Graph
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
-from .locus import locus
+from .following import locus
 
 
 def chart(

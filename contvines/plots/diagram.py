@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..graph.measures import default_measure
 from .figures import freeze, new_axes, settle, styled
 from .legends import draw_legend, hold_legend
-from .measures import default_measure
 from .picture import Picture
 from .style import axis_label
 from .views import frame

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from ..doors import above
 from . import dense, sparse
 from .breaks import find_break
 from .checks import disagreement
@@ -125,11 +126,10 @@ class CallableProblem(ProblemDefaults):
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""
-        if self.scales is None:
-            from ..continuation.learning import learn
-
-            self.scales = learn(self, within, self.given_scale)
-        return self.scales.joined()
+        scales = self.scales
+        if scales is None:
+            scales = self.scales = above("learn")(self, within, self.given_scale)
+        return scales.joined()
 
     def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown or the parameter changes by its scale."""

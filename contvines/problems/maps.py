@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
@@ -259,12 +260,17 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The points of the shortest cycle of which u is a repetition, and the differences at which points are one."""
         nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
+        signs = self.pieces.signs.reshape(n, -1)
         own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
         scale = SAME * (own + np.abs(nodes).max(axis=0))
         root = next(
             r
             for r in range(1, n + 1)
-            if n % r == 0 and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
+            if n % r == 0
+            and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
+            and np.array_equal(
+                signs, np.roll(signs, r, axis=0)
+            )  # at a switch points meet that part beyond it
         )
         return nodes[:root], scale
 
@@ -300,9 +306,9 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
 
     def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
-        from ..coexistence.maps import MapPopulation
-
-        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
+        return above("MapPopulation")(
+            self if over in (None, self.parameter) else self.against(str(over)), box
+        )
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""

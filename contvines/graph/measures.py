@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    from .graph import Graph
 
 
 def default_measure(graph: Graph) -> str:
@@ -33,8 +33,7 @@ def undrawn(graph: Graph, x: str, y: str) -> str:
         return ""
     labels = [b.label for b in missing]
     listed = ", ".join(labels) if len(labels) <= 4 else f"{', '.join(labels[:3])} +{len(labels) - 3}"
-    words = [b.description.get("word") for b in missing]
-    still = all(isinstance(w, str) and not set("LR") & set(w) for w in words)
+    still = all(b.description.get("impacts") == 0 for b in missing)
     return f"not drawn: {listed} ({'no impacts' if still else f'no {y} there'})"
 
 
