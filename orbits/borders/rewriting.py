@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from orbits.cycles.margins import EVENT, FLIGHT, PER_NODE, WALL
+from orbits.cycles.margins import DURATION, EVENT, FLIGHT, PER_NODE, WALL
 from orbits.cycles.sampling import flight, slowest
 from orbits.cycles.solution import Solution
 from orbits.words import Word
@@ -101,7 +101,7 @@ def edits_at(orbit: Solution, index: int, unit: int | None = None) -> list[Edit]
         return _wall(orbit, place - 1 if letter == "u" else place)
     if letter == "s" and place + 1 < n:
         return _stick(orbit, place)
-    if letter in "LR" and column == EVENT:
+    if letter in "LR" and column in (EVENT, DURATION):  # the flight after an impact without speed takes no time
         soft = node.copy()
         soft[1] = orbit.events.w[place]
         found = [Edit(place, place + 1, ("t",), (after,), soft[None], "margin", "an impact becomes a turn")]
