@@ -1,5 +1,7 @@
 """The documentation builds as a site, without a warning; every page is on the way of a reader."""
 
+import importlib
+import importlib.util
 import re
 import subprocess
 import sys
@@ -12,7 +14,8 @@ DOCS = Path(__file__).parents[1] / "docs"
 
 def test_the_site_builds_without_a_warning(tmp_path):
     pytest.importorskip("sphinx")
-    pytest.importorskip("myst_parser")
+    pytest.importorskip("myst_nb")
+    pytest.importorskip("numpydoc")
     line = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", str(DOCS), str(tmp_path / "site")]
     done = subprocess.run(line, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
@@ -21,8 +24,52 @@ def test_the_site_builds_without_a_warning(tmp_path):
 
 def test_every_page_is_in_the_contents():
     contents = (DOCS / "index.md").read_text(encoding="utf-8")
+    listed = "\n".join(re.findall(r"```\{toctree\}(.*?)```", contents, re.DOTALL))
     pages = {path.stem for path in DOCS.glob("*.md")} - {"index"}
-    assert pages == set(re.findall(r"^(\w+)$", contents.split("```{toctree}")[1], re.MULTILINE))
+    assert pages == set(re.findall(r"^(\w+)$", listed, re.MULTILINE))
+
+
+def test_every_public_name_is_in_the_reference():
+    text = (DOCS / "python.md").read_text(encoding="utf-8")
+    rooms = {
+        "attractors",
+        "design",
+        "machines",
+        "multiple_scales",
+        "simulation",
+        "symbols",
+        "theory",
+        "words",
+    }
+    for package, part in (
+        ("contvines", text.split("## Machines")[0]),
+        ("orbits", text.split("## Machines")[1]),
+    ):
+        names = set(importlib.import_module(package).__all__) - rooms
+        assert names <= set(re.findall(r"\.\. auto(?:function|class):: (?:\w+\.)*(\w+)", part)), package
+
+
+def test_the_glossary_has_the_words_of_the_readme():
+    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([^|]+) \|", (DOCS / "glossary.md").read_text(encoding="utf-8"), re.MULTILINE)[2:]
+    known = {word.strip("* ").lower() for row in rows for word in re.split(", ", row)}
+    prose = re.sub(r"```.*?```", "", readme, flags=re.DOTALL)
+    said = re.findall(r"(?<![*`\w])\*{1,2}([a-z][a-z -]+)\*{1,2}(?![*\w])", prose)
+    kinds = [text for _, text in re.findall(r"`([A-Z]{2})` \| ([^|:]+?) (?=\|)", prose)]
+    assert len(said) > 4 and len(kinds) > 5
+    for word in [*said, *kinds]:
+        entry = re.sub(r"^other |s$", "", word.lower())
+        assert any(k in (entry, f"{entry} point") for k in known), word
+
+
+def test_the_sketches_are_those_that_the_code_draws(tmp_path):
+    spec = importlib.util.spec_from_file_location("pictures", DOCS / "pictures.py")
+    pictures = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(pictures)
+    drawn = pictures.draw_all(tmp_path)
+    assert sorted(p.name for p in drawn) == sorted(p.name for p in (DOCS / "concepts").iterdir())
+    page = (DOCS / "concepts.md").read_text(encoding="utf-8")
+    assert {p.name for p in drawn} == set(re.findall(r"\(concepts/(\w+\.png)\)", page))
 
 
 @pytest.mark.parametrize("page", sorted(path.name for path in DOCS.glob("*.md")))

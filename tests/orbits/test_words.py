@@ -100,3 +100,13 @@ def test_one_motion_has_one_spelling_and_all_are_read():
         assert Word.parse(family[0]).canonical() == Word.parse(family[-1]).canonical()
     # without a mirror image they are two motions
     assert Word.parse("LRLt").spelled(mirror=False) != Word.parse("LRtR").spelled(mirror=False)
+
+
+@pytest.mark.parametrize("text", ["s+s+s-", "s+s-", "s+s+s-s-s+", "ts+ts-s-"])
+def test_words_of_sticks_alone_and_their_mirror_images_have_one_canonical_form(text):
+    word = Word.parse(text)
+    for other in (word.mirror(), *(word.rotate(k) for k in range(len(word)))):
+        assert other.canonical() == word.canonical()
+    assert (word.canonical(mirror=False) == word.mirror().canonical(mirror=False)) == any(
+        word.rotate(k) == word.mirror() for k in range(len(word))
+    )

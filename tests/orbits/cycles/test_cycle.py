@@ -112,3 +112,17 @@ def test_descriptions_of_every_version_open(name):
 def test_equations_refuse_what_has_no_symmetry():
     with pytest.raises(ValueError, match="no symmetric orbits"):
         equations(ABSORBER, Word.parse("RLtL"), 1, "amplitude", ABSORBER.vector({"amplitude": 0.5}), True)
+
+
+@pytest.mark.parametrize("periods", [1, 2, 3])
+def test_reading_from_another_event_keeps_the_order_of_time(periods):
+    cycle = drawn(ABSORBER, "LRLRs", periods, 5)
+    n = len(cycle.word)
+    for places in range(-n, 2 * n + 1):
+        other = cycle.rotate(places)
+        assert np.allclose(other.durations, np.roll(cycle.durations, -places))
+        assert np.isclose(
+            other.nodes[0, 0], cycle.nodes[places % n, 0] + 2.0 * np.pi * periods * (places // n)
+        )
+    assert np.isclose(cycle.period, 2.0 * np.pi * periods / cycle.parameters["frequency"])
+    assert np.allclose(cycle.mirror().nodes[:, 0] - cycle.nodes[:, 0], np.pi)
