@@ -11,6 +11,7 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..forms.coefficients import Forms, strong_resonance
+from ..interrupts import listening
 from .averages import rotation_number
 from .circle import Circle, Circles
 from .invariance import Curve, Frame, first_harmonic, solve
@@ -66,6 +67,7 @@ class Birth(NamedTuple):
         return Curve(points, self.rotation, self.value(amplitude))
 
 
+@listening()
 def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) -> Circles:
     """The invariant circles beside a Neimark-Sacker point, until they break.
 

@@ -20,6 +20,7 @@ from ..continuation.starts import check_interval
 from ..continuation.status import Status
 from ..events.located import Located, Role
 from ..events.watch import Watch
+from ..interrupts import listening
 from ..journal import NullJournal
 from .kernels import BRANCH, MARGIN
 from .problem import LocusProblem
@@ -154,6 +155,7 @@ def _around(q: np.ndarray, value: float) -> tuple[float, float]:
     return low - 1e-9 * wide, high + 1e-9 * wide
 
 
+@listening()
 def locus(
     point: SpecialPoint,
     over: str,

@@ -9,6 +9,7 @@ import numpy as np
 
 from orbits.borders.distance import tends_to
 from orbits.borders.rewriting import Edit, applied, edits_at
+from orbits.compiling.interrupts import kept_back
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
@@ -33,7 +34,8 @@ GROWING = 1e-4  # least growth of a margin with the distance from the border
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution."""
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
-    assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
+    with kept_back():
+        assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
     return row[2 * problem.n_multipliers :]
 
 

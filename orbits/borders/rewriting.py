@@ -101,7 +101,8 @@ def edits_at(orbit: Solution, index: int, unit: int | None = None) -> list[Edit]
         return _wall(orbit, place - 1 if letter == "u" else place)
     if letter == "s" and place + 1 < n:
         return _stick(orbit, place)
-    if letter in "LR" and column in (EVENT, DURATION):  # the flight after an impact without speed takes no time
+    if letter in "LR" and column in (EVENT, DURATION):
+        # without speed, the flight to what follows takes no time either
         soft = node.copy()
         soft[1] = orbit.events.w[place]
         found = [Edit(place, place + 1, ("t",), (after,), soft[None], "margin", "an impact becomes a turn")]

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.compiling.interrupts import kept_back
 from orbits.cycles import measures as measuring
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
@@ -107,5 +108,6 @@ def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.nda
     count = 2 * system.n_multipliers
     row = np.empty(count + system.n_margins)
     value = system.value(system.params)
-    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.workspace(), row)
+    with kept_back():
+        residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.workspace(), row)
     return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]
