@@ -161,7 +161,7 @@ def _grown_in(
     for edits in zip(*choices):
         found = grown(wider, whole, p, list(edits), SIZES if rounds == 2 else SIZES[:2])
         if found is not None:
-            return found, edits[0].note
+            return found, edits[0].change.what.value
     return None
 
 

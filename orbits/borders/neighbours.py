@@ -8,13 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from orbits.borders.distance import tends_to
-from orbits.borders.rewriting import Edit, applied, edits_at
+from orbits.borders.rewriting import Edit, edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
+from orbits.contacts.changes import Change, Grows
+from orbits.contacts.letters import STICK
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
-from orbits.words import Word
+from orbits.words.alphabet import LEFT
 
 REAL = -1e-9  # smallest margin of a real orbit
 NEAR = 1e-7  # margins this small vanish together
@@ -82,17 +84,18 @@ def proposals(
     for first in edits_at(orbit, index, problem.length):
         chosen = [first]
         for j in together:
-            for change in edits_at(orbit, j, problem.length):
-                if change.note == first.note and not any(_overlap(change, other) for other in chosen):
-                    chosen.append(change)
+            for edit in edits_at(orbit, j, problem.length):
+                alike = edit.change.what is first.change.what
+                if alike and not any(_overlap(edit.change, other.change) for other in chosen):
+                    chosen.append(edit)
                     break
         for edits in [chosen, [first]] if len(chosen) > 1 else [chosen]:
             found = grown(problem, orbit, p, edits)
             if found is not None:
-                yield found.problem, found.u, found.p, found.tangent, first.note
+                yield found.problem, found.u, found.p, found.tangent, first.change.what.value
 
 
-def _overlap(a: Edit, b: Edit) -> bool:
+def _overlap(a: Change, b: Change) -> bool:
     return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
 
 
@@ -109,13 +112,12 @@ def grown(
     """
     if problem.symmetric:  # edit the half, and mirror it
         half = problem.length
-        if any(change.stop > half and change.start != half for change in edits):
+        if any(edit.change.stop > half and edit.change.start != half for edit in edits):
             return None
-        word, nodes, first = applied(orbit.word.head(half), orbit.nodes[:half], edits)
-        mirrored = word.mirror()
-        word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.frictionless)
+        word, nodes, first = rewritten(orbit.word.head(half), orbit.nodes[:half], edits)
+        word = word.with_image()
     else:
-        word, nodes, first = applied(orbit.word, orbit.nodes, edits)
+        word, nodes, first = rewritten(orbit.word, orbit.nodes, edits)
     if not len(word):
         return None
     try:
@@ -123,17 +125,18 @@ def grown(
     except ValueError:
         return None
     guess = np.ascontiguousarray(nodes, dtype=float).ravel()
-    if edits[0].grows == "margin":
+    change = edits[0].change
+    if change.grows is Grows.MARGIN:
         return _beside(other, guess, p, orbit)
     for sizes in ways:
-        found = _climb(other, guess, first, edits[0], p, sizes)
-        if found and _begins_at(orbit, other, first, edits[0], p, found):
+        found = _climb(other, guess, first, change, p, sizes)
+        if found and _begins_at(orbit, other, first, change, p, found):
             return Grown(other, *found[-1][:3])
     return None
 
 
 def _climb(
-    other: CycleProblem, guess: np.ndarray, first: int, change: Edit, p: float, sizes: tuple[float, ...]
+    other: CycleProblem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
 ) -> list[_Held]:
     """Solve with what grows beyond the border held at each of the sizes in turn, as long as that converges."""
     found: list[_Held] = []
@@ -148,21 +151,21 @@ def _climb(
 
 
 def _hold(
-    other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Edit, p: float, wanted: float
+    other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Change, p: float, wanted: float
 ) -> _Held | None:
     """Solve with what grows beyond the border at p held at a size."""
     n, size = other.model.node, other.dimension
     kernels, work = assemble(other.model), other.workspace()
     step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
     u = guess.copy()
-    if change.grows == "gap":
+    if change.grows is Grows.GAP:
         border[first * n], border[(first + 1) * n] = -1.0, 1.0
         if change.start == change.stop:  # the later event stays: friction gives way there
             u[first * n] = u[(first + 1) * n] - wanted
         else:
             u[(first + 1) * n] = u[first * n] + wanted
     else:
-        sign = 1.0 if change.events[0] == "L" else -1.0
+        sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
         cavity = float(other.orbit(u, q).events.v_rate[first])
         node = slice(first * n, (first + 1) * n)
         border[node] = -sign * other.model.cavity_speed_slopes(u[node], other.values(q))
@@ -171,7 +174,9 @@ def _hold(
         border[size] = -sign * change_with / NEAR
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
-        if change.events[1:] == ("s",):  # it comes to rest the sooner the slower it is
+        if (
+            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK
+        ):  # it comes to rest the sooner the slower it is
             u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
@@ -180,7 +185,7 @@ def _hold(
 
 
 def _begins_at(
-    border: Solution, other: CycleProblem, first: int, change: Edit, p: float, found: list[_Held]
+    border: Solution, other: CycleProblem, first: int, change: Change, p: float, found: list[_Held]
 ) -> bool:
     """Whether the solutions, from large to small, are real ones that tend to the border orbit.
 
@@ -206,7 +211,9 @@ def _begins_at(
     return tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p))
 
 
-def _outwards(other: CycleProblem, first: int, change: Edit, p: float, found: list[_Held]) -> Iterator[_Held]:
+def _outwards(
+    other: CycleProblem, first: int, change: Change, p: float, found: list[_Held]
+) -> Iterator[_Held]:
     """The solutions from small to large, and on to larger sizes."""
     yield from found[-2::-1]
     held: _Held | None = found[0]

@@ -1,15 +1,241 @@
-"""DryFriction: Coulomb's law, with the force at rest that the motion asks for."""
+"""Dry friction: Coulomb's law in words, and a friction on a machine's page."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+from orbits.contacts.changes import CLOSE, SHORT, Change, Grows, Site, Spot, What
+from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
 
 SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is zero
 
 
+class Beat(NamedTuple):
+    """An event that a friction notices: its own, or an impact that changes its velocity.
+
+    `sign` is that of the velocity after it, where the event says it; before an impact that says it the velocity has the other one.
+    """
+
+    kind: int
+    sign: int | None = None
+
+
+class CannotFollow(ValueError):
+    """Event `beat` of those that a friction notices cannot come while the friction does what `came` says."""
+
+    def __init__(self, beat: int, came: int | None) -> None:
+        super().__init__(beat, came)
+        self.beat, self.came = beat, came
+
+
+class FrictionLaw:
+    """What a dry friction means for words: turns, sticks and slips, the direction of sliding as mode, and how sticks come and go."""
+
+    name: str
+    letters: Sequence[str]
+
+    def __init__(self, name: str, letters: Sequence[str] = ("t", "s", "u")) -> None:
+        self.name, self.letters = name, tuple(letters)
+
+    def events(self, j: int) -> list[Letter]:
+        """The letters, for the contact with index j."""
+        return [Letter(text, j, kind) for text, kind in zip(self.letters, (TURN, STICK, SLIP))]
+
+    def mirrored(self, mode: int, turned: bool) -> int:
+        """The mode of the mirror image: all velocities change their signs."""
+        return -mode if mode in (SLIDE_BACK, SLIDE_ON) else mode
+
+    def watched(self, mode: int) -> str:
+        """The margin that watches it between events: the time or reserve of a stick, the velocity of a flight."""
+        return "hold" if mode == STUCK else "flight"
+
+    def together(self, here: int, there: int) -> str:
+        """The kind of border at which two consecutive events of this friction, of these kinds, fall together."""
+        return "velocity-graze" if here == there == TURN else "stick"
+
+    # ------------------------------------------------------------------ modes of a word
+    def directions(
+        self, beats: Sequence[Beat], noted: Mapping[int, int] | None = None, default: int = SLIDE_ON
+    ) -> list[int]:
+        """The mode after each event that this friction notices, in a cyclic word.
+
+        What no event fixes becomes, at a slip, a reversal of the motion that the stick before it ended; a word of turns alone
+        begins with `default`. Linear time.
+
+        Parameters
+        ----------
+        beats : sequence of Beat
+        noted : mapping, optional
+            Modes after some of the events that the word itself says.
+        default : int
+
+        Raises
+        ------
+        CannotFollow
+        """
+        n = len(beats)
+        after: list[int | None] = [STUCK if b.kind == STICK else b.sign for b in beats]
+        for i, mode in (noted or {}).items():
+            after[i] = mode if after[i] is None else after[i]
+        for i, b in enumerate(beats):
+            here, came = after[i], after[i - 1]
+            if b.kind == TURN and here is None and came is not None:
+                after[i] = -came
+            elif b.kind == SLIP and came is None:
+                after[i - 1] = STUCK
+            elif came is None and here is not None and (b.kind == TURN or (b.kind == HIT and b.sign)):
+                after[i - 1] = -here
+        _settle(beats, after)
+        if all(mode is None for mode in after):  # turns alone
+            after = [-default if i % 2 else default for i in range(n)]
+        for i, mode in enumerate(after):  # an impact that may leave either direction keeps the one there was
+            if mode is None:
+                after[i] = default if after[i - 1] is None else after[i - 1]
+                _spread(beats, after, [i])
+        self._refuse(beats, after)
+        return [int(mode) for mode in after]  # type: ignore[arg-type]
+
+    @staticmethod
+    def _refuse(beats: Sequence[Beat], after: Sequence[int | None]) -> None:
+        for i in [*range(1, len(beats)), 0][: len(beats)]:
+            b, came, mode = beats[i], after[i - 1], after[i]
+            sliding = came in (SLIDE_BACK, SLIDE_ON)
+            possible = {
+                TURN: sliding and mode == -(came or 0),
+                STICK: sliding,
+                SLIP: came == STUCK and mode in (SLIDE_BACK, SLIDE_ON),
+                HIT: b.sign is None or (mode == b.sign and came == -b.sign),
+            }
+            if not possible[b.kind]:
+                raise CannotFollow(i, came)
+
+    # ------------------------------------------------------------------ how the word changes
+    def met(self, site: Site, j: int) -> list[Change]:
+        """The velocity touches zero inside a flight, or the reserve of a stick does inside it."""
+        word, place = site.word, site.place
+        start = place + 1 if len(word) else 0
+        mode, text_of = word.mode(place), word.alphabet.text_of
+        if site.entry(place, j) == STUCK:
+            events = (text_of(j, SLIP), text_of(j, STICK))
+            modes = (word.alphabet.with_entry(mode, j, site.sign), mode)
+            what = What.SLIP_APPEARS
+        else:
+            following = (place + 1) % site.unit if len(word) else -1
+            if (
+                site.is_event(following, j, STICK)
+                and following + 1 < len(word)
+                and site.lengths[following] < SHORT
+            ):
+                return self._stick(site, following, j)  # it comes to rest where a stick is about to vanish
+            events = (text_of(j, STICK), text_of(j, SLIP))
+            modes = (word.alphabet.with_entry(mode, j, STUCK), mode)
+            what = What.STICK_APPEARS
+        return [Change(start, start, events, modes, (Spot(None, later=-1.0), Spot(None)), Grows.GAP, what)]
+
+    def weakened(self, site: Site, j: int) -> list[Change]:
+        """The strength of one of its events vanishes."""
+        letter, place = site.word.letter(site.place), site.place
+        if letter.kind == TURN:
+            return self._turn(site, place, j)
+        if letter.kind == STICK and place + 1 < len(site.word):
+            return self._stick(site, place, j)
+        vanishing = site.is_event(place - 1, j, STICK) and site.lengths[place - 1] < SHORT
+        return self._stick(site, place - 1, j) if letter.kind == SLIP and vanishing else []
+
+    def collapsed(self, site: Site, j: int) -> list[Change]:
+        """Two consecutive events of this friction fall together."""
+        place = site.place
+        here, there = site.word.letter(place).kind, site.word.letter(place + 1).kind
+        if here == STICK:
+            return self._stick(site, place, j)
+        if here == TURN and there == STICK:
+            return self._turn(site, place, j)
+        if {here, there} in ({TURN}, {SLIP, STICK}):
+            what = What.TURNS_VANISH if here == TURN else What.SLIP_VANISHES
+            return [Change(place, place + 2, (), (), (), Grows.MARGIN, what)]
+        return []
+
+    def _turn(self, site: Site, place: int, j: int) -> list[Change]:
+        """The force no longer beats friction at a turn."""
+        word, found = site.word, []
+        text_of = word.alphabet.text_of
+        if site.is_event(place + 1, j, STICK):
+            events, modes = (text_of(j, STICK),), (word.mode(place + 1),)
+            spots = (Spot(place + 1),)
+            found.append(Change(place, place + 2, events, modes, spots, Grows.MARGIN, What.TURN_DISAPPEARS))
+        events = (text_of(j, STICK), text_of(j, SLIP))
+        modes = (site.mode(place, j, STUCK), word.mode(place))
+        spots = (Spot(place), Spot(place, later=1.0))
+        found.append(Change(place, place + 1, events, modes, spots, Grows.GAP, What.TURN_BECOMES_STICK))
+        return found
+
+    def _stick(self, site: Site, place: int, j: int) -> list[Change]:
+        """A stick that vanishes, or that is about to be preceded by a turn."""
+        word, text_of = site.word, site.word.alphabet.text_of
+        stick, turn = word.events[place], text_of(j, TURN)
+        before, gap = site.entry(place - 1, j), site.lengths[place - 1]
+        if site.is_event(place - 1, j, TURN) and gap < SHORT:
+            held, spots = (word.mode(place),), (Spot(place),)
+            return [Change(place - 1, place + 1, (stick,), held, spots, Grows.MARGIN, What.TURN_DISAPPEARS)]
+        if site.is_event(place - 1, j, SLIP) and gap < CLOSE:
+            other = Change(place - 1, place + 1, (), (), (), Grows.MARGIN, What.SLIP_VANISHES)
+        else:
+            modes = (site.mode(place - 1, j, -before), word.mode(place))
+            spots = (Spot(place), Spot(place, later=1.0))
+            other = Change(place, place + 1, (turn, stick), modes, spots, Grows.GAP, What.TURN_APPEARS)
+        if not site.is_event(place + 1, j, SLIP) or site.lengths[place] >= SHORT:
+            return [other]  # the stick still lasts: what vanishes is the reserve of friction where it begins
+        if site.entry(place + 1, j) == before:
+            gone = Change(place, place + 2, (), (), (), Grows.MARGIN, What.STICK_DISAPPEARS)
+        else:
+            modes, spots = (word.mode(place + 1),), (Spot(place, between=True),)
+            gone = Change(place, place + 2, (turn,), modes, spots, Grows.MARGIN, What.STICK_BECOMES_TURN)
+        return [gone, other]
+
+
+def _spread(beats: Sequence[Beat], after: list[int | None], known: list[int]) -> list[int]:
+    """Let known modes go on over turns; returns slips that nothing fixes yet, behind a stick that ended a known motion."""
+    n, ready = len(beats), []
+    while known:
+        i = known.pop()
+        mode, following, before = after[i], (i + 1) % n, (i - 1) % n
+        assert mode is not None
+        for neighbour, joined in ((following, following), (before, i)):
+            if beats[joined].kind == TURN and after[neighbour] is None:
+                after[neighbour] = -mode
+                known.append(neighbour)
+        slip = (i + 2) % n
+        if mode and beats[following].kind == STICK and beats[slip].kind == SLIP and after[slip] is None:
+            ready.append(slip)
+    return ready
+
+
+def _settle(beats: Sequence[Beat], after: list[int | None]) -> None:
+    """Let known modes go on over turns, and give slips that nothing fixes a direction, the first one first."""
+    n = len(beats)
+    ready: list[int] = []
+
+    def spread(known: list[int]) -> None:
+        for slip in _spread(beats, after, known):
+            heappush(ready, slip)
+
+    spread([i for i in range(n) if after[i] is not None])
+    for i in range(n):
+        while ready:
+            slip = heappop(ready)
+            if after[slip] is None:
+                after[slip] = -after[(slip - 2) % n]  # type: ignore[operator]
+                spread([slip])
+        if beats[i].kind == SLIP and after[i] is None:
+            after[i] = SLIDE_ON
+            spread([i])
+
+
 @dataclass(frozen=True, eq=False)
-class DryFriction:
+class DryFriction(FrictionLaw):
     """Dry friction between two bodies, or a body and the ground.
 
     While they slide the force is ``-limit sign(velocity)``; while they stick it is the one that keeps the velocity at zero,

@@ -1,15 +1,105 @@
-"""Wall: a stop that bodies hit."""
+"""Walls: stops that bodies hit. Newton's impact law in words, and a wall on a machine's page."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from orbits.contacts.changes import Change, Grows, Site, Spot, What
+from orbits.contacts.letters import HIT, STICK, TURN, Letter
+
 FREE, HELD = 0, 1  # modes
 
 
+class WallLaw:
+    """What a wall means for words: one letter, two modes, and how an impact comes and goes."""
+
+    letter: str
+
+    def __init__(self, letter: str) -> None:
+        self.letter = letter
+
+    @property
+    def name(self) -> str:
+        """The wall's letter."""
+        return self.letter
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The one letter of its impacts."""
+        return (self.letter,)
+
+    def events(self, j: int) -> list[Letter]:
+        """The letters, for the contact with index j."""
+        return [Letter(self.letter, j, HIT)]
+
+    def mirrored(self, mode: int, turned: bool) -> int:
+        """The mode of the mirror image."""
+        return mode
+
+    def watched(self, mode: int) -> str:
+        """The margin that watches it between events: the distance, or the push of a wall that holds."""
+        return "push" if mode == HELD else "wall"
+
+    def together(self, here: int, there: int) -> str:
+        """The kind of border at which two consecutive events of this wall fall together."""
+        return "chatter"
+
+    # ------------------------------------------------------------------ how the word changes
+    def met(self, site: Site, j: int) -> list[Change]:
+        """The gap vanishes where no impact is: inside a flight, or at a turn or stick."""
+        if site.at >= 0:
+            return self._met_at_event(site, j)
+        word, start = site.word, site.place + 1 if len(site.word) else 0
+        text, mode = word.alphabet.text_of(j, HIT), word.alphabet.after_impact(word.mode(site.place), j)
+        return [Change(start, start, (text,), (mode,), (Spot(None),), Grows.SPEED, What.IMPACT_APPEARS)]
+
+    def _met_at_event(self, site: Site, j: int) -> list[Change]:
+        word, place = site.word, site.at
+        letter = word.letter(place)
+        sign = word.alphabet.flips.get((j, letter.contact))
+        if sign is None or letter.kind not in (TURN, STICK) or site.entry(place - 1, letter.contact) != -sign:
+            return []
+        text = word.alphabet.text_of(j, HIT)
+        after = site.mode(place - 1, letter.contact, sign)
+        if letter.kind == TURN:
+            spots = (Spot(place),)
+            return [Change(place, place + 1, (text,), (after,), spots, Grows.SPEED, What.TURN_HITS)]
+        events, modes = (text, letter.text), (after, word.mode(place))
+        spots = (Spot(place), Spot(place, later=1.0))
+        return [Change(place, place + 1, events, modes, spots, Grows.SPEED, What.STICK_HITS)]
+
+    def weakened(self, site: Site, j: int) -> list[Change]:
+        """The speed of an impact vanishes: it disappears, or, where it turned a friction's velocity, becomes a turn."""
+        word, place = site.word, site.place
+        turned = [
+            k
+            for (wall, k) in word.alphabet.flips
+            if wall == j and site.entry(place, k) != site.entry(place - 1, k)
+        ]
+        turned = [k for k in turned if not word.alphabet.absent(word.mode(place), k)]
+        if not turned:
+            return [Change(place, place + 1, (), (), (), Grows.MARGIN, What.IMPACT_VANISHES)]
+        if len(turned) > 1:
+            return []
+        k, found = turned[0], []
+        if site.is_event(place + 1, k, STICK):
+            stick, modes = word.events[place + 1], (word.mode(place + 1),)
+            spots = (Spot(place, clock=place + 1),)
+            found.append(Change(place, place + 2, (stick,), modes, spots, Grows.MARGIN, What.IMPACT_MERGES))
+        turn, modes = word.alphabet.text_of(k, TURN), (word.mode(place),)
+        found.append(
+            Change(place, place + 1, (turn,), modes, (Spot(place),), Grows.MARGIN, What.IMPACT_BECOMES_TURN)
+        )
+        return found
+
+    def collapsed(self, site: Site, j: int) -> list[Change]:
+        """Two consecutive impacts fall together: infinitely many do."""
+        return []
+
+
 @dataclass(frozen=True, eq=False)
-class Wall:
+class Wall(WallLaw):
     """A unilateral contact with Newton's impact law.
 
     The gap stays at or above zero. At an impact an impulse acts along `push`, as large as turns the gap's rate into
@@ -33,13 +123,3 @@ class Wall:
     gap: Callable
     push: Mapping[str, float | str | Callable]
     restitution: float | str = 1.0
-
-    @property
-    def name(self) -> str:
-        """The wall's letter."""
-        return self.letter
-
-    @property
-    def letters(self) -> tuple[str, ...]:
-        """The one letter of its impacts."""
-        return (self.letter,)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from functools import lru_cache
 
 import numpy as np
 
@@ -47,26 +46,13 @@ def canonical(
     images, where the machine has them) with the canonical word whose projection on a fixed direction is largest.
     """
     word, periods, nodes = root_orbit(word, periods, nodes)
-    target, readings = _readings(word, mirror)
+    target = word.canonical(mirror)
     flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
     direction = np.sin(np.arange(1, flat.size + 1) * np.sqrt(2.0)) + 0.1
     best, best_score = flat.ravel(), -np.inf
-    for sign, place in readings:
-        vector = sign * np.roll(flat, -place, axis=0).ravel()
+    for mirrored, place in word.readings(mirror):
+        vector = (-1.0 if mirrored else 1.0) * np.roll(flat, -place, axis=0).ravel()
         score = float(direction @ vector)
         if score > best_score + 1e-12:
             best, best_score = vector, score
     return (target.events, target.modes, periods), best
-
-
-@lru_cache(maxsize=256)
-def _readings(word: Word, mirror: bool) -> tuple[Word, list[tuple[float, int]]]:
-    """The canonical word, and by which signs (-1: mirror image) and rotations this word becomes it."""
-    target = word.canonical(mirror)
-    images = [(word, 1.0), (word.mirror(), -1.0)] if mirror else [(word, 1.0)]
-    return target, [
-        (sign, place)
-        for reading, sign in images
-        for place in range(len(word))
-        if reading.rotate(place) == target
-    ]

@@ -1,7 +1,7 @@
 """Margins of admissibility: what makes an orbit real, and which border a vanishing margin is.
 
 Four numbers watch each node and the segment after it; the compiled kernels compute them (`margins` of each model), this
-module gives them names.
+module gives them names, as the laws of the contacts have them.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from orbits.contacts.letters import BORDERS, STRENGTH
+from orbits.contacts.wall import FREE
 from orbits.words import Word
-from orbits.words.alphabet import is_impact
+from orbits.words.alphabet import FLOOR, LEFT
 
 PER_NODE = 4
 FLIGHT, EVENT, WALL, DURATION = range(PER_NODE)
@@ -43,34 +45,22 @@ def margin_name(word: Word, index: int) -> str:
     place, column = divmod(index, PER_NODE)
     if not len(word):
         return "stick"  # the reserve of friction
-    letter = word.events[place % len(word)]
-    if column == FLIGHT:
-        if word.modes[place % len(word)] == 0 and not word.frictionless:
-            return "hold"
-        return "wall" if word.frictionless else "flight"
+    contacts = word.alphabet.contacts
     if column == EVENT:
-        return "approach" if is_impact(letter) else {"t": "turn", "s": "stick", "u": "slip"}[letter]
-    return "wall" if column == WALL else "duration"
+        return STRENGTH[word.letter(place).kind]
+    if column == DURATION:
+        return "duration"
+    if column == WALL or word.frictionless:
+        return contacts[LEFT].watched(FREE)
+    return contacts[FLOOR].watched(word.mode(place))
 
 
 def border_kind(word: Word, index: int) -> str:
     """The kind of border that is met where margin `index` vanishes."""
-    place, _ = divmod(index, PER_NODE)
-    name = margin_name(word, index)
+    name, place = margin_name(word, index), index // PER_NODE
     if name == "duration":
-        here, following = word.events[place % len(word)], word.events[(place + 1) % len(word)]
-        if is_impact(here) and is_impact(following):
-            return "chatter"
-        return "stick" if "s" in (here, following) or "u" in (here, following) else "velocity-graze"
-    return {
-        "flight": "velocity-graze",
-        "wall": "wall-graze",
-        "approach": "wall-graze",
-        "turn": "stick",
-        "stick": "stick",
-        "slip": "stick",
-        "hold": "stick",
-    }[name]
+        return word.alphabet.together(word.letter(place), word.letter(place + 1))
+    return BORDERS[name]
 
 
 def named_margins(word: Word, values: np.ndarray) -> list[Margin]:

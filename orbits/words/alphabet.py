@@ -1,7 +1,11 @@
-"""The alphabet of a vibro-impact motion: events, and the modes between them.
+"""Alphabets: the letters of a set of contacts, their modes, and the mirror image of both.
 
-Between events the absorber slides towards the right wall (mode ``-``, w' < 0), slides towards the left wall (mode ``+``,
-w' > 0) or sticks to the cavity floor (mode ``0``).
+A mode says for every contact what it is doing between two events: a wall is free (0) or holds (1), a friction slides (-1, +1),
+sticks (0) or is absent (2), a switch has its sign. An event changes the mode of its own contact; an impact may also turn
+the sign of a friction.
+
+The shaken machines (`absorber`, `coupled`, `cavity`) have two walls and one friction, whose mode alone is written: the absorber slides
+towards the right wall (mode ``-``, w' < 0), towards the left wall (mode ``+``, w' > 0) or sticks to the cavity floor (mode ``0``).
 
 ======  =====================================================  ==================
 letter  event                                                  next mode
@@ -14,19 +18,139 @@ letter  event                                                  next mode
 ======  =====================================================  ==================
 """
 
-LETTERS = "LRtsu"
-CODES = {letter: code for code, letter in enumerate(LETTERS)}
-MIRRORED = {"L": "R", "R": "L", "t": "t", "s": "s", "u": "u"}
-NAMES = {
-    "L": "impact on the left wall",
-    "R": "impact on the right wall",
-    "t": "turn",
-    "s": "stick",
-    "u": "slip",
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from orbits.contacts.dry_friction import ABSENT, SLIDE_BACK, SLIDE_ON, FrictionLaw
+from orbits.contacts.letters import NAMES as KINDS
+from orbits.contacts.letters import SWITCH, Letter
+from orbits.contacts.wall import FREE, WallLaw
+
+
+@dataclass(frozen=True, eq=False)
+class Alphabet:
+    """The letters of a machine.
+
+    Attributes
+    ----------
+    contacts : tuple
+        Laws of contact: walls, frictions, switches.
+    mirror : dict of int to int, or None
+        Contact -> its mirror image.
+    turned : frozenset of int
+        Switches whose sign the mirror turns.
+    flips : dict of (wall, friction) to int or None
+        Sign of the friction's velocity after an impact (before it: the opposite); None: an impact may leave either.
+        A pair that is not listed: the impact does not touch the velocity.
+    alone : int, optional
+        The contact whose mode alone is written; the others have one mode only. Left out: one entry per contact.
+    without : frozenset of int
+        Frictions that are absent whatever the mode says (with `alone`).
+    """
+
+    contacts: tuple[Any, ...]
+    mirror: Mapping[int, int] | None = None
+    turned: frozenset[int] = frozenset()
+    flips: Mapping[tuple[int, int], int | None] = field(default_factory=dict)
+    alone: int | None = None
+    without: frozenset[int] = frozenset()
+
+    @cached_property
+    def letters(self) -> dict[str, Letter]:
+        """By their text."""
+        return {
+            letter.text: letter for j, contact in enumerate(self.contacts) for letter in contact.events(j)
+        }
+
+    def text_of(self, contact: int, kind: int, sign: int = 0) -> str:
+        """The letter's text."""
+        for letter in self.contacts[contact].events(contact):
+            if letter.kind == kind and (kind != SWITCH or letter.sign == sign):
+                return letter.text
+        raise KeyError(f"{KINDS[kind]} is no event of {self.contacts[contact]!r}")
+
+    # ------------------------------------------------------------------ modes
+    def entry(self, mode: Any, contact: int) -> int:
+        """What a contact does in a mode."""
+        if self.alone is None:
+            return mode[contact]
+        return mode if contact == self.alone else FREE
+
+    def with_entry(self, mode: Any, contact: int, value: int) -> Any:
+        """The mode with another entry for one contact."""
+        if self.alone is not None:
+            return value if contact == self.alone else mode
+        changed = list(mode)
+        changed[contact] = value
+        return tuple(changed)
+
+    def absent(self, mode: Any, contact: int) -> bool:
+        """Whether a friction's limit is zero in a mode."""
+        return contact in self.without or self.entry(mode, contact) == ABSENT
+
+    def after_impact(self, mode: Any, wall: int) -> Any:
+        """The mode after an impact in a flight with this mode, where it turns nothing that has events of its own."""
+        for (other, contact), sign in self.flips.items():
+            if other == wall and contact in self.without and sign is not None:
+                mode = self.with_entry(mode, contact, sign)
+        return mode
+
+    # ------------------------------------------------------------------ mirror
+    @cached_property
+    def images(self) -> dict[str, str]:
+        """Letter -> its mirror image."""
+        assert self.mirror is not None
+        return {
+            text: self.text_of(
+                self.mirror[letter.contact],
+                letter.kind,
+                -letter.sign if letter.contact in self.turned else letter.sign,
+            )
+            for text, letter in self.letters.items()
+        }
+
+    def mirrored_mode(self, mode: Any) -> Any:
+        """The mirror image of a mode."""
+        assert self.mirror is not None
+        if self.alone is not None:
+            return self.contacts[self.alone].mirrored(mode, self.alone in self.turned)
+        image = [0] * len(mode)
+        for j, value in enumerate(mode):
+            image[self.mirror[j]] = self.contacts[j].mirrored(value, j in self.turned)
+        return tuple(image)
+
+    # ------------------------------------------------------------------ pairs of events
+    def touches(self, letter: Letter, contact: int) -> bool:
+        """Whether an event is one of a contact's, or an impact that changes its velocity."""
+        return letter.contact == contact or (letter.contact, contact) in self.flips
+
+    def together(self, here: Letter, there: Letter) -> str:
+        """The kind of border at which two consecutive events fall together."""
+        if here.contact == there.contact:
+            return self.contacts[here.contact].together(here.kind, there.kind)
+        if self.touches(here, there.contact):
+            return self.contacts[there.contact].together(there.kind, there.kind)
+        if self.touches(there, here.contact):
+            return self.contacts[here.contact].together(here.kind, here.kind)
+        return "corner"
+
+
+LEFT, RIGHT, FLOOR = range(3)
+_SHAKEN: dict[str, Any] = {
+    "contacts": (WallLaw("L"), WallLaw("R"), FrictionLaw("floor")),
+    "mirror": {LEFT: RIGHT, RIGHT: LEFT, FLOOR: FLOOR},
+    "flips": {(LEFT, FLOOR): SLIDE_BACK, (RIGHT, FLOOR): SLIDE_ON},
+    "alone": FLOOR,
 }
-IMPACTS = frozenset("LR")
+SHAKEN = Alphabet(**_SHAKEN)
+"""Of the machines with an absorber in a shaken cavity."""
+FRICTIONLESS = Alphabet(**_SHAKEN, without=frozenset((FLOOR,)))
+"""The same without friction: flights may reverse freely, and only impacts are events."""
 
-
-def is_impact(letter: str) -> bool:
-    """Whether the event is an impact on a wall."""
-    return letter in IMPACTS
+LETTERS = "".join(SHAKEN.letters)
+CODES = {letter: code for code, letter in enumerate(LETTERS)}
+"""Numbers of the letters in compiled kernels and in rows of events."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.contacts.letters import HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.orbit import DeclaredOrbit
@@ -15,7 +16,7 @@ from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.simulation import Trajectory, collect, first_state
 from orbits.machines.declared.solving import SOLVED, newton
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
-from orbits.machines.declared.words import HOLD, RELEASE, SLIP, Word
+from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
@@ -47,7 +48,7 @@ class DeclaredAttractor:
     trajectory: Trajectory = field(repr=False)
 
     @property
-    def word(self) -> Word | None:
+    def word(self) -> PageWord | None:
         """The periodic orbit's word."""
         return None if self.orbit is None else self.orbit.word
 
@@ -205,7 +206,7 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
 def solved(run: Trajectory, length: int, periods: int) -> DeclaredOrbit | None:
     """The last `length` events of a run as an orbit, if its equations have a solution next to them."""
     machine = run.machine
-    word = Word(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
+    word = PageWord(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
     clocks = run.clocks[-length:]
     if machine.forced:
         first = clocks - TWO_PI * np.floor(clocks[0] / TWO_PI)
@@ -251,7 +252,7 @@ def _eventless(run: Trajectory) -> DeclaredOrbit | None:
     held = any(isinstance(c, Wall) and m == HELD for c, m in zip(machine.contacts, mode))
     if not machine.forced or held:
         return None
-    word = Word((), (mode,), machine.alphabet)
+    word = PageWord((), (mode,), machine.alphabet)
     first = TWO_PI * np.ceil(run.clocks[0] / TWO_PI)
     state = run.sample(np.array([first]))[0]
     return polished(DeclaredOrbit(machine, word, 1, np.array([[0.0, *state]]), run.params), far=np.inf)

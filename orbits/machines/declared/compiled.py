@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.machines.declared import engine
 from orbits.machines.declared.equations import Equations, PatternKey
-from orbits.machines.declared.words import HIT, SLIP, STICK, SWITCH, TURN, Letter
 
 
 class Compiled:

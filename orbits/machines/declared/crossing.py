@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from orbits.contacts.changes import Change, Grows, What
+from orbits.contacts.letters import SLIP, STICK
 from orbits.machines.declared.deviation import deviation
 from orbits.machines.declared.edits import Edit, edits_at
 from orbits.machines.declared.margins import per_node
@@ -18,8 +20,8 @@ from orbits.machines.declared.orbit import REAL, DeclaredOrbit
 from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.sampling import lengths
 from orbits.machines.declared.solving import SOLVED, examined, newton
-from orbits.machines.declared.words import SLIP, STICK, Word
 from orbits.protocol import Seed
+from orbits.words.rewriting import applied, spliced
 
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))  # of what grows beyond the border
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
@@ -90,10 +92,10 @@ def proposals(
     for edit in edits_at(orbit, index):
         found = grown(problem, orbit, p, [edit])
         if found is not None:
-            yield (*_read_alike(first, problem, edit, found), edit.note)
+            yield (*_read_alike(first, problem, edit.change, found), edit.change.what.value)
 
 
-def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Edit, found: Found) -> Found:
+def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Change, found: Found) -> Found:
     """The orbit found, read from the event from which the border orbit was read before it was turned; never from a slip."""
     ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
     grown_by = len(edit.events) - (edit.stop - edit.start)
@@ -125,38 +127,26 @@ def _unslipped(found: Found) -> Found:
     return _rotated(found, len(word) - 1) if slips else found
 
 
-def applied(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
-    """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand."""
-    events, rows = list(word.events), list(nodes)
-    modes = list(word.modes) if events else []
-    if not events:
-        rows = []
-    for change in sorted(edits, key=lambda e: e.start, reverse=True):
-        events[change.start : change.stop] = change.events
-        modes[change.start : change.stop] = change.modes
-        rows[change.start : change.stop] = list(change.nodes)
-    if not events:  # nothing is left: the motion is looked at when the phase is zero
-        return Word((), (word.modes[min(e.start for e in edits) - 1],), word.alphabet), nodes[:1], 0
-    return Word(tuple(events), tuple(modes), word.alphabet), np.array(rows), min(e.start for e in edits)
-
-
 def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[Edit]) -> Found | None:
     """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
     length = problem.length
     forced = problem.forced
     empty = not len(problem.word)
+    changes, placed = [edit.change for edit in edits], [edit.nodes for edit in edits]
     halved = (
-        problem.symmetric if not empty else bool(edits[0].events) and problem.word.mirror_symmetric_halves
+        problem.symmetric
+        if not empty
+        else bool(edits[0].change.events) and problem.word.mirror_symmetric_halves
     )
     if halved:  # the same happens half a period later to the mirror image
-        if not empty and any(change.stop > length for change in edits):
+        if not empty and any(change.stop > length for change in changes):
             return None
-        head = orbit.word if empty else orbit.word.head(length)
-        word, nodes, first = applied(head, orbit.nodes[:length], edits)
-        mirrored = word.mirror()
-        word = Word(word.events + mirrored.events, word.modes + mirrored.modes, word.alphabet)
+        word, first = applied(orbit.word if empty else orbit.word.head(length), changes)
+        nodes = spliced(orbit.nodes[:length], changes, placed, empty)
+        word = word.with_image()
     else:
-        word, nodes, first = applied(orbit.word, orbit.nodes, edits)
+        word, first = applied(orbit.word, changes)
+        nodes = spliced(orbit.nodes, changes, placed, empty)
     if not forced:
         nodes = _durations(orbit, nodes, edits[0])
     try:
@@ -166,10 +156,10 @@ def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[
     if not len(word):
         nodes = _strobed(orbit)
     guess = np.ascontiguousarray(nodes, dtype=float).ravel()
-    if edits[0].grows == "margin":
+    if changes[0].grows is Grows.MARGIN:
         return _beside(other, guess, p)
     for sizes in SIZES:
-        found = _climb(other, guess, first, edits[0], p, sizes)
+        found = _climb(other, guess, first, changes[0], p, sizes)
         if found is not None and _margins(found[0], found[1], found[2]).min() >= REAL:
             return found
     return None
@@ -182,20 +172,20 @@ def _margins(problem: DeclaredProblem, u: np.ndarray, p: float) -> np.ndarray:
 def _durations(orbit: DeclaredOrbit, nodes: np.ndarray, edit: Edit) -> np.ndarray:
     """Durations after an edit of a self-excited orbit, whose inserted nodes carry clocks from the flight's start."""
     nodes = nodes.copy()
-    m = len(edit.events)
-    if edit.start == edit.stop and m:  # inserted into the flight before `start`
-        whole = float(orbit.nodes[edit.start - 1, 0])
+    change, m = edit.change, len(edit.change.events)
+    if change.start == change.stop and m:  # inserted into the flight before `start`
+        whole = float(orbit.nodes[change.start - 1, 0])
         inside = edit.nodes[:, 0]
-        nodes[edit.start - 1, 0] = inside[0]
+        nodes[change.start - 1, 0] = inside[0]
         for k in range(m):
             until = inside[k + 1] if k + 1 < m else whole
-            nodes[edit.start + k, 0] = until - inside[k]
+            nodes[change.start + k, 0] = until - inside[k]
     elif not m:  # removed: the flight before takes over
-        gone = float(orbit.nodes[edit.start : edit.stop, 0].sum())
-        nodes[(edit.start - 1) % len(nodes), 0] += gone
-    elif m == 2 and edit.stop - edit.start == 1:
-        nodes[edit.start, 0] = 2e-3
-        nodes[edit.start + 1, 0] = max(float(orbit.nodes[edit.start, 0]) - 2e-3, 1e-6)
+        gone = float(orbit.nodes[change.start : change.stop, 0].sum())
+        nodes[(change.start - 1) % len(nodes), 0] += gone
+    elif m == 2 and change.stop - change.start == 1:
+        nodes[change.start, 0] = 2e-3
+        nodes[change.start + 1, 0] = max(float(orbit.nodes[change.start, 0]) - 2e-3, 1e-6)
     return nodes
 
 
@@ -210,7 +200,7 @@ def _strobed(orbit: DeclaredOrbit) -> np.ndarray:
 
 
 def _climb(
-    other: DeclaredProblem, guess: np.ndarray, first: int, edit: Edit, p: float, sizes: tuple[float, ...]
+    other: DeclaredProblem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
 ) -> Found | None:
     """Solve with what grows beyond the border held at each of the sizes in turn; the last that converges."""
     d, size = other.size + 1, other.dimension
@@ -218,14 +208,14 @@ def _climb(
     u, q = guess.copy(), p
     for wanted in sizes:
         border = np.zeros(size + 1)
-        if edit.grows == "gap":
+        if change.grows is Grows.GAP:
             if other.forced:
                 border[first * d], border[((first + 1) * d) % size] = -1.0, 1.0
                 middle = 0.5 * (u[first * d] + u[(first + 1) * d])
                 early = middle - 0.5 * wanted
-                if edit.start != edit.stop:
+                if change.start != change.stop:
                     early = u[first * d]
-                elif "stick appears" in edit.note:
+                elif change.what is What.STICK_APPEARS:
                     early = u[(first + 1) * d] - wanted
                 u[first * d], u[(first + 1) * d] = early, early + wanted
             else:
@@ -308,15 +298,15 @@ def _escapes(problem: DeclaredProblem, u: np.ndarray, p: float, index: int) -> I
         orbit = orbit.repeat(2)
         wider = problem.sibling(orbit.word, orbit.periods, False)
         what = "the period doubles at the border"
-    for change in edits_at(orbit, index):
-        found = grown(wider, orbit, p, [change])
+    for edit in edits_at(orbit, index):
+        found = grown(wider, orbit, p, [edit])
         if found is None:
             continue
         other, v, q, tangent = found
         there = other.orbit(v, q)
         if there.symmetric or len(there.root().word) != len(other.word) or not _followed(there):
             continue
-        note = f"{change.note}: {what}, the word becomes {other.word.text}"
+        note = f"{edit.change.what.value}: {what}, the word becomes {other.word.text}"
         yield Seed(other, v, q, tangent, "border", note, False)  # type: ignore[arg-type]
         return
 

@@ -15,10 +15,10 @@ from functools import cached_property
 from typing import Any
 
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import HELD, Wall
 from orbits.machines.declared import engine
-from orbits.machines.declared.words import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.symbols import Symbol
 
 CLOCK = "phase"

@@ -6,12 +6,12 @@ from collections.abc import Hashable
 
 import numpy as np
 
-from orbits.machines.declared.words import Word
+from orbits.words.of_pages import PageWord
 
 SAME = 1e-7  # nodes closer than this, relative to 1 + their size, are one node
 
 
-def root(word: Word, periods: int, nodes: np.ndarray, forced: bool) -> tuple[Word, int, np.ndarray]:
+def root(word: PageWord, periods: int, nodes: np.ndarray, forced: bool) -> tuple[PageWord, int, np.ndarray]:
     """The shortest orbit of which this one is a repetition: its word, periods and nodes."""
     if not len(word):
         return word, periods, nodes
@@ -28,7 +28,7 @@ def root(word: Word, periods: int, nodes: np.ndarray, forced: bool) -> tuple[Wor
     return word, periods, nodes
 
 
-def is_symmetric(word: Word, periods: int, nodes: np.ndarray, forced: bool) -> bool:
+def is_symmetric(word: PageWord, periods: int, nodes: np.ndarray, forced: bool) -> bool:
     """Whether the orbit equals its mirror image after half its period."""
     if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)) or not len(word):
         return False
@@ -38,7 +38,7 @@ def is_symmetric(word: Word, periods: int, nodes: np.ndarray, forced: bool) -> b
     return bool(np.max(np.abs(image - nodes[half:])) < SAME * (1.0 + np.abs(nodes[:, 1:]).max()))
 
 
-def canonical(word: Word, periods: int, nodes: np.ndarray, forced: bool) -> tuple[Hashable, np.ndarray]:
+def canonical(word: PageWord, periods: int, nodes: np.ndarray, forced: bool) -> tuple[Hashable, np.ndarray]:
     """Key and vector of the orbit's canonical form.
 
     The vector lists cos and sin of the phase (or the duration) and the states of each node, in that one of the readings with the
@@ -55,7 +55,7 @@ def canonical(word: Word, periods: int, nodes: np.ndarray, forced: bool) -> tupl
         turned = np.r_[1.0, np.full(nodes.shape[1] - 1, -1.0)]
     direction = np.sin(np.arange(1, flat.size + 1) * np.sqrt(2.0)) + 0.1
     best, best_score = flat.ravel(), -np.inf
-    for mirrored, place in word.readings:
+    for mirrored, place in word.readings():
         vector = (np.roll(flat, -place, axis=0) * (turned if mirrored else 1.0)).ravel()
         score = float(direction @ vector)
         if score > best_score + 1e-12:

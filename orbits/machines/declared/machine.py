@@ -15,8 +15,9 @@ from orbits.machines.declared import checks
 from orbits.machines.declared.compiled import Compiled
 from orbits.machines.declared.equations import Equations, PageError
 from orbits.machines.declared.page import Page, page_of
-from orbits.machines.declared.words import Alphabet, Word, parse
 from orbits.machines.parameters import ParameterError
+from orbits.words.alphabet import Alphabet
+from orbits.words.of_pages import PageWord, parse
 
 
 class Machine:
@@ -155,10 +156,10 @@ class Machine:
 
     # ------------------------------------------------------------------ motions
     def word(
-        self, text: str | Word, params: np.ndarray | None = None, default: Sequence[int] | None = None
-    ) -> Word:
+        self, text: str | PageWord, params: np.ndarray | None = None, default: Sequence[int] | None = None
+    ) -> PageWord:
         """Read a word of this machine."""
-        if isinstance(text, Word):
+        if isinstance(text, PageWord):
             return text
         vector = self.vector() if params is None else params
         return parse(text, self.alphabet, self.absent(vector), default)
@@ -212,7 +213,7 @@ class Machine:
 
     def orbit(
         self,
-        word: str | Word,
+        word: str | PageWord,
         periods: int = 1,
         guess: Any = None,
         **parameters: float,

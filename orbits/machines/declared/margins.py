@@ -11,10 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from orbits.contacts.dry_friction import STUCK, DryFriction
-from orbits.contacts.wall import HELD, Wall
+from orbits.contacts.letters import BORDERS, HIT, SLIP, STICK, STRENGTH, STROBE, SWITCH, TURN, Letter
 from orbits.machines.declared.flights import Work
-from orbits.machines.declared.words import HIT, SLIP, STICK, STROBE, SWITCH, TURN, Letter, Word
+from orbits.words.of_pages import PageWord
 
 DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes
 OWN = (
@@ -103,56 +102,23 @@ def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -
         table[following, column] = min(table[following, column], -rate_end)
 
 
-def margin_name(word: Word, index: int) -> str:
+def margin_name(word: PageWord, index: int) -> str:
     """What margin `index` watches."""
     contacts = word.alphabet.contacts
     place, column = divmod(index, per_node(len(contacts)))
     if column == len(contacts) + 1:
         return "duration"
     if column == len(contacts):
-        if not word.events:
-            return "strobe"
-        return {
-            HIT: "approach",
-            TURN: "turn",
-            STICK: "stick",
-            SLIP: "slip",
-            SWITCH: "switch",
-            STROBE: "strobe",
-        }[word.letter(place).kind]
-    mode = word.modes[place % len(word.modes)][column]
-    contact = contacts[column]
-    if isinstance(contact, Wall):
-        return "push" if mode == HELD else "wall"
-    if isinstance(contact, DryFriction):
-        return "hold" if mode == STUCK else "flight"
-    return "switch"
+        return STRENGTH[word.letter(place).kind if len(word) else STROBE]
+    return contacts[column].watched(word.mode(place)[column])
 
 
-def border_kind(word: Word, index: int) -> str:
+def border_kind(word: PageWord, index: int) -> str:
     """The kind of border that is met where margin `index` vanishes."""
     name = margin_name(word, index)
     if name != "duration":
-        return {
-            "wall": "wall-graze",
-            "approach": "wall-graze",
-            "push": "wall-graze",
-            "flight": "velocity-graze",
-            "turn": "stick",
-            "stick": "stick",
-            "slip": "stick",
-            "hold": "stick",
-            "switch": "switch-graze",
-            "strobe": "corner",
-        }[name]
-    if not word.events:
+        return BORDERS[name]
+    if not len(word):
         return "corner"
-    here = word.letter(index // per_node(len(word.alphabet.contacts)))
-    following = word.letter(index // per_node(len(word.alphabet.contacts)) + 1)
-    if here.contact != following.contact:
-        return "corner"
-    if here.kind == HIT:
-        return "chatter"
-    if here.kind == SWITCH:
-        return "switch-graze"
-    return "velocity-graze" if {here.kind, following.kind} == {TURN} else "stick"
+    place = index // per_node(len(word.alphabet.contacts))
+    return word.alphabet.together(word.letter(place), word.letter(place + 1))

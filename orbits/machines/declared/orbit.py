@@ -15,7 +15,7 @@ from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import margin_name, per_node
 from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.solving import examined
-from orbits.machines.declared.words import Word
+from orbits.words.of_pages import PageWord
 
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
 
@@ -27,7 +27,7 @@ class DeclaredOrbit:
     Attributes
     ----------
     machine : Machine
-    word : Word
+    word : PageWord
         Its events over the whole period.
     periods : int
         Forcing periods; 1 for a self-excited machine.
@@ -37,7 +37,7 @@ class DeclaredOrbit:
     """
 
     machine: Machine
-    word: Word
+    word: PageWord
     periods: int
     nodes: np.ndarray = field(repr=False)
     params: np.ndarray = field(repr=False)
@@ -135,7 +135,7 @@ class DeclaredOrbit:
         return {name: float(value[0]) for name, value in values.items()}
 
     # ------------------------------------------------------------------ other descriptions of it
-    def _with(self, word: Word, periods: int, nodes: np.ndarray) -> DeclaredOrbit:
+    def _with(self, word: PageWord, periods: int, nodes: np.ndarray) -> DeclaredOrbit:
         return DeclaredOrbit(self.machine, word, periods, nodes, self.params)
 
     def root(self) -> DeclaredOrbit:

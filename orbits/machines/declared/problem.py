@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.machines.declared import flights
 from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical, is_symmetric
@@ -19,8 +20,8 @@ from orbits.machines.declared.identity import root as shortest
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import border_kind, fill_margins, per_node
 from orbits.machines.declared.section import Section
-from orbits.machines.declared.words import HIT, STICK, STROBE, Letter, Word
 from orbits.protocol import Embedding, Symmetry
+from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
@@ -47,7 +48,7 @@ def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, 
 KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
 
 
-def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
+def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
     """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
@@ -68,7 +69,7 @@ class DeclaredProblem:
     Parameters
     ----------
     machine : Machine
-    word : Word
+    word : PageWord
         Of the whole cycle.
     periods : int
         Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
@@ -89,7 +90,7 @@ class DeclaredProblem:
     def __init__(
         self,
         machine: Machine,
-        word: Word,
+        word: PageWord,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -351,7 +352,7 @@ class DeclaredProblem:
         return image.ravel()
 
     def sibling(
-        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+        self, word: PageWord, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> DeclaredProblem:
         """The problem of another word of the same machine against the same parameter."""
         given = self.params if params is None else params

@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
-from orbits.machines.declared.words import Word
+from orbits.words.of_pages import PageWord
 
 LONGEST = 1e3  # clock without the event of the section after which a motion does not come back
 
@@ -21,13 +21,13 @@ class Section:
     ----------
     machine : Machine
     params : ndarray, shape (P,)
-    word : Word
+    word : PageWord
         Of the cycle.
     periods : int
         Forcing periods of the cycle.
     """
 
-    def __init__(self, machine: Machine, params: np.ndarray, word: Word, periods: int) -> None:
+    def __init__(self, machine: Machine, params: np.ndarray, word: PageWord, periods: int) -> None:
         self.machine, self.params, self.periods = machine, params, periods
         self.modes = word.modes[0]
         letter = word.letter(0) if len(word) else None

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
-from orbits.machines.declared.words import HIT, HOLD, RELEASE
 
 MOST_EVENTS = 1_000_000
 REACHED, FULL = 0, 1

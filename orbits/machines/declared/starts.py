@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from orbits.contacts.letters import HIT
 from orbits.machines.declared.attractor import find_attractor, random_start
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.orbit import DeclaredOrbit
 from orbits.machines.declared.solving import SOLVED, newton
 from orbits.machines.declared.stepper import TWO_PI, SimulationError
-from orbits.machines.declared.words import HIT, Word
 from orbits.starts.find import StartError
+from orbits.words.of_pages import PageWord
 
 TRIALS = 12  # simulated starts
 SHOTS = 300  # Newton's method from random nodes
@@ -22,7 +23,7 @@ LONG = 24  # events; longer words are not guessed at random
 
 def find(
     machine: Machine,
-    word: str | Word,
+    word: str | PageWord,
     periods: int = 1,
     guess: Any = None,
     parameters: Mapping[str, float] | None = None,
@@ -32,7 +33,7 @@ def find(
     Parameters
     ----------
     machine : Machine
-    word : str or Word
+    word : str or PageWord
     periods : int
         Forcing periods; leave it at 1 for a self-excited machine.
     guess : array_like (L, n + 1), optional
@@ -69,7 +70,7 @@ def find(
 
 
 def _from_guess(
-    machine: Machine, word: Word, periods: int, guess: Any, params: np.ndarray
+    machine: Machine, word: PageWord, periods: int, guess: Any, params: np.ndarray
 ) -> DeclaredOrbit | None:
     nodes = np.asarray(guess, dtype=float)
     shape = (max(1, len(word)), machine.size + 1)
@@ -87,7 +88,7 @@ def _from_guess(
     return DeclaredOrbit(machine, word, periods, problem.expand(u), params)
 
 
-def _aligned(orbit: DeclaredOrbit, word: Word) -> DeclaredOrbit | None:
+def _aligned(orbit: DeclaredOrbit, word: PageWord) -> DeclaredOrbit | None:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
     images = [orbit] + ([orbit.mirror()] if word.alphabet.mirror is not None else [])
     for image in images:
@@ -98,7 +99,7 @@ def _aligned(orbit: DeclaredOrbit, word: Word) -> DeclaredOrbit | None:
 
 
 def _simulated(
-    machine: Machine, word: Word, periods: int, params: np.ndarray
+    machine: Machine, word: PageWord, periods: int, params: np.ndarray
 ) -> tuple[DeclaredOrbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     generator = np.random.default_rng(20)
@@ -123,7 +124,7 @@ def _simulated(
     return None, nearest
 
 
-def _shot(machine: Machine, word: Word, periods: int, params: np.ndarray) -> DeclaredOrbit | None:
+def _shot(machine: Machine, word: PageWord, periods: int, params: np.ndarray) -> DeclaredOrbit | None:
     """Newton's method from simulated stretches and random nodes: the first real orbit, else the first proper one."""
     if len(word) > LONG:
         return None
@@ -162,7 +163,7 @@ def polished_anywhere(orbit: DeclaredOrbit) -> DeclaredOrbit | None:
     return DeclaredOrbit(orbit.machine, orbit.word, orbit.periods, problem.expand(u), orbit.params)
 
 
-def _onto_surfaces(machine: Machine, word: Word, params: np.ndarray, nodes: np.ndarray) -> None:
+def _onto_surfaces(machine: Machine, word: PageWord, params: np.ndarray, nodes: np.ndarray) -> None:
     """Random nodes moved so that impacts leave their wall."""
     for i in range(len(word)):
         letter = word.letter(i)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 from orbits.contacts.wall import FREE, HELD, Wall
 from orbits.machines.declared.machine import Machine
-from orbits.machines.declared.words import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 
 TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff

@@ -11,7 +11,7 @@ import numpy as np
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.page import digest_of, load_page
 from orbits.machines.declared.problem import DeclaredProblem
-from orbits.machines.declared.words import Word
+from orbits.words.of_pages import PageWord
 
 
 def page_changed(settings: dict[str, Any]) -> str:
@@ -59,7 +59,7 @@ def rebuild(description: dict[str, Any], trust: bool = False) -> DeclaredProblem
         if problem:
             raise ValueError(problem)
         machine = load_page(settings["page"], settings["object"])
-    word = Word(tuple(description["events"]), tuple(map(tuple, description["modes"])), machine.alphabet)
+    word = PageWord(tuple(description["events"]), tuple(map(tuple, description["modes"])), machine.alphabet)
     return DeclaredProblem(
         machine,
         word,

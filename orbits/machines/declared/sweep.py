@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from orbits.contacts.letters import HIT
 from orbits.contacts.wall import Wall
 from orbits.machines.declared.attractor import DeclaredAttractor, attracted
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.stepper import TWO_PI, Stepper
-from orbits.machines.declared.words import HIT
 
 SAMPLES = 2000  # of a motion without a period, for its extremes
 NUDGE = 1e-7  # states are changed by this at each value, as noise would: an unstable motion is then left

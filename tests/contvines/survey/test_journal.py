@@ -10,8 +10,8 @@ from contvines.survey.work import Row
 HEADER = {"survey": 1, "of": "circles"}
 
 
-def row(index):
-    return Row(**{name: {"index": index}.get(name) for name in Row.__dataclass_fields__})
+def row(index, note=""):
+    return Row(index, {"peak": 0.5 * index}, note)
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def kept(tmp_path):
     path = tmp_path / "rows"
     with Rows(path, HEADER) as rows:
         for index in range(3):
-            rows.keep(row(index))
+            rows.keep(row(index, "a long sentence" * index))
     return path
 
 

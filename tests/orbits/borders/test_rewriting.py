@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Cavity
-from orbits.borders.rewriting import FIRST, applied, edits_at
+from orbits.borders.rewriting import FIRST, edits_at
+from orbits.borders.rewriting import rewritten as applied
+from orbits.contacts.changes import Grows
 from orbits.orbit import Orbit
 from orbits.words import Word
 
@@ -23,7 +25,7 @@ def orbit(text, nodes, machine=MACHINE, periods=1):
 def rewritten(border, place, column, which=0):
     edit = edits_at(border, 4 * place + column)[which]
     word, nodes, first = applied(border.word, border.nodes, [edit])
-    assert len(nodes) == len(word) and first == edit.start
+    assert len(nodes) == len(word) and first == edit.change.start
     if len(word):
         assert (
             Word.parse(word.text, word.frictionless).modes == word.modes
@@ -42,7 +44,7 @@ def test_a_turn_that_reaches_a_wall_becomes_an_impact(place, wall, side):
     word, nodes, edit = rewritten(border, place, WALL)
     assert word.events == tuple(wall if i == place else "t" for i in range(2)) and word.modes == (1, -1)
     speed = v_rate(nodes[place, 0]) - nodes[place, 1]  # w'+
-    assert speed == pytest.approx(-side * FIRST) and edit.grows == "speed"
+    assert speed == pytest.approx(-side * FIRST) and edit.change.grows is Grows.SPEED
     away = orbit("tt", [[0.3, 1.0], [3.4, -1.0]])  # turns near the walls that were left
     assert edits_at(away, 4 * place + WALL) == []
 
@@ -86,7 +88,7 @@ def test_a_stick_of_no_length_inside_a_flight_disappears():
     assert border.word.modes == (1, 0, 1, -1)
     for column in (EVENT, DURATION):
         word, _, edit = rewritten(border, 1, column)
-        assert word.events == ("R", "L") and edit.grows == "margin"
+        assert word.events == ("R", "L") and edit.change.grows is Grows.MARGIN
     assert rewritten(border, 0, FLIGHT)[0].events == ("R", "L")  # asked where the flight comes to rest
 
 
@@ -101,7 +103,7 @@ def test_a_stick_that_friction_cannot_hold_begins_with_a_turn():
     border = orbit("Rs-", [[0.3, 0.5], [1.0, 0.1], [2.0, 0.1]])
     word, nodes, edit = rewritten(border, 1, EVENT)
     assert word.events == ("R", "t", "s", "u") and word.modes == (1, -1, 0, -1)
-    assert nodes[2, 0] - nodes[1, 0] == pytest.approx(FIRST) and edit.grows == "gap"
+    assert nodes[2, 0] - nodes[1, 0] == pytest.approx(FIRST) and edit.change.grows is Grows.GAP
 
 
 def test_a_turn_just_before_a_stick_disappears():
@@ -115,7 +117,7 @@ def test_a_turn_that_friction_holds_becomes_a_stick():
     border = orbit("RtRt", [[0.3, 0.5], [1.0, 0.1], [3.0, 0.4], [4.0, 0.2]], periods=2)
     word, nodes, edit = rewritten(border, 1, EVENT)
     assert word.events == ("R", "s", "u", "R", "t") and word.modes == (1, 0, -1, 1, -1)
-    assert nodes[1, 0] < nodes[2, 0] and edit.grows == "gap"
+    assert nodes[1, 0] < nodes[2, 0] and edit.change.grows is Grows.GAP
 
 
 def test_a_flight_that_comes_to_rest_sticks_and_goes_on():

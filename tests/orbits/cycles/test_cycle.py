@@ -126,3 +126,11 @@ def test_reading_from_another_event_keeps_the_order_of_time(periods):
         )
     assert np.isclose(cycle.period, 2.0 * np.pi * periods / cycle.parameters["frequency"])
     assert np.allclose(cycle.mirror().nodes[:, 0] - cycle.nodes[:, 0], np.pi)
+
+
+def test_half_a_cycle_that_takes_another_time_is_no_root():
+    """The second pair comes a forcing period after the first, the first again two after the second."""
+    nodes = np.array([[0.5, 1.0], [2.0, -1.0], [0.5 + 2.0 * np.pi, 1.0], [2.0 + 2.0 * np.pi, -1.0]])
+    cycle = Cycle(ABSORBER, Word.parse("LRLR"), 3, nodes, ABSORBER.vector({"amplitude": 0.6}))
+    assert cycle.root().periods == 3 and len(cycle.root().word) == 4
+    assert len(Cycle(ABSORBER, cycle.word, 2, nodes, cycle.params).root().word) == 2

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orbits.machines.declared.words import Word
 from orbits.words import Word as BuiltIn
+from orbits.words.of_pages import PageWord
 from tests.orbits.machines.declared.pages import page
 
 
@@ -49,4 +49,4 @@ def test_rotations_and_mirrors_are_one_cycle(events, places):
     assert word.rotate(places).canonical() == word.canonical() == word.mirror().canonical()
     assert word.mirror().mirror() == word
     assert word.repeat(3).repetitions % 3 == 0
-    assert isinstance(word, Word) and machine.word(word.text) == word
+    assert isinstance(word, PageWord) and machine.word(word.text) == word

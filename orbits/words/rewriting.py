@@ -1,0 +1,86 @@
+"""How a word changes where a margin vanishes: the proposals of the contacts' laws, put together and carried out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import IntEnum
+from typing import TypeVar
+
+import numpy as np
+
+from orbits.contacts.changes import Change, Grows, Site, Spot, What
+from orbits.contacts.letters import HIT, STICK
+from orbits.words.cyclic import CyclicWord
+
+W = TypeVar("W", bound=CyclicWord)
+
+
+class Watch(IntEnum):
+    """What a margin of an event watches, where it is no contact between events (those are 0, 1, ...)."""
+
+    STRENGTH = -1
+    DURATION = -2
+
+
+def changes_at(site: Site, watched: int) -> list[Change]:
+    """The changes that a vanishing margin may ask for, the likeliest first.
+
+    Parameters
+    ----------
+    site : Site
+        The cycle must be read so that the margin's event is not the last one.
+    watched : int
+        Index of the contact that is met in the flight after the event, or one of `Watch`.
+    """
+    word, contacts = site.word, site.word.alphabet.contacts
+    if watched >= 0:
+        return contacts[watched].met(site, watched)
+    if not len(word):
+        return []
+    here = word.letter(site.place)
+    if watched == Watch.STRENGTH:
+        return contacts[here.contact].weakened(site, here.contact)
+    if site.place + 1 >= len(word):
+        return []
+    there = word.letter(site.place + 1)
+    if here.contact == there.contact:
+        return contacts[here.contact].collapsed(site, here.contact)
+    alphabet = word.alphabet
+    if alphabet.touches(here, there.contact) or alphabet.touches(there, here.contact):
+        alone = here.kind == HIT and there.kind != STICK
+        return [] if alone else contacts[here.contact].weakened(site, here.contact)
+    return [_swapped(site)]
+
+
+def _swapped(site: Site) -> Change:
+    """Two consecutive events of contacts that do not know each other change their order."""
+    word, place = site.word, site.place
+    here, there = word.events[place], word.events[place + 1]
+    between = word.mode(place - 1)
+    for j in range(len(word.alphabet.contacts)):
+        if site.entry(place + 1, j) != site.entry(place, j):
+            between = word.alphabet.with_entry(between, j, site.entry(place + 1, j))
+    modes, spots = (between, word.mode(place + 1)), (Spot(place), Spot(place + 1))
+    return Change(place, place + 2, (there, here), modes, spots, Grows.MARGIN, What.ORDER_CHANGES)
+
+
+def applied(word: W, changes: Sequence[Change]) -> tuple[W, int]:
+    """The word after some changes of disjoint places, and where the first one's new events stand."""
+    events, modes = list(word.events), list(word.modes) if len(word) else []
+    for change in sorted(changes, key=lambda c: c.start, reverse=True):
+        events[change.start : change.stop] = change.events
+        modes[change.start : change.stop] = change.modes
+    first = min(change.start for change in changes)
+    if not events and len(word):  # nothing is left: what the contacts did before goes on
+        return word.like((), (word.mode(first - 1),)), 0
+    return word.like(events, modes), first
+
+
+def spliced(
+    nodes: np.ndarray, changes: Sequence[Change], placed: Sequence[np.ndarray], empty: bool
+) -> np.ndarray:
+    """The nodes after the same changes, from the new events' nodes for each of them; where nothing is left one to look from."""
+    rows = [] if empty else list(nodes)
+    for change, new in sorted(zip(changes, placed), key=lambda pair: pair[0].start, reverse=True):
+        rows[change.start : change.stop] = list(new)
+    return np.array(rows) if rows else nodes[:1]
