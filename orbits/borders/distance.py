@@ -30,6 +30,8 @@ def tends_to(border: Solution, near: Solution, further: Solution) -> bool:
 def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
     """Largest difference in w at equal phases, modulo whole periods of the forcing, and the mirror image if asked for.
 
+    In units of the machine's size.
+
     Where one of them hits no wall its mean position is free, and left out.
     """
     periods = math.lcm(one.periods, other.periods)
