@@ -1,8 +1,8 @@
 """Compiling beside other work: what a first run needs later is compiled by a second process meanwhile.
 
 numba compiles one function at a time in a process. On a machine with a second core another process compiles the
-kernel `inspect`, the simulator and the elimination of long words, while this one compiles Newton's method and the
-continuation loop; both find each other's results in numba's cache on disk.
+kernel `inspect`, the simulator, its loop over many starts and the elimination of long words, while this one compiles
+Newton's method and the continuation loop; both find each other's results in numba's cache on disk.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 import numpy as np
 from numba import config, typeof
 
+from orbits.compiling.ahead import cached, helpers
 from orbits.cycles import kernels
 from orbits.elimination import by_address
 from orbits.machines.catalogue import model_class, usual
@@ -34,10 +35,10 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
     Returns
     -------
     subprocess.Popen or None
-        The process; this one waits for it only where it would otherwise compile `inspect` itself. None if there is nothing
+        The process; this one waits for it where it would otherwise compile the same functions itself. None if there is nothing
         to compile or no second core.
     """
-    running = kernels.helpers.get(name)
+    running = helpers.get(name)
     if running is not None and running.poll() is None:
         return running
     if _cores() < 2 or not _missing(name):
@@ -61,7 +62,9 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         )
     except OSError:
         return None
-    kernels.helpers[name] = process
+    helpers[name] = process
+    if usual(name)[0].node > 2:
+        helpers[periodic_multipliers.__name__] = process
     return process
 
 
@@ -73,6 +76,7 @@ def compile_as(digest: str, name: str, *more: str) -> None:
 
 def compile_now(name: str, *more: str) -> None:
     """Compile for the model called `name`, in the order in which a run asks for it."""
+    from orbits.attractors.batches import settle_all
     from orbits.problem import OrbitProblem
     from orbits.simulation.driver import simulate
     from orbits.words import Word
@@ -87,13 +91,23 @@ def compile_now(name: str, *more: str) -> None:
     for place in more:
         module, _, function = place.partition(":")
         getattr(importlib.import_module(module), function)()
-    simulate(model, periods=0.5, **given)  # type: ignore[arg-type].sample()
-    if model.node == 2:
-        by_address.functions()
-    else:
-        n = model.node
+    n = model.node
+    if n > 2:
         factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
+    motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
+    motion.sample()
+    settle_all(
+        name,
+        motion.start[None].copy(),
+        motion.params,
+        transients=(0.5,),
+        longest=1,
+        tolerance=1e-8,
+        workers=1,
+    )
+    if n == 2:
+        by_address.functions()
 
 
 def _cores() -> int:
@@ -107,4 +121,4 @@ def _missing(name: str) -> bool:
     """Whether numba's cache lacks the kernel `inspect` or the stepper; False where that cannot be told."""
     module = model_class(name).stepper()
     compiled = kernels.assemble(usual(name)[0])
-    return not (kernels.cached(compiled.inspect) and kernels.cached(module.advance))
+    return not (cached(compiled.inspect) and cached(module.advance))

@@ -91,6 +91,11 @@ class OrbitProblem:
         return self.equations.workspace()
 
     @property
+    def scratch(self) -> tuple[np.ndarray, ...]:
+        """A workspace for single calls, whose contents nobody relies on."""
+        return self.equations.scratch
+
+    @property
     def parameters(self) -> dict[str, float]:
         """All parameters that may vary, by name; of the one that does the starting value."""
         return {

@@ -22,14 +22,17 @@ class CycleProblem(Protocol):
     symmetric: bool
     length: int
     dimension: int
+    shift: float
     n_multipliers: int
     n_margins: int
     data: Any
+    equations: Any
 
     @property
     def spelling(self) -> str: ...
 
-    def workspace(self) -> Any: ...
+    @property
+    def scratch(self) -> Any: ...
 
     def values(self, p: Any) -> np.ndarray: ...
 

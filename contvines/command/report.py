@@ -1,15 +1,20 @@
 """`contvines report`: a result as one page to send round."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import FileArgument, TrustOption
+from contvines.command.options import TrustOption
 
 
 def report(
-    file: FileArgument,
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="What diagram, atlas or chart (.vines) or survey (.nc) has made."
+        ),
+    ],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="PAGE.html", help="The page; by default FILE.html here."),
@@ -18,19 +23,38 @@ def report(
 ) -> None:
     """Write a result as one HTML page that needs no network.
 
-    The diagram can be zoomed; a click on any point shows its orbit: portrait,
-    history, an animation, word, multipliers, margins, and the command and the
-    Python line that give it again.
+    The diagram or chart can be zoomed; a click on any point shows its orbit:
+    portrait, history, an animation, word, multipliers, margins, and the command
+    and the Python line that give it again. Of a survey: outcomes over what
+    varies, and the machines behind each point.
     """
     from contvines.command.compose import beside, say
     from contvines.report.page import check_page, write_report
-    from contvines.store import load
 
     target = output or beside(file, ".html")
     check_page(target)
-    graph = load(file, trust=trust)
-    if not graph.branches:
-        raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
-    typer.echo(str(write_report(graph, target, file.name)))
-    if not graph.finished:
+    result = _result(file, trust)
+    typer.echo(str(write_report(result, target, file.name)))
+    if not getattr(result, "finished", True):
         say(f"{file} is unfinished: the page shows what there is so far")
+
+
+def _result(file: Path, trust: bool) -> Any:
+    """The graph, chart or survey that a file holds."""
+    if file.suffix == ".nc":
+        from contvines.survey import load_survey
+
+        survey = load_survey(file)
+        if not survey.columns:
+            raise ValueError(f"{file}: all machines of the survey failed; its CSV says why.")
+        return survey
+    from contvines.loci.chart import Chart
+    from contvines.store import load
+
+    result: Any = load(file, trust=trust)
+    if isinstance(result, Chart):
+        if not result.loci:
+            raise ValueError(f"{file} has no finished locus yet; run the command that made it again.")
+    elif not result.branches:
+        raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
+    return result

@@ -10,10 +10,12 @@ from ..graph.proving import mark
 from ..graph.shortening import short_word
 from ..plots.diagram import default_measure
 from ..plots.style import MARKS, PLAIN, axis_label
+from .numbers import plain_label, rounded, shortened
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
+    from ..graph.attractor import Attractor
     from ..graph.graph import Graph
 
 NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
@@ -49,10 +51,13 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "finished": graph.finished,
         "message": graph.message,
         "axes": {"x": graph.parameter, "y": y},
-        "names": {name: _plain(axis_label(name, unit=graph.units.get(name))) for name in _measures(graph, y)},
+        "names": {
+            name: plain_label(axis_label(name, unit=graph.units.get(name))) for name in _measures(graph, y)
+        },
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
         "special": [_point(point, mark(graph, point.label)) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],
+        "attractors": [_attractor(about) for about in graph.attractors],
         "orbits": _orbits(graph),
     }
 
@@ -68,7 +73,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
     measures = {}
     for name in _measures(graph, y):
         try:
-            measures[name] = _short(branch.measure(name))
+            measures[name] = shortened(branch.measure(name))
         except (KeyError, ValueError):
             continue  # a measure that this branch does not have
     about = branch.to_dict()
@@ -80,7 +85,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
         "measures": measures,
         "marks": [[int(i), label] for i, label in branch.marks],
         "multipliers": [_pairs(row[:8]) for row in branch.multipliers],
-        "margin": _short(branch.margin),
+        "margin": shortened(branch.margin),
     }
 
 
@@ -91,6 +96,18 @@ def _point(point: SpecialPoint, proof: str) -> dict[str, Any]:
         "marker": look.marker,
         "proof": proof,
         "index": int(point.index),
+    }
+
+
+def _attractor(about: Attractor) -> dict[str, Any]:
+    name = short_word(about.word) if about.word else about.kind
+    return {
+        "value": float(about.value),
+        "name": name if about.periods <= 1 else f"{name} k={about.periods}",
+        "kind": about.kind,
+        "branch": about.branch,
+        "share": float(about.share),
+        "starts": int(about.starts),
     }
 
 
@@ -123,32 +140,8 @@ def _scene(orbit: Any, samples: int) -> dict[str, Any] | None:
     draw = getattr(orbit, "scene", None)
     if draw is None:
         return None
-    return _rounded(draw(samples))
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return _short(value, 5)
-    if isinstance(value, dict):
-        return {k: _rounded(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(v) for v in value]
-    return float(f"{value:.5g}") if isinstance(value, float) else value
-
-
-def _short(values: Any, digits: int = 9) -> list[float | None]:
-    return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
+    return rounded(draw(samples))
 
 
 def _pairs(values: Any) -> list[list[float]]:
     return [[float(f"{v.real:.8g}"), float(f"{v.imag:.8g}")] for v in values if np.isfinite(v)]
-
-
-def _plain(label: str) -> str:
-    """A matplotlib label as plain text: no dollars and commands."""
-    for old, new in (
-        ("$", ""), (r"\Omega", "Ω"), (r"\mu", "μ"), (r"\tilde g", "g"), (r"\varepsilon", "ε"), (r"\lambda", "λ"),
-        ("^+", "⁺"), ("^-", "⁻"), ("^2", "²"), ("_1", "₁"), ("_-", "₋"), (r"\,", " "),
-    ):  # fmt: skip
-        label = label.replace(old, new)
-    return label

@@ -9,25 +9,31 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..export import json_text
-from .contents import contents
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
+    from ..loci.chart import Chart
+    from ..survey.results import Survey
 
+PROGRAMS = {
+    "graph": ("common.js", "orbit.js", "graph.js", "attractors.js"),
+    "chart": ("common.js", "orbit.js", "chart.js"),
+    "survey": ("common.js", "survey.js"),
+}
 MISSING = "a report needs plotly: pip install 'contvines[report]'"
 
 
-def write_report(graph: Graph, target: str | Path, source: str | Path) -> Path:
-    """Write a graph as one self-contained HTML page.
+def write_report(result: Graph | Chart | Survey, target: str | Path, source: str | Path) -> Path:
+    """Write a result as one self-contained HTML page.
 
     Parameters
     ----------
-    graph : Graph
-        Loaded with its problems, so that orbits can be drawn.
+    result : Graph, Chart or Survey
+        Graphs and charts loaded with their problems, so that orbits can be drawn.
     target : path
         The page; its name ends in .html.
     source : path
-        The .vines file, as the commands on the page shall name it.
+        The result's file, as the commands on the page shall name it.
 
     Returns
     -------
@@ -40,27 +46,46 @@ def write_report(graph: Graph, target: str | Path, source: str | Path) -> Path:
     """
     place = Path(target)
     check_page(place)
-    data = contents(graph, str(source))
+    kind, data = told(result, str(source))
     try:
-        place.write_text(page(data), encoding="utf-8")
+        place.write_text(page(data, kind), encoding="utf-8")
     except OSError as error:
         raise ValueError(f"{place}: the page cannot be written ({error.strerror}).") from None
     return place
 
 
-def page(data: dict[str, Any]) -> str:
-    """The HTML text of a page that shows `data`."""
+def told(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[str, Any]]:
+    """Which page shows a result, and the data for it."""
+    from ..graph.graph import Graph
+    from ..loci.chart import Chart
+
+    if isinstance(result, Graph):
+        from .contents import contents
+
+        return "graph", contents(result, source)
+    if isinstance(result, Chart):
+        from .chart_contents import chart_contents
+
+        return "chart", chart_contents(result, source)
+    from .survey_contents import survey_contents
+
+    return "survey", survey_contents(result, source)
+
+
+def page(data: dict[str, Any], kind: str = "graph") -> str:
+    """The HTML text of a page of this kind (`PROGRAMS`) that shows `data`."""
     here = files("contvines.report")
     parts = {
-        "TITLE": f"{data['source']}: {data['parameter']}",
+        "TITLE": _escaped(f"{data['source']}: {kind}"),
         "STYLE": here.joinpath("page.css").read_text(encoding="utf-8"),
-        "PROGRAM": here.joinpath("page.js").read_text(encoding="utf-8"),
+        "BODY": here.joinpath(f"{kind}.html").read_text(encoding="utf-8"),
+        "PROGRAM": "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in PROGRAMS[kind]),
         "PLOTLY": _packed(_plotly()),
         "DATA": _packed(json_text(data, indent=None)),
     }
     text = here.joinpath("page.html").read_text(encoding="utf-8")
     for name, part in parts.items():
-        text = text.replace(f"<!--{name}-->", _escaped(part) if name == "TITLE" else part)
+        text = text.replace(f"<!--{name}-->", part)
     return text
 
 

@@ -6,7 +6,9 @@ if its maps have a real solution next to the border and the simulator, which kno
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -14,12 +16,21 @@ import numpy as np
 from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.distance import CLOSE, distance, tends_to
-from orbits.borders.neighbours import REAL, SIZES, Grown, grown, margins_of, proposals, turned
-from orbits.borders.rewriting import edits_at
+from orbits.borders.neighbours import (
+    REAL,
+    SIZES,
+    Grown,
+    grown,
+    margins_of,
+    parameter_unit,
+    proposals,
+    turned,
+)
+from orbits.borders.rewriting import Edit, edits_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
+from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
 from orbits.cycles.kernels import assemble
-from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of
@@ -57,7 +68,8 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
         return rest
     old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), int(point.margin_index))
     seeds = []
-    for candidate in (*proposals(problem, u, p, int(point.margin_index)), *_simulated(problem, u, p)):
+    # the simulator is asked only where no proposal stands
+    for candidate in chain(proposals(problem, u, p, int(point.margin_index)), _simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
         if not _followed(orbit):
@@ -92,7 +104,7 @@ def _simplest(
 
 def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     """Where the simpler orbits, on whose border a branch of less symmetry ends, go on themselves."""
-    at_border, residual = _solved_at(problem, u, p)
+    at_border, residual = solved_at(problem.equations, u, p)
     if not residual < 1e-10:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
@@ -101,18 +113,6 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
             text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
-
-
-def _solved_at(problem: CycleProblem, guess: np.ndarray, p: float) -> tuple[np.ndarray, float]:
-    """Solution at a parameter value, and its residual."""
-    border = np.zeros(problem.dimension + 1)
-    border[-1] = 1.0
-    step, tangent = np.empty_like(border), np.empty_like(border)
-    u = guess.copy()
-    residual, _, _ = assemble(problem.model).newton(
-        problem.data, u, p, problem.workspace(), border, step, tangent, 1e-12, 40
-    )
-    return u, float(residual)
 
 
 def _escapes(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
@@ -124,16 +124,18 @@ def _escapes(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iter
     """
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
+    choices: list[list[Edit]] = []
     for rounds in range(2, ROUNDS + 1):
         wider, whole = _repeated(problem, orbit, rounds)
+        if not choices:
+            first = edits_at(whole, index, problem.length)
+            choices = [[edit.later(k, problem) for edit in first] for k in range(ROUNDS)]
         for changed in (1, rounds - 1) if rounds > 2 else (1,):
-            found = _grown_in(wider, whole, p, index, problem.length, rounds, changed)
+            found = _grown_in(wider, whole, p, choices, rounds, changed)
             if found is None:
                 continue
             (other, v, q, tangent), note = found
             there = other.orbit(v, q)
-            if rounds > 2 and not there.stable:
-                continue
             if there.root().periods != other.periods or (there.symmetric and not other.symmetric):
                 continue
             if not _followed(there):
@@ -154,12 +156,12 @@ def _repeated(problem: CycleProblem, orbit: Solution, rounds: int) -> tuple[Cycl
 
 
 def _grown_in(
-    wider: CycleProblem, whole: Solution, p: float, index: int, unit: int, rounds: int, changed: int
+    wider: CycleProblem, whole: Solution, p: float, choices: list[list[Edit]], rounds: int, changed: int
 ) -> tuple[Grown, str] | None:
     """The orbit in which the first rounds, as many as `changed`, go through the change."""
-    choices = [edits_at(whole, index + PER_NODE * unit * number, unit) for number in range(changed)]
-    for edits in zip(*choices):
-        found = grown(wider, whole, p, list(edits), SIZES if rounds == 2 else SIZES[:2])
+    for edits in zip(*choices[:changed]):
+        ways = SIZES if rounds == 2 else SIZES[:2]
+        found = grown(wider, whole, p, list(edits), ways, steady=rounds > 2)
         if found is not None:
             return found, edits[0].change.what.value
     return None
@@ -179,7 +181,7 @@ def _real_side(problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarr
     Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
     border, so its tangent does not tell.
     """
-    kernels, work = assemble(problem.model), problem.workspace()
+    kernels, work = assemble(problem.model), problem.scratch
     step, along = np.empty(u.size + 1), np.empty(u.size + 1)
     length = 1e-4 / max(float(np.abs(tangent).max()), 1e-12)
     sides = []
@@ -203,7 +205,7 @@ def _simulated(
     here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
     place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
     for side in (1.0, -1.0):
-        q = p + side * 1e-6 * max(1.0, abs(p))
+        q = p + side * 1e-6 * parameter_unit(problem, p)
         params = problem.values(q)
         state = state_of(
             engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
@@ -218,14 +220,14 @@ def _simulated(
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
             continue
-        if abs(
-            found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods
-        ) > 0.05 * problem.model.gauge("energy", params):
+        losses = [o.measure("friction_loss") / o.periods for o in (found, orbit)]
+        energy = problem.model.gauge("energy", params) * math.prod(problem.equations.units) ** 2
+        if abs(losses[0] - losses[1]) > 0.05 * energy:
             continue
         if distance(orbit, found) > CLOSE:
             continue
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
-        other = problem.sibling(found.word, found.periods, symmetric, found.params)
+        other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
         if not tends_to(orbit, _nearer(other, v, q, p), found):
             continue  # an attractor somewhere else: nothing joins it to the border
@@ -237,7 +239,7 @@ def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solutio
     found = problem.orbit(u, q)
     for part in NEARER:
         there = p + part * (q - p)
-        u, residual = _solved_at(problem, u, there)
+        u, residual = solved_at(problem.equations, u, there)
         if not residual < 1e-10:
             break
         found = problem.orbit(u, there)

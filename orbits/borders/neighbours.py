@@ -35,10 +35,25 @@ GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution."""
+    return _examined(problem, u, p)[2 * problem.n_multipliers :]
+
+
+def parameter_unit(problem: CycleProblem, p: float) -> float:
+    """What changes of the parameter near p are compared with: its own size, or where it started."""
+    return max(abs(p), abs(problem.value(problem.params))) or 1.0
+
+
+def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
+    """Whether all multipliers of a solution lie inside the unit circle."""
+    pairs = _examined(problem, u, p)[: 2 * problem.n_multipliers]
+    return bool(np.all(np.hypot(pairs[::2], pairs[1::2]) < 1.0))
+
+
+def _examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
     with kept_back():
-        assemble(problem.model).examine(problem.data, u, p, problem.workspace(), row)
-    return row[2 * problem.n_multipliers :]
+        assemble(problem.model).examine(problem.data, u, p, problem.scratch, row)
+    return row
 
 
 def turned(
@@ -105,10 +120,12 @@ def grown(
     p: float,
     edits: list[Edit],
     ways: tuple[tuple[float, ...], ...] = SIZES,
+    steady: bool = False,
 ) -> Grown | None:
     """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
-    None if there is none that is real and tends to the border orbit.
+    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable (which costs
+    less to see).
     """
     if problem.symmetric:  # edit the half, and mirror it
         half = problem.length
@@ -124,12 +141,14 @@ def grown(
         other = problem.sibling(word, problem.periods, problem.symmetric)
     except ValueError:
         return None
-    guess = np.ascontiguousarray(nodes, dtype=float).ravel()
+    guess = other.reduce(nodes)
     change = edits[0].change
     if change.grows is Grows.MARGIN:
-        return _beside(other, guess, p, orbit)
+        return _beside(other, guess, p, orbit, steady)
     for sizes in ways:
         found = _climb(other, guess, first, change, p, sizes)
+        if found and steady and not stable_at(other, found[-1].u, found[-1].p):
+            return None
         if found and _begins_at(orbit, other, first, change, p, found):
             return Grown(other, *found[-1][:3])
     return None
@@ -155,7 +174,7 @@ def _hold(
 ) -> _Held | None:
     """Solve with what grows beyond the border at p held at a size."""
     n, size = other.model.node, other.dimension
-    kernels, work = assemble(other.model), other.workspace()
+    kernels, work = assemble(other.model), other.scratch
     step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
     u = guess.copy()
     if change.grows is Grows.GAP:
@@ -166,12 +185,15 @@ def _hold(
             u[(first + 1) * n] = u[first * n] + wanted
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
-        cavity = float(other.orbit(u, q).events.v_rate[first])
+        unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
+        cavity = float(other.orbit(u, q).events.v_rate[first]) / unit[1]
         node = slice(first * n, (first + 1) * n)
-        border[node] = -sign * other.model.cavity_speed_slopes(u[node], other.values(q))
+        slopes = other.model.cavity_speed_slopes(other.expand(u)[first], other.values(q))
+        border[node] = -sign * slopes * unit / unit[1]
         border[first * n + 1] += sign
-        change_with = float(other.orbit(u, q + NEAR).events.v_rate[first]) - cavity
-        border[size] = -sign * change_with / NEAR
+        near = NEAR * parameter_unit(other, p)
+        change_with = float(other.orbit(u, q + near).events.v_rate[first]) / unit[1] - cavity
+        border[size] = -sign * change_with / near
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if (
@@ -179,7 +201,7 @@ def _hold(
         ):  # it comes to rest the sooner the slower it is
             u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
+    if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
         return None
     return _Held(u, float(q_new), tangent, wanted)
 
@@ -223,13 +245,13 @@ def _outwards(
             yield held
 
 
-def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution) -> Grown | None:
+def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, steady: bool) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
-    kernels, work = assemble(other.model), other.workspace()
+    kernels, work = assemble(other.model), other.scratch
     border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
     border[-1] = 1.0
-    at_border = guess.copy()
+    at_border, unit = guess.copy(), parameter_unit(other, p)
     residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10:
         return None
@@ -237,7 +259,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution) -
     for distance in (1e-8, 1e-7, 1e-6):
         sides = []
         for side in (1.0, -1.0):
-            q = p + side * distance * max(1.0, abs(p))
+            q = p + side * distance * unit
             u = at_border + (q - p) * tangent[:-1]
             along = tangent.copy()
             residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
@@ -250,20 +272,23 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution) -
             ):  # not one that vanishes all along, as at a wall touched without speed
                 found = Grown(other, u, q, along)
                 break
-    if found is None and np.abs(tangent).max() > STEEP:
+    if found is None and np.abs(tangent).max() * unit > STEEP:
         found = _along(other, at_border, p, tangent)
-    if found is None or not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):
+    if found is None or (steady and not stable_at(other, found.u, found.p)):
+        return None
+    if not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):
         return None
     return found
 
 
 def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
-    kernels, work = assemble(other.model), other.workspace()
+    kernels, work = assemble(other.model), other.scratch
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
+    length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
     for distance in (1e-5, 1e-6):
         for side in (1.0, -1.0):
-            direction = side * tangent / np.linalg.norm(tangent)
+            direction = side * tangent / length
             u = at_border + distance * direction[:-1]
             guess = p + distance * direction[-1]
             residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)

@@ -6,6 +6,8 @@ At the border the old and the new description are the same motion, so an inserte
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +18,7 @@ from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.margins import DURATION, EVENT, FLIGHT, PER_NODE, WALL
 from orbits.cycles.sampling import flight, slowest
 from orbits.cycles.solution import Solution
+from orbits.protocol import CycleProblem
 from orbits.words import Word
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT
 from orbits.words.rewriting import Watch, applied, changes_at, spliced
@@ -30,6 +33,27 @@ class Edit(NamedTuple):
 
     change: Change
     nodes: np.ndarray
+
+    def later(self, rounds: int, problem: CycleProblem) -> Edit:
+        """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
+        if rounds == 0:
+            return self
+        change, places, alphabet = self.change, rounds * problem.length, problem.word.alphabet
+        nodes, events, modes = self.nodes.copy(), change.events, change.modes
+        if problem.symmetric and rounds % 2:
+            nodes = -nodes
+            events = tuple(alphabet.images[text] for text in events)
+            modes = tuple(alphabet.mirrored_mode(mode) for mode in modes)
+        nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
+        spots = tuple(
+            spot._replace(
+                node=None if spot.node is None else spot.node + places,
+                clock=None if spot.clock is None else spot.clock + places,
+            )
+            for spot in change.spots
+        )
+        start, stop = change.start + places, change.stop + places
+        return Edit(replace(change, start=start, stop=stop, events=events, modes=modes, spots=spots), nodes)
 
 
 class _Touch(NamedTuple):
@@ -82,7 +106,8 @@ def edits_at(orbit: Solution, index: int, unit: int | None = None) -> list[Edit]
 def _soft(orbit: Solution, place: int) -> int | None:
     """The event at either end of a flight that is an impact of vanishing speed."""
     places = (place, (place + 1) % len(orbit.word))
-    return next((k for k in places if abs(orbit.events.rate_post[k]) < NO_SPEED), None)
+    speed = NO_SPEED * math.prod(orbit.model.natural_units(orbit.params))
+    return next((k for k in places if abs(orbit.events.rate_post[k]) < speed), None)
 
 
 def _touching(orbit: Solution, place: int) -> tuple[_Touch | None, int]:
@@ -108,6 +133,7 @@ def _placed(orbit: Solution, place: int, change: Change, touch: _Touch | None) -
     word, nodes = orbit.word, orbit.nodes
     letters = word.alphabet.letters
     rows: list[np.ndarray] = []
+    length, rate = orbit.model.natural_units(orbit.params)
     hit_before = 0  # side of a new impact among the events so far
     for text, spot in zip(change.events, change.spots):
         hit = letters[text].kind == HIT
@@ -115,11 +141,11 @@ def _placed(orbit: Solution, place: int, change: Change, touch: _Touch | None) -
         row, speed, was_hit = _at(orbit, place, spot, touch)
         row[0] += spot.later * FIRST
         if hit and not was_hit:
-            row[1] = speed + side * FIRST  # B+ = v' - w'+
+            row[1] = speed + side * FIRST * length * rate  # B+ = v' - w'+
         elif was_hit and not hit and spot.node is not None:
             row[1] = orbit.events.w[spot.node]
         elif hit_before and not hit:
-            row[1] -= hit_before * 0.1 * FIRST**2  # a little off the wall
+            row[1] -= hit_before * 0.1 * FIRST**2 * length  # a little off the wall
         hit_before = side
         rows.append(row)
     return np.array(rows) if rows else nodes[:0]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 from numba import njit
@@ -44,3 +44,20 @@ def stored_with(*modules: ModuleType, **options: Any) -> Callable[[Callable], An
         return njit(cache=True, error_model="numpy", **options)(function)
 
     return decorate
+
+
+def specialise(
+    function: Callable, name: str, inline: bool = False, options: dict[str, Any] | None = None, **known: Any
+) -> Any:
+    """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`.
+
+    numba cannot find a closure over compiled functions again in its cache, but it finds a function by its name: `name`
+    must tell all of `known` apart (a digest of their sources does).
+    """
+    qualified = f"{function.__name__.strip('_')}_{name}"
+    copy = FunctionType(function.__code__, {**function.__globals__, **known}, qualified)
+    copy.__qualname__ = qualified
+    copy.__module__ = function.__module__
+    if options is not None:
+        return njit(cache=True, **options)(copy)
+    return (inlined_kernel if inline else stored_kernel)(copy)

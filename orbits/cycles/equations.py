@@ -6,6 +6,7 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,6 @@ from orbits.elimination.block_cyclic import workspace
 from orbits.machines.base import Model
 from orbits.machines.path import along
 from orbits.words import Word
-
 
 PLAIN = (1.0, 1.0)
 
@@ -104,6 +104,14 @@ class Equations:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
+    @cached_property
+    def scratch(self) -> tuple[np.ndarray, ...]:
+        """A workspace for single calls, whose contents nobody relies on."""
+        return self.workspace()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "scratch"}  # it holds addresses
+
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
         return along(self.path, self.params, p)
@@ -170,6 +178,6 @@ def solved_at(
     step, tangent = np.empty_like(border), np.empty_like(border)
     u = guess.copy()
     residual, _, _ = system.kernels.newton(
-        system.data, u, p, system.workspace(), border, step, tangent, tolerance, limit
+        system.data, u, p, system.scratch, border, step, tangent, tolerance, limit
     )
     return u, float(residual)

@@ -7,19 +7,16 @@ entry points that this package calls itself (`newton`, `examine`). numba keeps `
 from __future__ import annotations
 
 import hashlib
-import subprocess
-import time
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 import numpy as np
 
 from orbits.compiling import decorators as compiling
 from orbits.compiling import trigonometry
-from orbits.compiling.decorators import inlined_kernel, stored_kernel
+from orbits.compiling.ahead import wait_for
+from orbits.compiling.decorators import specialise
 from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
 from orbits.machines import path
 from orbits.machines.base import Model
@@ -118,29 +115,6 @@ def _examine(data, u, p, work, row):
     return residual
 
 
-helpers: dict[str, subprocess.Popen[bytes]] = {}
-"""Processes that compile `inspect` for the model of that name meanwhile (`orbits.precompile`)."""
-
-PATIENCE = 60.0  # seconds to wait for one of them
-
-
-def specialise(function: Callable, name: str, inline: bool = False, **known: Any) -> Any:
-    """A compiled copy of `function` that sees `known` in place of its module's globals, cached on disk under `name`."""
-    qualified = f"{function.__name__.strip('_')}_{name}"
-    copy = FunctionType(function.__code__, {**function.__globals__, **known}, qualified)
-    copy.__qualname__ = qualified
-    copy.__module__ = function.__module__
-    return (inlined_kernel if inline else stored_kernel)(copy)
-
-
-def cached(function: Any) -> bool:
-    """Whether numba's cache on disk holds a compiled `function`; True where that cannot be told."""
-    try:
-        return bool(function._cache._cache_file._load_index())
-    except (AttributeError, OSError):
-        return True
-
-
 class Kernels:
     """The compiled functions of one model.
 
@@ -180,23 +154,14 @@ class Kernels:
     @property
     def inspect(self) -> Any:
         """Multipliers and margins."""
-        self._wait()
+        wait_for(self.name, self._inspect)
         return self._inspect
 
     @property
     def examine(self) -> Any:
         """Residual, and the row of `inspect`, of one solution."""
-        self._wait()
+        wait_for(self.name, self._examine)
         return self._examine
-
-    def _wait(self) -> None:
-        """Wait while another process is compiling `inspect`; if that takes too long it is compiled here as well."""
-        helper = helpers.pop(self.name, None)
-        deadline = time.monotonic() + PATIENCE
-        while helper is not None and helper.poll() is None and not cached(self._inspect):
-            if time.monotonic() > deadline:
-                break
-            time.sleep(0.005)
 
 
 @cache
@@ -228,7 +193,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         stamp,
         inline=True,
         unpin=kernels.unpin,
-        multipliers=periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers,
+        multipliers=periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers_of_any,
         margins=kernels.margins,
     )
     flip = specialise(rearranged.flip, stamp, inline=True, unpin=kernels.unpin)

@@ -44,6 +44,11 @@ class RestEquations:
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
+    @property
+    def scratch(self) -> tuple[np.ndarray, ...]:
+        """A workspace for single calls."""
+        return self.workspace()
+
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
         return along(self.path, self.params, p)

@@ -6,7 +6,7 @@ import numpy as np
 
 from orbits.cycles.cycle import Cycle
 from orbits.machines.catalogue import stepper
-from orbits.machines.states import state_of
+from orbits.machines.states import state_of, states_of
 
 
 def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
@@ -43,17 +43,18 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
     """
     if not len(orbit.word):
         return _at_rest(orbit, points)
-    columns: dict[str, list[np.ndarray]] = {name: [] for name in ("phase", "state", "segment")}
-    durations = orbit.durations
-    total = 2.0 * np.pi * orbit.periods
-    for segment, duration in enumerate(durations):
-        count = max(2, round(points * duration / total))
-        ahead = np.linspace(0.0, max(float(duration), 0.0), count)
-        columns["phase"].append(orbit.nodes[segment, 0] + ahead)
-        columns["state"].append(flight(orbit, segment, ahead))
-        columns["segment"].append(np.full(count, segment))
-    phase = np.concatenate(columns["phase"])
-    w, w_rate, v, v_rate = np.concatenate(columns["state"]).T
+    durations = np.maximum(orbit.durations, 0.0)
+    counts = np.maximum(2, np.rint(points * durations / (2.0 * np.pi * orbit.periods))).astype(int)
+    ends = np.cumsum(counts)
+    segment = np.repeat(np.arange(len(counts)), counts)
+    ahead = (np.arange(ends[-1]) - (ends - counts)[segment]) * (durations / (counts - 1))[segment]
+    ahead[ends - 1] = durations
+    engine = stepper(orbit.model.name)
+    states = states_of(engine, orbit.params, orbit.word.codes, orbit.word.mode_codes, orbit.nodes)
+    out = np.empty((len(ahead), 4))
+    engine.sample(states[segment], orbit.params, ahead, out)
+    phase = orbit.nodes[segment, 0] + ahead
+    w, w_rate, v, v_rate = out.T
     eps = orbit.parameters["mass_ratio"]
     return {
         "tau": (phase - phase[0]) / orbit.parameters["frequency"],
@@ -64,7 +65,7 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
         "v_rate": v_rate,
         "cavity": (v + eps * w) / (1.0 + eps),
         "absorber": (v - w) / (1.0 + eps),
-        "segment": np.concatenate(columns["segment"]),
+        "segment": segment,
     }
 
 

@@ -98,6 +98,11 @@ class Solution(Cycle):
         """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
         return sample(self, points)
 
+    @cached_property
+    def path(self) -> dict[str, np.ndarray]:
+        """The motion at 400 points a forcing period, kept: distances to several other orbits ask for it."""
+        return sample(self, 400 * self.periods)
+
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
         return replay_error(self)

@@ -76,6 +76,12 @@ def functions() -> tuple[Any, Any]:
     return compile_(_condense), compile_(_expand)
 
 
+@cache
+def addresses() -> list[int]:
+    """Addresses of the two functions."""
+    return [function.address for function in functions()]
+
+
 def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
     """Addresses of the two functions and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution.
 
@@ -83,5 +89,4 @@ def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
     """
     if len(arrays[0]) < SHORTEST:
         return np.zeros(FUNCTIONS + ARRAYS, np.int64)
-    addresses = [function.address for function in functions()]
-    return np.array(addresses + [array.ctypes.data for array in arrays], np.int64)
+    return np.array(addresses() + [array.ctypes.data for array in arrays], np.int64)

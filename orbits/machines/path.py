@@ -71,6 +71,10 @@ def along(path: np.ndarray, params: np.ndarray, p: np.ndarray | float) -> np.nda
     """The numbers at each p: (P,) for one, (m, P) for an array (m,)."""
     factors, powers = path
     moved = powers != 0.0
+    if np.ndim(p) == 0:
+        found = params.copy()
+        found[moved] = factors[moved] * p ** powers[moved]
+        return found
     values = np.asarray(p, dtype=float)[..., None]
     found = np.broadcast_to(params, (*values.shape[:-1], params.size)).copy()
     found[..., moved] = factors[moved] * values ** powers[moved]

@@ -11,21 +11,27 @@ TWO_PI = 2.0 * np.pi
 
 def state_of(engine: Machine, params: np.ndarray, code: int, mode: int, node: np.ndarray) -> np.ndarray:
     """The state, shape (S,), just after an event, from its node (Psi, B+ or w(, v, v'))."""
-    state = np.zeros(engine.state)
-    psi = float(node[0])
-    turns = np.floor(psi / TWO_PI)
-    psi -= turns * TWO_PI
-    if psi >= TWO_PI or psi < 0.0:
-        psi = 0.0
-    state[PSI], state[TURNS], state[MODE] = psi, turns, mode
+    return states_of(engine, params, np.array([code]), np.array([mode]), node[None])[0]
+
+
+def states_of(
+    engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray
+) -> np.ndarray:
+    """The states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
+    states = np.zeros((len(nodes), engine.state))
+    turns = np.floor(nodes[:, 0] / TWO_PI)
+    psi = nodes[:, 0] - turns * TWO_PI
+    states[:, PSI] = np.where((psi >= TWO_PI) | (psi < 0.0), 0.0, psi)
+    states[:, TURNS], states[:, MODE] = turns, modes
     if engine.state > V:
-        state[V], state[V_RATE] = node[2], node[3]
-    if code < 2:
-        state[W] = engine.walls(params)[code]
-        state[RATE] = _cavity_speed(engine, params, state[None, :])[0] - node[1]
-    else:
-        state[W] = node[1]
-    return state
+        states[:, V], states[:, V_RATE] = nodes[:, 2], nodes[:, 3]
+    hits = codes < 2
+    states[:, W] = nodes[:, 1]
+    if hits.any():
+        left, right = engine.walls(params)
+        states[hits, W] = np.where(codes[hits] == 0, left, right)
+        states[hits, RATE] = _cavity_speed(engine, params, states[hits]) - nodes[hits, 1]
+    return states
 
 
 def nodes_of(

@@ -18,13 +18,14 @@ import numpy as np
 from llvmlite.binding import add_symbol
 from numba import types
 
+from orbits.compiling.ahead import wait_for
 from orbits.compiling.decorators import kernel
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
 from orbits.multipliers.product_of_any import product_of_any
 from orbits.multipliers.product_of_two import CERTAIN, UNCERTAIN, UNDEFINED, dominant_of_two, product_of_two
 
-__all__ = ["multipliers", "multipliers_of_two", "periodic_multipliers", "scratch_size"]
+__all__ = ["multipliers", "multipliers_of_any", "multipliers_of_two", "periodic_multipliers", "scratch_size"]
 
 
 @ctypes.CFUNCTYPE(
@@ -38,6 +39,7 @@ def _late(A, D, length, n, twist, re, im, scratch):
             shape
         )
 
+    wait_for(periodic_multipliers.__name__, periodic_multipliers)
     return periodic_multipliers(
         array(A, length, n, n),
         array(D, length, n, n),
@@ -90,6 +92,12 @@ def multipliers_of_two(A, D, twist, re, im, scratch):
 
 
 @kernel
+def multipliers_of_any(A, D, twist, re, im, scratch):
+    """`multipliers` for nodes of more than two unknowns."""
+    return _otherwise(product_of_any(A, D, twist, re, im, scratch), A, D, twist, re, im, scratch)
+
+
+@kernel
 def multipliers(A, D, twist, re, im, scratch):
     """Multipliers of a cycle: eigenvalues of diag(1, twist, ..) M_{L-1} .. M_0, M_i = -D_i^{-1} A_i.
 
@@ -111,4 +119,4 @@ def multipliers(A, D, twist, re, im, scratch):
     """
     if A.shape[1] == 2:
         return multipliers_of_two(A, D, twist, re, im, scratch)
-    return _otherwise(product_of_any(A, D, twist, re, im, scratch), A, D, twist, re, im, scratch)
+    return multipliers_of_any(A, D, twist, re, im, scratch)

@@ -2,10 +2,12 @@
 
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 
 from orbits import precompile
+from orbits.compiling import ahead
 from orbits.cycles import kernels as kernel_module
 from orbits.machines.catalogue import usual
 
@@ -15,8 +17,10 @@ def kernels():
 
 
 @pytest.fixture(autouse=True)
-def no_helpers(monkeypatch):
-    monkeypatch.setattr(kernel_module, "helpers", {})
+def no_helpers():
+    ahead.helpers.clear()
+    yield
+    ahead.helpers.clear()
 
 
 @pytest.mark.parametrize("name", ["absorber", "coupled"])
@@ -55,15 +59,27 @@ def test_other_sources_are_not_compiled(monkeypatch):
 
 def test_waiting_ends_with_the_process_or_with_patience(monkeypatch):
     clock = [0.0]
-    monkeypatch.setattr(kernel_module, "cached", lambda function: False)
-    monkeypatch.setattr(kernel_module.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(kernel_module.time, "sleep", lambda seconds: clock.append(clock.pop() + seconds))
+    monkeypatch.setattr(ahead, "cached", lambda function: False)
+    monkeypatch.setattr(ahead.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(ahead.time, "sleep", lambda seconds: clock.append(clock.pop() + seconds))
     endless = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
-    kernel_module.helpers["absorber"] = endless
-    assert kernels().examine is kernels()._examine
-    assert clock[0] > kernel_module.PATIENCE and endless.poll() is None and not kernel_module.helpers
+    missing = SimpleNamespace(overloads={})
+    ahead.helpers["absorber"] = endless
+    ahead.wait_for("absorber", SimpleNamespace(overloads={1: 2}))  # compiled here: no need of anybody
+    assert clock[0] == 0.0 and ahead.helpers
+    ahead.wait_for("absorber", missing)
+    assert clock[0] > ahead.PATIENCE and endless.poll() is None and not ahead.helpers
     endless.communicate()
-    kernel_module.helpers["absorber"] = endless  # has ended
+    ahead.helpers["absorber"] = endless  # has ended
     waited = clock[0]
-    assert kernels().inspect is kernels()._inspect
-    assert clock[0] == waited
+    ahead.wait_for("absorber", missing)
+    assert clock[0] == waited and not ahead.helpers
+
+
+def test_waiting_ends_as_soon_as_the_function_is_kept(monkeypatch):
+    found = iter([False, False, True])
+    monkeypatch.setattr(ahead, "cached", lambda function: next(found))
+    monkeypatch.setattr(ahead.time, "sleep", lambda seconds: None)
+    ahead.helpers["absorber"] = SimpleNamespace(poll=lambda: None)
+    ahead.wait_for("absorber", SimpleNamespace(overloads={}))
+    assert next(found, "none is left") == "none is left" and ahead.helpers

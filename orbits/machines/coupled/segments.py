@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from orbits.compiling.decorators import stored_with
+from orbits.machines.coupled import flow as _flow
 from orbits.machines.coupled.flow import ahead as _ahead
 from orbits.machines.coupled.flow import leg as _leg
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@stored_with(_flow, nogil=True)
 def sample(states, params, ahead, out):
     """w, w', v, v' at given phases after given states; contract, item 4."""
     omega, eps = params[1], params[3]
@@ -47,7 +47,7 @@ _GAUSS = (
 )
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@stored_with(_flow, nogil=True)
 def works(states, params, ahead, out):
     """Work of the excitation, of the damper and of friction inside pieces of segments; contract, item 5.
 
@@ -91,7 +91,7 @@ def works(states, params, ahead, out):
             out[i, 2] = eps * mu * g * abs(way - (q2_rate + 0.5 * sp * span) * span)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@stored_with(_flow, nogil=True)
 def energies(states, params, out):
     """Kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2; contract, item 5."""
     eps = params[3]

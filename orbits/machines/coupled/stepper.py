@@ -23,8 +23,11 @@ import math
 
 from numba import njit
 
+from orbits.compiling import digits as _digits
+from orbits.compiling.decorators import stored_with
 from orbits.compiling.digits import shift as _shift
 from orbits.compiling.digits import wrap as _wrap
+from orbits.machines.coupled import flow as _flow
 from orbits.machines.coupled.flow import ahead as _ahead
 from orbits.machines.coupled.flow import certain, harmonic, rates
 from orbits.machines.coupled.flow import decompose as _decompose
@@ -42,7 +45,7 @@ _HORIZON = 2.5  # M is renewed after this time
 _FOREVER = 1e7  # forcing periods
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _push(state, params):
     """v'' = -q1 - eps lambda q1' + e + eps lambda e' of a state."""
     G, omega, lam, eps, chi = params[0], params[1], params[2], params[3], params[7]
@@ -52,7 +55,7 @@ def _push(state, params):
     return -q1 - drag * q1_rate + eps * G * (math.sin(state[0]) + chi * drag * omega * math.cos(state[0]))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _push_rate(state, params):
     """Third derivative of v of a state without friction and with w' = 0."""
     G, omega, lam, eps, chi = params[0], params[1], params[2], params[3], params[7]
@@ -62,7 +65,7 @@ def _push_rate(state, params):
     return force - q1_rate - drag * _push(state, params)
 
 
-@njit(cache=True, error_model="numpy")
+@stored_with(_digits, _flow)
 def launch(state, params):
     """Reduce the phase and set the mode of a start (Psi, w, w', mode, turns, low, v, v')."""
     psi, turns = _wrap(state[0])
@@ -81,7 +84,7 @@ def launch(state, params):
         state[3] = 1.0 if push >= 0.0 else -1.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@stored_with(_digits, _flow, nogil=True)
 def advance(state, params, until, codes, modes, rows):
     """Run from event to event; see :mod:`orbits.machines.stepping`, item 3."""
     G, omega, lam, eps, r, mu, g, chi = (

@@ -2,10 +2,16 @@
 
 import shutil
 
+import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.graph.attractor import Attractor
+from contvines.loci.chart import Chart
+from contvines.loci.plane_point import PlanePoint
+from contvines.loci.regions import Region
 from contvines.report.page import write_report
+from contvines.survey import Survey, planned
 from orbits import Absorber
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -38,9 +44,64 @@ def browser():
         opened.close()
 
 
+@pytest.fixture(scope="module")
+def chart_file(tmp_path_factory):
+    """A locus of symmetry breakings, a point and two regions."""
+    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.7)
+    graph = cv.diagram(seed, over="amplitude", within=(0.7, 0.75), depth=0)
+    locus = cv.locus(graph["SB1"], over="friction", within=(0.4, 0.5))
+    below = np.add.outer(np.arange(40), -np.arange(40)) < 0
+    regions = [
+        Region((0.71, 0.48), 0.5, [{"word": "LR", "periods": 1}], below),
+        Region((0.74, 0.42), 0.5, [], ~below),
+    ]
+    chart = Chart(
+        ("amplitude", "friction"),
+        ((0.7, 0.75), (0.4, 0.5)),
+        {locus.label: locus},
+        {},
+        regions,
+        {"name": "absorber"},
+    )
+    chart.points["CP1"] = PlanePoint(
+        "CP1", "cusp", chart.parameters, (0.72, 0.45), (locus.label,), locus.branch.points[0]
+    )
+    chart.finished = True
+    return write_report(chart, tmp_path_factory.mktemp("report") / "chart.html", "x-chart.vines")
+
+
+@pytest.fixture(scope="module")
+def atlas_file(tmp_path_factory, page_file):
+    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.55)
+    graph = cv.diagram(seed, over="amplitude", within=(0.4, 0.6), depth=0)
+    graph.attractors += [
+        Attractor(0.5, "LR", 1, "periodic", "B1", 0.75, starts=16),
+        Attractor(0.5, "", 0, "chaotic", None, 0.25, starts=16),
+    ]
+    return write_report(graph, tmp_path_factory.mktemp("report") / "atlas.html", "x-atlas.vines")
+
+
+@pytest.fixture(scope="module")
+def survey_file(tmp_path_factory):
+    """Closed-form outcomes over a grid of two with three samples, one of which failed."""
+    plan = planned(
+        {"half_width": [8.0, 10.0, 12.0], "mass": [1.0, 2.0], "friction": {"uniform": [0.1, 0.3]}}, samples=3
+    )
+    systems = list(plan.systems())
+    peak = np.array([s["half_width"] * s["mass"] + s["friction"] for s in systems])
+    notes = np.array(["", *[""] * (len(systems) - 2), "it did not settle"], dtype=object)
+    columns = {
+        "peak": np.where(notes == "", peak, np.nan).reshape(plan.shape),
+        "covered": np.ones(plan.shape),
+    }
+    survey = Survey(plan, columns, notes.reshape(plan.shape), {"peak": "mm"}, {"over": "frequency"})
+    return write_report(survey, tmp_path_factory.mktemp("report") / "survey.html", "x-survey.nc")
+
+
 @pytest.fixture
-def opened(browser, page_file):
-    page = browser.new_page(viewport={"width": 1200, "height": 1300})
+def opened(browser, request):
+    page_file = request.getfixturevalue(getattr(request, "param", "page_file"))
+    page = browser.new_page(viewport={"width": 1200, "height": 1300}, color_scheme="light")
     page.complaints, page.asked = [], []
     page.on("console", lambda m: page.complaints.append(m.text) if m.type in ("error", "warning") else None)
     page.on("pageerror", lambda error: page.complaints.append(str(error)))
@@ -106,3 +167,109 @@ def test_other_measures_can_be_chosen(opened):
     opened.wait_for_function(
         "document.getElementById('diagram').layout.yaxis.title.text.startsWith('fastest impact')"
     )
+
+
+EVERY = ["page_file", "chart_file", "atlas_file", "survey_file"]
+
+
+def place_of(page, trace, i):
+    """Where on the page a point of a trace is drawn."""
+    return page.evaluate(
+        """([k, i]) => { const d = document.getElementById("diagram"), f = d._fullLayout, t = d.data[k], r = d.getBoundingClientRect();
+             return [r.left + f._size.l + f.xaxis.d2p(t.x[i]), r.top + f._size.t + f.yaxis.d2p(t.y[i])]; }""",
+        [trace, i],
+    )
+
+
+def trace_with(page, what):
+    return page.evaluate(f"() => document.getElementById('diagram').data.findIndex((t) => {what})")
+
+
+@pytest.mark.parametrize("opened", ["chart_file"], indirect=True)
+def test_a_chart_shows_the_motion_of_the_point_that_is_clicked(opened):
+    assert "1 locus, 1 point of codimension two, 2 regions" in opened.locator("#about").inner_text()
+    assert opened.locator("#portrait .scatterlayer .trace").count() == 2
+    line = trace_with(opened, "t.customdata && t.customdata[0][1] !== null && t.x.length > 2")
+    x, y = place_of(opened, line, 2)
+    opened.mouse.move(x, y)
+    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=10_000)
+    assert "symmetry breaking" in opened.locator("#diagram .hoverlayer").text_content()
+    opened.mouse.click(x, y)
+    opened.wait_for_function("document.getElementById('python').textContent.endsWith('.orbit(2)')")
+    assert "word LR" in opened.locator("#orbit-about").inner_text()
+    opened.locator("#row-CP1").click()
+    assert opened.locator("#orbit-title").inner_text() == "CP1: cusp"
+    opened.locator("#row-SB1").press("Enter")
+    before = opened.locator("#python").inner_text()
+    opened.locator("#diagram").press("ArrowRight")
+    assert opened.locator("#python").inner_text() != before
+    first = int(opened.locator("#animation").get_attribute("data-frame"))
+    if opened.locator("#play").inner_text() == "play":
+        opened.locator("#play").click()
+    opened.wait_for_function(f"Number(document.getElementById('animation').dataset.frame) > {first + 3}")
+    assert opened.locator("#diagram .heatmaplayer image").count() == 1
+    opened.locator("#tints").uncheck()
+    opened.wait_for_function("document.querySelectorAll('#diagram .heatmaplayer image').length === 0")
+
+
+@pytest.mark.parametrize("opened", ["atlas_file"], indirect=True)
+def test_an_atlas_shows_shares_and_leads_from_an_attractor_to_its_branch(opened):
+    assert opened.locator("#share .barlayer .trace").count() == 2
+    rows = opened.locator("#attractors tbody tr")
+    assert rows.count() == 2 and "75 % of 16" in rows.nth(0).inner_text()
+    rows.nth(0).click()
+    assert opened.locator("#orbit-title").inner_text().startswith("B1, point")
+    value = float(opened.locator("#orbit-about").inner_text().split("amplitude = ")[1].split(";")[0])
+    assert abs(value - 0.5) < 0.03
+
+
+def test_a_diagram_without_attractors_has_no_shares(opened):
+    assert not opened.locator("#shares").is_visible()
+
+
+@pytest.mark.parametrize("opened", ["survey_file"], indirect=True)
+def test_a_survey_shows_the_machines_behind_a_point(opened):
+    assert "18 machines, 1 of them failed; uncertain: friction" in opened.locator("#about").inner_text()
+    assert opened.locator("#diagram .heatmaplayer image").count() == 1
+    opened.locator("#over").select_option("half_width")
+    opened.wait_for_function("document.querySelectorAll('#diagram .scatterlayer .trace').length > 4")
+    k = trace_with(opened, "t.mode === 'markers' && t.x.length > 5")
+    place = opened.evaluate(f"() => document.getElementById('diagram').data[{k}].customdata.indexOf(7)")
+    opened.mouse.click(*place_of(opened, k, place))
+    opened.wait_for_function("document.querySelector('#chosen tr.chosen')?.id === 'system-7'")
+    assert opened.locator("#system-title").inner_text() == "half_width = 10, mass = 1: 3 machines"
+    opened.locator("#diagram").press("ArrowRight")
+    opened.wait_for_function("document.querySelector('#chosen tr.chosen').id === 'system-8'")
+    assert "it did not settle" in opened.locator("#failed").inner_text()
+    opened.locator("#outcome").select_option("covered")
+    opened.wait_for_function(
+        "document.getElementById('diagram').layout.yaxis.title.text.startsWith('share of the interval')"
+    )
+
+
+@pytest.mark.parametrize("opened", EVERY, indirect=True)
+def test_dark_colours_and_print(opened):
+    def brightness():
+        return opened.evaluate(
+            "() => getComputedStyle(document.body).backgroundColor.match(/\\d+/g).slice(0, 3).reduce((a, b) => a + +b, 0)"
+        )
+
+    assert brightness() > 700
+    opened.emulate_media(color_scheme="dark")
+    opened.wait_for_function(
+        "document.getElementById('diagram').layout.font.color === getComputedStyle(document.body).color"
+    )
+    assert brightness() < 120
+    opened.emulate_media(media="print", color_scheme="light")
+    assert brightness() > 700
+    assert not opened.locator(".controls").first.is_visible()
+    assert len(opened.pdf()) > 10_000
+    opened.emulate_media(media="screen")
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_every_page_is_small_and_has_no_addresses(name, request):
+    text = request.getfixturevalue(name).read_text(encoding="utf-8")
+    assert len(text) < 5_000_000
+    for part in text.split('<script id="plotly"')[0], text.split("</script>")[-2]:
+        assert "http" not in part.replace("http-equiv", "")

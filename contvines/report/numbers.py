@@ -1,0 +1,33 @@
+"""Numbers and names as a page has them: few digits, no infinities, no markup."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def shortened(values: Any, digits: int = 9) -> list[float | None]:
+    """Numbers with so many digits; None for what is no finite number."""
+    return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
+
+
+def rounded(value: Any) -> Any:
+    """Arrays and numbers within dicts and lists with five digits."""
+    if isinstance(value, np.ndarray):
+        return shortened(value, 5)
+    if isinstance(value, dict):
+        return {k: rounded(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [rounded(v) for v in value]
+    return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
+def plain_label(label: str) -> str:
+    """A matplotlib label as plain text: no dollars and commands."""
+    for old, new in (
+        ("$^{-1}$", "⁻¹"), ("$", ""), (r"\Omega", "Ω"), (r"\mu", "μ"), (r"\tilde g", "g"), (r"\varepsilon", "ε"), (r"\lambda", "λ"),
+        ("^{2}", "²"), ("^{-2}", "⁻²"), ("^{3}", "³"), ("^+", "⁺"), ("^-", "⁻"), ("^2", "²"), ("_1", "₁"), ("_-", "₋"), (r"\,", " "),
+    ):  # fmt: skip
+        label = label.replace(old, new)
+    return label

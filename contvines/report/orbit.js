@@ -1,0 +1,63 @@
+// One motion: portrait, history, animation.
+function show(scene) {
+  const tint = dark.matches ? "#6fb1ff" : "#0b3c6f", second = dark.matches ? "#ff9d5c" : "#b5531c", grey = "#8a8a8a";
+  const { portrait, history, events } = scene;
+  const walls = (portrait.walls || []).map((w) => ({ type: "line", x0: w, x1: w, yref: "paper", y0: 0, y1: 1, line: { color: grey, width: 5 } }));
+  Plotly.react("portrait", [
+    { x: portrait.x, y: portrait.y, mode: "lines", line: { color: tint, width: 1.8 }, hoverinfo: "skip" },
+    { x: events.map((e) => e.x), y: events.map((e) => e.y), mode: "markers+text", text: events.map((e) => e.event), textposition: "top center",
+      marker: { size: 8, color: tint, symbol: "circle-open" }, hoverinfo: "text" },
+  ], layout({ shapes: walls, xaxis: axis(portrait.names[0], portrait.reversed ? { autorange: "reversed" } : {}), yaxis: axis(portrait.names[1]) }), options);
+  const curves = Object.entries(history.curves).map(([name, y], i) => ({ x: history.x, y, name, mode: "lines",
+    line: { color: i % 2 ? second : grey, width: 1.8, dash: i % 2 ? "solid" : "dash" } }));
+  const sides = (history.walls || []).map((y) => ({ x: history.x, y, mode: "lines", line: { color: grey, width: 1 }, hoverinfo: "skip", showlegend: false }));
+  Plotly.react("history", [...sides, ...curves], layout({ showlegend: true, legend: { orientation: "h", y: 1.12 }, margin: { l: 52, r: 12, t: 30, b: 46 },
+    xaxis: axis(history.name), yaxis: axis(history.unit) }), options);
+  $("stage").hidden = !scene.animation;
+  if (scene.animation) animate(scene.animation);
+  else stop();
+}
+
+// ------------------------------------------------------------------ the animation
+function stop() {
+  if (clock !== null) cancelAnimationFrame(clock);
+  clock = null;
+  $("play").setAttribute("aria-pressed", "false");
+  $("play").textContent = "play";
+}
+let frame = 0;
+function animate(motion) {
+  stop();
+  const canvas = $("animation"), pen = canvas.getContext("2d");
+  const all = [...motion.box.map((v) => v + motion.half_width), ...motion.box.map((v) => v - motion.half_width)];
+  const low = Math.min(...all), high = Math.max(...all), sign = motion.left > 0 ? -1 : 1; // the left wall stands on the left
+  const at = (v) => canvas.width / 2 + sign * (v - (low + high) / 2) * (canvas.width - 90) / (high - low);
+  const paint = (share) => {
+    const n = motion.box.length, t = share * (n - 1), i = Math.min(Math.floor(t), n - 2), f = t - i;
+    const mix = (v) => v[i] * (1 - f) + v[i + 1] * f;
+    const box = mix(motion.box), body = mix(motion.body), width = 34;
+    pen.clearRect(0, 0, canvas.width, canvas.height);
+    pen.strokeStyle = ink(); pen.lineWidth = 3;
+    const [a, b] = [at(box + motion.half_width), at(box - motion.half_width)].sort((p, q) => p - q);
+    pen.beginPath();
+    pen.moveTo(a - width / 2, 18); pen.lineTo(a - width / 2, 88); pen.lineTo(b + width / 2, 88); pen.lineTo(b + width / 2, 18);
+    pen.stroke();
+    pen.fillStyle = dark.matches ? "#ff9d5c" : "#b5531c";
+    pen.fillRect(at(body) - width / 2, 52, width, 34);
+    frame += 1;
+    canvas.dataset.frame = frame;
+  };
+  const seconds = 2.5 * (motion.periods || 1);
+  const run = (start) => (now) => {
+    paint(((now - start) / 1000 / seconds) % 1);
+    clock = requestAnimationFrame(run(start));
+  };
+  paint(0);
+  $("play").onclick = () => {
+    if (clock !== null) return stop();
+    $("play").setAttribute("aria-pressed", "true");
+    $("play").textContent = "pause";
+    clock = requestAnimationFrame((now) => run(now)(now));
+  };
+  if (!still.matches && started) $("play").onclick();
+}
