@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.crossing import cross
+from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import SAME, distance
 from orbits.cycles import measures as measuring
 from orbits.cycles.equations import equations
@@ -242,6 +243,10 @@ class OrbitProblem:
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
         return cross(self, point)
+
+    def dead_end(self, point: Any) -> str:
+        """Why no motion was found on the other side of a border; empty where the reason is not known."""
+        return dead_end(self, point)
 
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
