@@ -15,6 +15,7 @@ import numpy as np
 
 from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
+from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends_to
 from orbits.borders.neighbours import (
     REAL,
@@ -64,7 +65,7 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
         return from_rest(problem, point)
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
-    if rest:
+    if rest or piled_up(problem.orbit(u, p)):
         return rest
     old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), int(point.margin_index))
     seeds = []

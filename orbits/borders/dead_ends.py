@@ -10,6 +10,7 @@ from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
 
 SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
+UNRESOLVED = 1e-5  # the way after an impact this slow, its square, is lost in that of the margins
 VANISHING = 1e-9  # margins smaller than this are those of the border itself
 ONE_WAY = 1e-9  # relative difference of the frictions, slope included, of the two directions
 
@@ -35,6 +36,11 @@ def dead_end(problem: CycleProblem, point: Any) -> str:
     if speeds:
         return PILING.format(speed=min(speeds))
     return TOUCHING.format(gap=min(gaps)) if gaps else ""
+
+
+def piled_up(orbit: Solution) -> bool:
+    """Whether a border orbit has an impact that is too slow to see what the next ones do."""
+    return any(m.kind == "approach" and VANISHING < m.value < UNRESOLVED for m in orbit.margins)
 
 
 def _gives_way_one_way(orbit: Solution) -> bool:

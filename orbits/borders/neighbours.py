@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from orbits.borders.distance import tends_to
 from orbits.borders.rewriting import Edit, edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
-from orbits.contacts.letters import STICK
+from orbits.contacts.letters import HIT, STICK
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
@@ -144,13 +145,28 @@ def grown(
     guess = other.reduce(nodes)
     change = edits[0].change
     if change.grows is Grows.MARGIN:
-        return _beside(other, guess, p, orbit, steady)
+        found = _beside(other, guess, p, orbit, steady)
+        soft = None if found is not None else _soft_impact(other, guess, p)
+        if soft is None:
+            return found
+        # another round still has the impact whose speed vanishes at the border: it grows
+        first, change = soft, replace(change, events=other.word.events[soft : soft + 2], grows=Grows.SPEED)
     for sizes in ways:
         found = _climb(other, guess, first, change, p, sizes)
         if found and steady and not stable_at(other, found[-1].u, found[-1].p):
             return None
         if found and _begins_at(orbit, other, first, change, p, found):
             return Grown(other, *found[-1][:3])
+    return None
+
+
+def _soft_impact(other: CycleProblem, guess: np.ndarray, p: float) -> int | None:
+    """An impact of vanishing speed; there the equations are singular."""
+    orbit, units = other.orbit(guess, p), other.equations.unit
+    for place in range(other.length):
+        speed = abs(orbit.events.rate_post[place]) / units[place, 1]
+        if other.word.letter(place).kind == HIT and speed < NEAR:
+            return place
     return None
 
 
@@ -197,7 +213,7 @@ def _hold(
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if (
-            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK
+            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
         ):  # it comes to rest the sooner the slower it is
             u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)

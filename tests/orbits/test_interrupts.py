@@ -22,7 +22,7 @@ from orbits.attractors import find_attractor, sweep
 machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 coupled = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.9, forcing=2.0, frequency=1.0)
 long = coupled.symmetric_orbit().repeat(200)  # its multipliers are asked of Python
-graph = cv.diagram(machine.symmetric_orbit(amplitude=0.6), over="amplitude", within=(0.65, 0.8), depth=0)
+graph = cv.diagram(machine.symmetric_orbit(amplitude=0.6), over="amplitude", within=(0.55, 0.8), depth=0)
 
 def multipliers():
     type(long)(long.model, long.word, long.periods, long.nodes, long.params).multipliers
