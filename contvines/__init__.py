@@ -12,6 +12,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .doors import lead
+
 __version__ = "0.1.0"
 
 _HOME = {
@@ -44,6 +46,34 @@ _HOME = {
     "switch": ".graph.automatic",
     "trace": ".continuation.trace",
 }
+
+lead(
+    {
+        "Settings": "contvines.continuation.settings:Settings",
+        "MapPopulation": "contvines.coexistence.maps:MapPopulation",
+        "branch_dataset": "contvines.export.frames:branch_dataset",
+        "branch_frame": "contvines.export.frames:branch_frame",
+        "branch_page": "contvines.graph.pages:branch_page",
+        "chart_table": "contvines.loci.table:table",
+        "circles": "contvines.circles.follow:circles",
+        "export": "contvines.export:export",
+        "graph_frame": "contvines.export.frames:graph_frame",
+        "graph_page": "contvines.graph.pages:graph_page",
+        "learn": "contvines.continuation.learning:learn",
+        "load": "contvines.store:load",
+        "merge": "contvines.coexistence.merging:merge",
+        "plot_basins": "contvines.plots.basins:plot_basins",
+        "plot_chart": "contvines.plots.chart:plot_chart",
+        "plot_circles": "contvines.plots.circles:plot_circles",
+        "plot_diagram": "contvines.plots.diagram:plot_diagram",
+        "plot_portrait": "contvines.plots.portrait:plot_portrait",
+        "plot_survey": "contvines.plots.survey:plot_survey",
+        "point_page": "contvines.graph.pages:point_page",
+        "prove": "contvines.graph.proving:prove",
+        "save": "contvines.store:save",
+        "table": "contvines.graph.table:shown",
+    }
+)
 
 __all__ = [
     "AlgebraicProblem",

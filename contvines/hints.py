@@ -9,6 +9,8 @@ from dataclasses import fields
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
+from .doors import above
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -31,7 +33,7 @@ def hinting(function: Callable[P, R]) -> Callable[P, R]:
         for name in options:
             if name in names:
                 continue
-            from .continuation.settings import Settings
+            Settings = above("Settings")
 
             if "settings" in names and name in [field.name for field in fields(Settings)]:
                 hint = f"it is a setting: settings={{{name!r}: {options[name]!r}}} would do"

@@ -5,7 +5,12 @@ author = "The contvines developers"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc"]
 exclude_patterns = ["_build"]
 html_theme = "alabaster"
-html_theme_options = {"page_width": "1120px", "sidebar_width": "230px", "body_max_width": "860px", "fixed_sidebar": True}
+html_theme_options = {
+    "page_width": "1120px",
+    "sidebar_width": "230px",
+    "body_max_width": "860px",
+    "fixed_sidebar": True,
+}
 html_extra_path = ["study.schema.json"]
 myst_heading_anchors = 3
 myst_enable_extensions = ["dollarmath"]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
+from orbits.attractors.motion import Motion
 from orbits.attractors.recurrence import settle
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
 from orbits.orbit import Orbit
@@ -24,36 +24,9 @@ PATIENCE, LATE = (
     3000.0,
 )  # how often, and for how many more periods, a motion that does not recur is looked at again
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
+BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
-
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """One attractor as `contvines` is told of it.
-
-    Attributes
-    ----------
-    kind : str
-        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow`` or ``escaped``.
-    word : str
-    periods : int
-    problem, u : Problem and float array, or None
-        The motion as a solution, where it has a word.
-    exponent, error : float
-        Largest Lyapunov exponent per forcing period and its standard error; nan for motions that recur.
-    state : float array (S,)
-        From which a simulation goes on.
-    """
-
-    kind: str
-    word: str = ""
-    periods: int = 0
-    problem: Any = field(default=None, repr=False)
-    u: np.ndarray | None = field(default=None, repr=False)
-    exponent: float = float("nan")
-    error: float = float("nan")
-    state: np.ndarray | None = field(default=None, repr=False)
 
 
 class Population:
@@ -99,6 +72,11 @@ class Population:
     def about(self) -> dict[str, Any]:
         """The machine's name and settings."""
         return self.model.settings()
+
+    @property
+    def brief(self) -> tuple[int, int]:
+        """Values, and starts at each, of a brief look."""
+        return BRIEF
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -357,9 +357,10 @@ class OrbitProblem:
         values: np.ndarray,
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
+        special: Mapping[int, Any] | None = None,
     ) -> Any:
         """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
-        return above("of_branch")(self, points, values, marks, within)
+        return above("of_branch")(self, points, values, marks, within, special)
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""

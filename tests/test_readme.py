@@ -1,5 +1,6 @@
 """The README's two commands, its code and its names are true."""
 
+import itertools
 import os
 import re
 import shlex
@@ -36,7 +37,7 @@ def test_main_job_runs_as_written(tmp_path):
 def test_both_commands_start_from_a_bare_python():
     for name in ("run", "tests"):
         assert command(name).startswith("python3 -m venv .venv && .venv/bin/pip install ")
-    assert command("tests").endswith("pytest")
+    assert " && .venv/bin/python -m pytest" in command("tests")
 
 
 def test_python_block_runs(tmp_path, monkeypatch):
@@ -47,6 +48,55 @@ def test_python_block_runs(tmp_path, monkeypatch):
     exec(compile(block[1], "README.md", "exec"), names)
     assert names["graph"].finished
     assert (tmp_path / "absorber.vines").exists()
+
+
+SMALL = """
+[model]
+name = "absorber"
+restitution = 0.76
+friction = 0.5
+gravity = 0.211
+mass_ratio = 0.006
+[start]
+word = "LR"
+amplitude = 0.72
+[continue]
+parameter = "amplitude"
+within = [0.7, 0.75]
+depth = 1
+[atlas]
+values = 2
+starts = 8
+[sweep]
+count = 3
+transient = 50
+[survey]
+vary.restitution = [0.75, 0.76]
+outcomes = ["covered"]
+"""
+
+
+def test_what_to_do_with_it_can_be_done_line_by_line(tmp_path, monkeypatch, capsys):
+    """Every command of the list, as it is written, on a study of one short branch."""
+    from contvines.command.cli import main
+
+    block = re.search(r"## What to do with it\n```sh\n(.+?)```", README, re.DOTALL)
+    assert block
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(SMALL, encoding="utf-8")
+    lines = [shlex.split(line, comments=True) for line in block[1].splitlines()]
+    assert len(lines) >= 10 and all(words[0] == "contvines" for words in lines)
+    for words in lines:
+        with pytest.raises(SystemExit) as end:
+            main(words[1:])
+        said = capsys.readouterr()
+        assert not end.value.code, (words, said.err)
+        for option, place in itertools.pairwise(words):
+            if option in ("--plot", "-o"):
+                assert (tmp_path / place).stat().st_size > 1000, words
+    assert {"study.vines", "study-atlas.vines", "study-chart.vines", "study-survey.nc"} <= {
+        p.name for p in tmp_path.iterdir()
+    }
 
 
 def test_study_block_is_a_good_study():

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from ..problems.registry import without_problem
 from .ending import Ending
 
@@ -70,31 +72,15 @@ class Branch:
         return f"Branch({self.label}: {len(self)} points, {self.parameter} in [{lo:.6g}, {hi:.6g}])"
 
     def _repr_html_(self) -> str:
-        from ..graph.table import Table, describe, ends, number
-
-        intervals = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in self.stable_intervals()) or "-"
-        low, high = self.range
-        rows = [
-            ("what", describe(self)),
-            (self.parameter, f"{number(low, 10)}..{number(high, 10)}"),
-            ("stable", intervals),
-            ("points", str(len(self))),
-            ("from .. to", ends(self)),
-            ("special points", ", ".join(label for _, label in self.marks) or "-"),
-        ]
-        return Table((self.label, "branch"), rows).html()
+        return above("branch_page")(self)
 
     def to_pandas(self) -> Any:
         """The points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
-        from ..export.frames import branch_frame
-
-        return branch_frame(self)
+        return above("branch_frame")(self)
 
     def to_xarray(self) -> Any:
         """The branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
-        from ..export.frames import branch_dataset
-
-        return branch_dataset(self)
+        return above("branch_dataset")(self)
 
     @property
     def range(self) -> tuple[float, float]:
@@ -155,8 +141,21 @@ class Branch:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         return self.problem.orbit(self.points[i], float(self.values[i]))
 
-    def prove(self, within: tuple[float, float] | None = None, bits: int | None = None) -> Any:
+    def prove(
+        self,
+        within: tuple[float, float] | None = None,
+        bits: int | None = None,
+        special: Mapping[str, Any] | None = None,
+    ) -> Any:
         """Prove the branch between its special points, or the part of it ``within`` an interval of the parameter.
+
+        Parameters
+        ----------
+        within : (float, float), optional
+        bits : int, optional
+            Of no account: stretches are proved with a fixed precision.
+        special : dict, optional
+            The graph's special points by label: stretches then go up to the points themselves.
 
         Raises
         ------
@@ -168,7 +167,8 @@ class Branch:
             raise ValueError(
                 f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
             )
-        return prove(self.points, self.values, [i for i, _ in self.marks], within)
+        known = {i: special[label] for i, label in self.marks if special and label in special}
+        return prove(self.points, self.values, [i for i, _ in self.marks], within, known)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this branch in the JSON of a graph."""

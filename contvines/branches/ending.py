@@ -21,12 +21,14 @@ class Reason(StrEnum):
     MAX_POINTS = "max-points"
     CLOSED = "closed"
     ESCAPED = "escaped"
+    CREEPING = "creeping"
     LEAVES = "leaves"
     GOES_ON = "goes-on"
     REACHES = "reaches"
     MEETS = "meets"
     MEETS_SYMMETRIC = "meets-symmetric"
     COMES_BACK = "comes-back"
+    STOPS = "stops"
     SAID = "said"
 
 
@@ -87,6 +89,8 @@ class Ending:
                 return f"goes on from {self.other} at {self.point}"
             case Reason.REACHES:
                 return f"reaches {self.point} ({self.kind}) at {at}"
+            case Reason.STOPS:
+                return f"stops at {self.point} ({self.text}), {at}"
             case Reason.MEETS:
                 return f"meets {self.other} at {self.point} ({self.kind}), {at}"
             case Reason.MEETS_SYMMETRIC:

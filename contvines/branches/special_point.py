@@ -7,7 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from ..problems.registry import without_problem
+
+TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 
 
 @dataclass(eq=False)
@@ -97,6 +100,37 @@ class SpecialPoint:
         return "; ".join(filter(None, (self.name, met, *self.remarks)))
 
     @property
+    def frequency(self) -> float | None:
+        """Angular frequency of the pair on the stability boundary: omega at a Hopf point, the angle per period at a
+        Neimark-Sacker point; None at other points."""
+        pairs = self.multipliers[np.imag(self.multipliers) > 0.0]
+        if self.kind not in ("hopf", "neimark-sacker") or not len(pairs):
+            return None
+        if self.kind == "hopf":
+            return float(np.imag(pairs[np.argmin(np.abs(np.real(pairs)))]))
+        return float(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))]))
+
+    @property
+    def eigenvectors(self) -> np.ndarray:
+        """Eigenvectors as columns, shape (N, m), of length one; column j belongs to ``multipliers[j]``.
+
+        Of dF/du; of a cycle of a map those of the product of its Jacobians, from its first point.
+
+        Raises
+        ------
+        ValueError
+            If the problem is not attached or does not tell them.
+        """
+        if self.problem is None:
+            raise ValueError(without_problem(self.label))
+        own = getattr(self.problem, "eigenvectors", None)
+        if own is None:
+            raise ValueError(
+                f"{self.label}: its problem tells no eigenvectors; problems made of your own equations do"
+            )
+        return own(self.u, self.value, self.multipliers)
+
+    @property
     def orbit(self) -> Any:
         """The solution as the object that its problem hands to users."""
         if self.problem is None:
@@ -105,35 +139,14 @@ class SpecialPoint:
 
     def plot(self, **options: Any) -> Any:
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
-        from ..plots.portrait import plot_portrait
-
-        return plot_portrait(self.orbit, **options)
+        return above("plot_portrait")(self.orbit, **options)
 
     def circles(self, to: float | None = None, **options: Any) -> Any:
         """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
-        from ..circles.follow import circles
-
-        return circles(self, to, **options)
+        return above("circles")(self, to, **options)
 
     def _repr_html_(self) -> str:
-        from ..graph.table import Table, number
-
-        sizes = ", ".join(
-            number(m.real, 8) + (f" {'+' if m.imag > 0 else '-'} {number(abs(m.imag), 8)}i" if m.imag else "")
-            for m in self.multipliers[:8]
-        )
-        rows = [
-            (
-                "kind",
-                " ".join(filter(None, (self.criticality or "", self.kind, "" if self.real else "(virtual)"))),
-            ),
-            ("on", self.branch),
-            (self.parameter, number(self.value, 14)),
-            ("located to", number(self.location_error, 2)),
-            ("multipliers", sizes or "-"),
-            *([("note", self.note)] if self.note else []),
-        ]
-        return Table((self.label, "special point"), rows).html()
+        return above("point_page")(self)
 
     def prove(self, **options: Any) -> Any:
         """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from .invariance import Curve
 
 
@@ -175,6 +176,4 @@ class Circles:
 
     def plot(self, **options: Any) -> Any:
         """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""
-        from ..plots.circles import plot_circles
-
-        return plot_circles(self, **options)
+        return above("plot_circles")(self, **options)

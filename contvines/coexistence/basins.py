@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..doors import above
 from ..graph.attractor import Attractor
 from .population import population_of
 
@@ -107,9 +108,7 @@ class Basins:
 
     def plot(self, **options: Any) -> Figure:
         """The plane in colours; see :func:`contvines.plots.basins.plot_basins`."""
-        from ..plots.basins import plot_basins
-
-        return plot_basins(self, **options)
+        return above("plot_basins")(self, **options)
 
 
 def basins(

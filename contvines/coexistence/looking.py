@@ -16,8 +16,6 @@ from .build import locate
 from .census import census
 from .population import Population
 
-VALUES, STARTS = 5, 48  # few: a look costs a fraction of the diagram
-
 
 def look(graph: Graph, population: Population) -> list[Attractor]:
     """Attractors that a few simulated starts reach and that lie on no branch of the graph; kept as ``graph.missing``.
@@ -32,8 +30,9 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
     run = Run(graph, Settings.kept(graph.settings), NullJournal(), 0, True, None, None)
     adopt(run)
     found: list[Attractor] = []
-    for t in (np.arange(VALUES) + 0.5) / VALUES:
-        for counted in census(population, float(low + (high - low) * t), STARTS, 0, run.journal):
+    values, starts = population.brief
+    for t in (np.arange(values) + 0.5) / values:
+        for counted in census(population, float(low + (high - low) * t), starts, 0, run.journal):
             about = counted.attractor
             if about.kind == "slow" or (counted.problem is not None and locate(run, counted) is not None):
                 continue

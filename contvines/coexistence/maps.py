@@ -17,6 +17,7 @@ RETURN = 1e-9  # difference that counts as a return, relative to the box
 NEAR = 1e-5  # a settled point lies so near to a solved cycle that it belongs to it
 FAR = 1e4  # times the box: escaped
 GROWTH = 4000  # iterations for a Lyapunov exponent
+BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SIGMAS = 3.0
 
 
@@ -59,6 +60,11 @@ class MapPopulation:
     def about(self) -> dict[str, Any]:
         """The map's name."""
         return {"name": self.problem.name}
+
+    @property
+    def brief(self) -> tuple[int, int]:
+        """Values, and starts at each, of a brief look."""
+        return BRIEF
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -9,6 +9,8 @@ The contract, in words:
 3. A motion has ``kind``, ``word``, ``periods``, ``exponent`` and ``error`` (the largest Lyapunov exponent per period and its
    standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None.
 4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
+5. ``population.brief`` is how many values and how many starts at each a brief look after a diagram takes: few, so that it costs a
+   fraction of the diagram.
 """
 
 from __future__ import annotations
@@ -47,6 +49,9 @@ class Population(Protocol):
     def about(self) -> dict[str, Any]: ...
     @property
     def names(self) -> tuple[str, ...]: ...
+
+    @property
+    def brief(self) -> tuple[int, int]: ...
 
     def box(self, p: float) -> np.ndarray: ...
 

@@ -58,8 +58,8 @@ def choose(
     import dataclasses
 
     from contvines.command.compose import say
-    from contvines.command.survey import surveyed
     from contvines.command.survey_study import family_of, outcomes_of, plan_and_machine, units_of
+    from contvines.command.surveying import surveyed
     from contvines.survey.work import Job, work
     from orbits.design import best
 

@@ -17,10 +17,13 @@ from contvines.command import (
     circle,
     design,
     editor_schema,
-    look,
+    export,
+    orbit,
+    plot,
     prove,
     report,
     run,
+    show,
     survey,
     sweep,
 )
@@ -67,11 +70,11 @@ app.command()(basins.basins)
 app.command()(chart.locus)
 app.command()(chart.chart)
 app.command()(circle.circle)
-app.command()(look.show)
-app.command()(look.orbit)
+app.command()(show.show)
+app.command()(orbit.orbit)
 app.command()(prove.prove)
-app.command()(look.plot)
-app.command()(look.export)
+app.command()(plot.plot)
+app.command()(export.export)
 app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(survey.survey)
@@ -104,6 +107,10 @@ def main(arguments: list[str] | None = None) -> None:
             stopped(str(error))
         print(f"contvines: {sentence(error)}", file=sys.stderr)
         sys.exit(1)
+    if {"-h", "--help"} & set(words):
+        from contvines.command.help_note import help_note
+
+        print(end=help_note(words))
     if status == 130:  # Ctrl-C outside the computation
         stopped()
     sys.exit(status if isinstance(status, int) else 0)

@@ -72,7 +72,7 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
     """
     import numpy as np
 
-    from contvines.plots.diagram import default_measure
+    from contvines.graph.measures import default_measure
     from orbits.design.references import NAMES, reference
 
     shown, over = y or default_measure(graph), x or graph.parameter

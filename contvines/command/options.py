@@ -16,3 +16,5 @@ TrustOption = Annotated[
         help="Import Python functions that the file names: runs their code, so only for files whose maker you trust.",
     ),
 ]
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]

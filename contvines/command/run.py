@@ -46,7 +46,13 @@ PlotOption = Annotated[
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
 XOption = Annotated[str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")]
-YOption = Annotated[str | None, typer.Option("-y", help="Measure on the y axis; by default B.")]
+YOption = Annotated[
+    str | None,
+    typer.Option(
+        "-y",
+        help="Measure on the y axis; by default B, max_abs_q1 of the coupled machine, the first measure of other problems (FILE --help names it).",
+    ),
+]
 
 
 def diagram(

@@ -104,7 +104,7 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
 
 def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:
     """Word, parameter values and B at the word's first impact of every branch that has one."""
-    from contvines.plots.diagram import measured
+    from contvines.graph.measures import measured
     from orbits.words import Word
 
     found = []

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from ..problems.scales import Scales, in_fields
-from .reach import MOVED
 
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
 LONGEST = 0.5  # step, in the metric
 TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
 TURN = 0.6  # largest angle between tangents
+SLOW = 0.2  # part of its range by which the parameter moves while the unknowns double theirs, on branches that do not run away
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
 SMALLEST_BEND = 1e-4
@@ -31,11 +31,14 @@ class Scout:
     Parameters
     ----------
     problem : Problem
-        With ``lengths`` (N,), over which its equations bend, and ``bends`` (N,), whether they do.
+        With ``lengths`` (N,), over which its equations bend, ``bends`` (N,), whether they do, and ``known`` (N,), whether the
+        length says anything.
     within : (float, float)
+    given : ndarray, optional
+        Scales of the unknowns where the user has given them.
     """
 
-    def __init__(self, problem: Any, within: tuple[float, float]) -> None:
+    def __init__(self, problem: Any, within: tuple[float, float], given: np.ndarray | None = None) -> None:
         self.problem, self.within, self.n = problem, within, int(problem.dimension)
         self.width = within[1] - within[0]
         self.kernels, self.work = problem.kernels, problem.workspace()
@@ -47,6 +50,9 @@ class Scout:
         self.rows = np.zeros(self.n)
         self.rates: list[float] = []
         self.noise = 0.0
+        self.given = given is not None
+        if given is not None:
+            self.first, self.scale = given, given.copy()
 
     # ------------------------------------------------------------------ one point
     def weights(self) -> np.ndarray:
@@ -98,9 +104,34 @@ class Scout:
             border[i] = 1.0
             found = self._correct(z, border, 40)
             if found is not None and self.within[0] <= found[0][-1] <= self.within[1]:
+                self._take_from_tangent(found[1])
                 self._saw(found[0], True)
                 return found
         return None
+
+    def _take_from_tangent(self, tangent: np.ndarray) -> None:
+        """Sizes of unknowns of which nothing is known: how far they get while another one, or the parameter, covers its own."""
+        known = np.asarray(self.problem.known)
+        if self.given or known.all():
+            return
+        rates, sizes = np.abs(tangent), np.append(self.first, self.width)
+        moving = np.append(known, True) & (rates > 0.0)
+        free = ~known & (rates[:-1] > 0.0) & self._confirmed(tangent)[:-1]
+        if not moving.any() or not free.any():
+            return
+        way = float((sizes[moving] / rates[moving]).min())
+        self.first = np.where(free, np.maximum(rates[:-1] * way, 1e-300), self.first)
+        self.scale = self.first.copy()
+
+    def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
+        """Which entries of a tangent are no rounding: they are the same when it is solved for with another border."""
+        step, again = np.zeros(self.n + 1), np.zeros(self.n + 1)
+        border = np.random.default_rng(9).uniform(0.5, 1.0, self.n + 1) / np.append(self.first, self.width)
+        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, again)
+        weighed = self.weights() * tangent
+        with np.errstate(all="ignore"):
+            again = again * (float(weighed @ tangent) / float(weighed @ again))
+            return np.abs(again - tangent) <= 0.01 * np.abs(tangent)
 
     def walk(self, z: np.ndarray, tangent: np.ndarray, steps: int) -> None:
         """Follow the branch for some steps in the direction of the tangent."""
@@ -136,7 +167,7 @@ class Scout:
             return False
         moved, in_all = extent[-1] - self.before[-1], extent[-1]
         self.before = extent
-        return bool(moved < MOVED * in_all)
+        return bool(moved < SLOW * in_all)
 
     def scales(self, given: np.ndarray | None) -> Scales:
         """What was seen; ``given`` wins over it."""
@@ -144,7 +175,8 @@ class Scout:
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         bends, first = np.asarray(self.problem.bends), self.first
         moved = extent[:-1] > 1e-6 * np.where(bends, first, np.maximum(size, 1e-300))
-        rest = np.where(bends, first, np.where(size > 0.0, size, 1.0))
+        sure = bends | np.asarray(self.problem.known)
+        rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
         seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
         far = (extent[:-1] > 1e-2 * size) | (np.where(bends, extent[:-1], 0.0) > first)
@@ -170,10 +202,7 @@ def learn(problem: Any, within: tuple[float, float], given: np.ndarray | None = 
     given : ndarray, optional
         Scales of the unknowns where the user has given them.
     """
-    scout = Scout(problem, within)
-    if given is not None:
-        scout.first = given
-        scout.scale = given.copy()
+    scout = Scout(problem, within, given)
     begin = scout.start()
     if begin is None:
         return Scales(in_fields(scout.first), scout.width, np.ones(scout.n), 1.0, 0.0)

@@ -14,6 +14,7 @@ from .chunk import Chunk
 from .engine import Engine, Solved
 
 MOVED = 0.05  # part of its range so far by which the parameter moves while the distance doubles, on branches that go on
+CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
 
@@ -32,6 +33,7 @@ class Reach:
         self.learned = bool(getattr(engine.problem, "scales_learned", False))
         # largest distances so far, each twice the one before, and the extremes of the parameter since
         self.doubled = engine.settings.escape
+        self.slow = 0  # points in a row that came next to nowhere
         self.low = self.high = self.lowest = self.highest = start.p
 
     def growth(self, point: Solved) -> float:
@@ -60,6 +62,15 @@ class Reach:
                 return i
             self.doubled, self.low, self.high = 2.0 * self.doubled, value, value
         return None
+
+    def creeps(self, chunk: Chunk) -> bool:
+        """Whether many points have come next to nowhere; of problems whose points are dear."""
+        if self.engine.problem.kernels.compiled or len(chunk) < 2:
+            return False
+        steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
+        way = float(np.sqrt((steps**2) @ self.engine.weights).sum())
+        self.slow = self.slow + len(chunk) - 1 if way < CREEP * (len(chunk) - 1) else 0
+        return self.slow >= MANY
 
     def _distances(self, points: np.ndarray) -> np.ndarray:
         """Root mean square distances from the start, in typical sizes."""

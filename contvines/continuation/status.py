@@ -18,6 +18,7 @@ class Status(IntEnum):
     MAX_POINTS = 5
     CLOSED = 6
     ESCAPED = 7
+    CREEPING = 8
 
     def sentence(self, parameter: str = "p", value: float = float("nan"), unit: float = 1.0) -> str:
         """The status as a sentence about a branch at this parameter value; beside ``unit`` rounding is zero."""
@@ -30,5 +31,6 @@ class Status(IntEnum):
             Status.BORDER: f"reaches a border at {parameter} = {long}",
             Status.MAX_POINTS: f"the largest number of points is reached at {parameter} = {short}",
             Status.ESCAPED: f"the unknowns run away near {parameter} = {short}",
+            Status.CREEPING: f"creeps near {parameter} = {long}: very many points with next to no progress",
             Status.CLOSED: "closed: the branch returns to its start",
         }[self]

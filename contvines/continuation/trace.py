@@ -19,6 +19,7 @@ from .settings import Settings
 from .status import Status
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
+FEWEST = 8  # points in a chunk, however many unknowns there are
 AGAIN = 32  # points that are traced again with shorter steps
 ARRAYS = ("points", "values", "tangents", "rows", "signs", "corrections")
 
@@ -72,6 +73,8 @@ def chunks(
     closing, reach = Closing(engine, start), Reach(engine, start)
     total, number = 1, 0
     most = min(8 * settings.chunk, LARGEST // (2 * n + engine.row_size))
+    if reach.learned:
+        most = min(settings.chunk, most)  # the longest step is decided anew for each
     while True:
         name = f"{key}/{number}"
         known = journal.recall(name) if journal is not None else None
@@ -84,6 +87,8 @@ def chunks(
             if retrace is not None:
                 room, longest = AGAIN, min(retrace.longest, longest)
                 h = min(h, longest)
+            if not engine.problem.kernels.compiled:
+                room = min(room, max(most, FEWEST))
             room = min(room, max(settings.max_points - total, 1))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
             closed = closing.cut(chunk)
@@ -93,6 +98,8 @@ def chunks(
             elif away is not None:
                 chunk = chunk.cut(max(away + 1, 2))
                 chunk.status = Status.ESCAPED
+            elif reach.creeps(chunk):
+                chunk.status = Status.CREEPING
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
             if journal is not None and not isinstance(journal, NullJournal):

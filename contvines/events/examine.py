@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from .functions import DeterminantTest, SymmetryTest, counts, crossing, user_function
+from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
 from .kinds import BORDERS
 from .limits import before
 from .locate import Root, locate, locate_singular
@@ -23,6 +23,7 @@ STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 TIED = 1e-9  # margins that differ by less vanish together
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
+ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -34,12 +35,21 @@ class Examiner:
     engine : Engine
     user_functions : mapping of name to function, optional
         See :func:`contvines.events.functions.user_function`.
+    stops : collection of str
+        Names of those at whose zeros a branch ends.
     """
 
-    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
-        self.engine = engine
+    def __init__(
+        self,
+        engine: Engine,
+        user_functions: Mapping[str, Any] | None = None,
+        stops: Collection[str] = (),
+    ) -> None:
+        self.engine, self.stops = engine, stops
         problem = engine.problem
         self.kind = engine.detection
+        # of problems without scales of their own, machines, branches of this sort are not known
+        self.exchanges = getattr(problem, "scales", None) is not None and self.kind != "none"
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -83,11 +93,36 @@ class Examiner:
         for event in self._sharpen(segment, crossings):
             events.append(event)
             singular += event.kind == "branch-point"
+        if not singular and (double := self._exchange(segment)) is not None:
+            events.append(double)
         if a.sign * b.sign < 0.0 and (singular + len(met)) % 2 == 0:
             root = self._determinant(segment)
             if root is not None and not _near(root.position, met + [e.position for e in folds]):
                 events.append(self._located(root, "branch-point", 0))
         return events + self._borders(segment, real)
+
+    def _exchange(self, segment: Segment) -> Located | None:
+        """A branch point where one multiplier leaves the circle while another enters; see :func:`balance`."""
+        if not self.exchanges:
+            return None
+
+        def test(point: Solved) -> float:
+            return float(balance(self.engine.spectrum(point.row)[None, :], self.kind)[0])
+
+        ends = test(segment.a), test(segment.b)
+        if not ends[0] * ends[1] < 0.0:
+            return None
+        rough = locate(segment, test, tolerance=1e-6)
+        if rough is None:
+            return None
+        count = counts(self.engine.spectrum(rough.point.row[None, :]), self.kind)[0, 0]
+        if (
+            max(abs(self._multiplier("plus", max(int(count), 1))(rough.point)), abs(test(rough.point)))
+            > REACHED
+        ):
+            return None
+        root = locate_singular(segment, test, rough.position) or rough
+        return self._located(root, "branch-point", 0)
 
     def _kind(self, name: str) -> str:
         if name == "minus":
@@ -109,7 +144,14 @@ class Examiner:
         root = locate(segment, lambda point: float(point.tangent[-1]))
         if root is None or not root.continuous:
             return []
-        return [] if _near(root.position, met, 0.02) else [self._located(root, "fold", 0)]
+        if _near(root.position, met, 0.02) or not self._returns(segment, root.point.p):
+            return []
+        return [self._located(root, "fold", 0)]
+
+    def _returns(self, segment: Segment, p: float) -> bool:
+        """Whether the parameter turns back by more than rounding; on a vertical branch it does not."""
+        moved = max(abs(segment.a.p - p), abs(segment.b.p - p))
+        return moved > max(ROUNDING, 10.0 * self.engine.noise) * self.engine.parameter_unit(p)
 
     def _regular(self, point: Solved) -> bool:
         """Whether the branch is alone at a point where a multiplier passes +1: the segment has led from one to another.
@@ -223,7 +265,8 @@ class Examiner:
             f = self.users[name]
             root = locate(segment, lambda point, f=f: float(f(point.u[None, :], np.array([point.p]))[0]))
             if root is not None and root.continuous:
-                events.append(self._located(root, "user", index, name=name))
+                role = Role.STOP if name in self.stops else Role.SPECIAL
+                events.append(self._located(root, "user", index, role, name))
         return events
 
     def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:

@@ -65,6 +65,31 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
     return min(max(value, -LIMIT), LIMIT)
 
 
+def balance(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
+    """Smallest number past the circle plus the largest before it, of the real multipliers of each row; NaN without both.
+
+    Where one multiplier leaves while another enters at the same place, as at branch points with the symmetry of a triangle, no
+    count changes, but this sum passes through zero.
+    """
+    real = np.where(spectrum.imag == 0.0, spectrum.real, np.nan)
+    if kind == "map":
+        with np.errstate(all="ignore"):
+            real = np.where(real > 0.0, np.log(real), np.nan)
+    past = np.where(real > 0.0, real, np.inf).min(axis=-1, initial=np.inf)
+    before = np.where(real <= 0.0, real, -np.inf).max(axis=-1, initial=-np.inf)
+    both = np.isfinite(past) & np.isfinite(before)
+    return np.where(both, np.where(both, past, 0.0) + np.where(both, before, 0.0), np.nan)
+
+
+def nearest_to_circle(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
+    """Distance from the circle (the axis) of the nearest real positive multiplier of each row, as a logarithm; clipped at LIMIT."""
+    real = np.where(spectrum.imag == 0.0, spectrum.real, np.nan)
+    if kind == "map":
+        with np.errstate(all="ignore"):
+            real = np.where(real > 0.0, np.log(real), np.nan)
+    return np.nan_to_num(np.fmin.reduce(np.abs(real), axis=-1, initial=LIMIT), nan=LIMIT)
+
+
 class SymmetryTest:
     """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 

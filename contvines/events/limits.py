@@ -50,7 +50,7 @@ def _row(segment: Segment, root: Root) -> np.ndarray:
     m = engine.m
     if not m or engine.problem.spectrum != "map" or not segment.length > 0.0:
         return own
-    limits = _limits(segment, root.position, np.real(np.poly(engine.spectrum(own))))
+    limits = _limits(segment, root.position, _characteristic(engine.spectrum(own)))
     if limits is None:
         return own
     row, roots = own.copy(), _roots(limits)
@@ -102,8 +102,19 @@ def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarra
         point = segment.at(s) if s >= -1.0 else None
         if point is None:
             return None
-        values.append(np.real(np.poly(engine.spectrum(point.row))))
+        values.append(_characteristic(engine.spectrum(point.row)))
     return np.array(values) if np.isfinite(values).all() else None
+
+
+def _characteristic(spectrum: np.ndarray) -> np.ndarray:
+    """Coefficients of the polynomial with these zeros, highest power first; `numpy.poly` without its generality."""
+    coefficients = [1.0 + 0.0j]
+    for zero in spectrum.tolist():
+        longer = [*coefficients, 0.0j]
+        for k, c in enumerate(coefficients):
+            longer[k + 1] -= zero * c
+        coefficients = longer
+    return np.real(coefficients)
 
 
 def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:

@@ -14,6 +14,7 @@ class Role(StrEnum):
     SPECIAL = "special"  # a special point of the branch
     BORDER = "border"  # a margin vanishes: the branch ends
     MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
+    STOP = "stop"  # a function at whose zeros the user wants branches to end
     PLAIN = "plain"  # just a point between two special points
     LEAP = "leap"  # the point before a step to another branch: to be traced again
 
@@ -50,4 +51,4 @@ class Located(NamedTuple):
     @property
     def ends_branch(self) -> bool:
         """Whether what lies behind it is left out."""
-        return self.role in (Role.BORDER, Role.MEETING)
+        return self.role in (Role.BORDER, Role.MEETING, Role.STOP)

@@ -250,7 +250,7 @@ class Scanner:
         self.kind = KINDS[engine.detection]
         self.mark = _compiled() if engine.problem.kernels.compiled else mark_segments
         columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
-        plain = (engine.scale[:-1] == 1.0).all()
+        self.plain = plain = bool((engine.scale[:-1] == 1.0).all())
         affine = [test.affine for test in symmetries if test.affine is not None and plain]
         self.left_out = [test for test in symmetries if test.affine is None or not plain]
         shape = (len(affine), columns)
@@ -274,7 +274,7 @@ class Scanner:
         engine, n = self.engine, len(values)
         flags, smallest = np.zeros(max(n - 1, 0), np.int64), np.empty(n)
         self.mark(
-            points,
+            points if self.plain else points / engine.scale[:-1],
             values,
             np.ascontiguousarray(tangents[:, -1]),
             rows,
@@ -283,7 +283,7 @@ class Scanner:
             self.kind,
             bool(real),
             FLAT * engine.parameter_unit(float(values[0])),
-            float(engine.weights[0]),
+            1.0 / engine.n,
             float(engine.weights[-1]),
             self.orders,
             self.images,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,12 +11,16 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
 from .dips import before_border, below_zero
 from .examine import Examiner, changes
+from .functions import LIMIT, balance, counts, nearest_to_circle
 from .leaps import leap
 from .located import Located, Role
-from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, SHALLOW, Scan, Scanner
+from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, MULTIPLIER, SHALLOW, Scan, Scanner, dips
 from .segment import Segment
 
-USER = 256  # beside the bits of a scan: a user function changes its sign
+USER, TWICE = (
+    256,
+    512,
+)  # beside the bits of a scan: a user function changes its sign; a real multiplier may do so twice
 AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
 BESIDE = 0.02  # part of the segment next to a branch point that is left out
 
@@ -29,10 +33,17 @@ class Watch(Examiner):
     engine : Engine
     user_functions : mapping of name to function, optional
         See :func:`contvines.events.functions.user_function`.
+    stops : collection of str
+        Names of those at whose zeros a branch ends.
     """
 
-    def __init__(self, engine: Engine, user_functions: Mapping[str, Any] | None = None) -> None:
-        super().__init__(engine, user_functions)
+    def __init__(
+        self,
+        engine: Engine,
+        user_functions: Mapping[str, Any] | None = None,
+        stops: Collection[str] = (),
+    ) -> None:
+        super().__init__(engine, user_functions, stops)
         self.scanner = Scanner(engine, self.symmetries)
 
     def scan(self, chunk: Chunk, real: bool = True) -> Scan:
@@ -63,6 +74,10 @@ class Watch(Examiner):
             size = np.abs(part).max(axis=1)
             far = (size[:-1] > APART) & (size[1:] > APART)
             flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
+        if self.exchanges:
+            sums = balance(self.engine.spectrum(chunk.rows), self.kind)
+            flags[changes(np.nan_to_num(sums))] |= MULTIPLIER
+            flags[self._twice(chunk)] |= TWICE
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             flags[changes(values)] |= USER
@@ -78,7 +93,7 @@ class Watch(Examiner):
                 s, middle = split
                 plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
-            elif bits & ~(SHALLOW | DAMPED | HUMP):
+            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE):
                 found = self.examine(segment, real=real)
                 border = min(
                     (e for e in found if e.role is Role.BORDER), key=lambda e: e.position, default=None
@@ -125,6 +140,20 @@ class Watch(Examiner):
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
         return before_stop(sorted(found, key=lambda e: e.position))
 
+    def _twice(self, chunk: Chunk) -> np.ndarray:
+        """Segments in which a real multiplier may pass the circle and come back: the parabola through its distances does."""
+        spectrum, engine = self.engine.spectrum(chunk.rows), self.engine
+        distance, count = nearest_to_circle(spectrum, self.kind), counts(spectrum, self.kind)[:, 0]
+        steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
+        lengths = np.sqrt((steps**2) @ engine.weights)
+        found = np.zeros(len(chunk) - 1, dtype=bool)
+        level = (count[:-2] == count[1:-1]) & (count[1:-1] == count[2:])
+        falls = (distance[1:-1] < distance[:-2]) | (distance[1:-1] < distance[2:])
+        for i in np.flatnonzero(level & falls & (distance[1:-1] < LIMIT)):
+            if dips(*distance[i : i + 3], lengths[i], lengths[i + 1]):
+                found[i : i + 2] = True
+        return found
+
     def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin is negative, the parameter turns back, or stability is lost, though
         not at its ends."""
@@ -135,6 +164,7 @@ class Watch(Examiner):
             SHALLOW: lambda point: float(self.engine.smallest_margin(point.row)),
             HUMP: lambda point: float(side * point.tangent[-1]),
             DAMPED: lambda point: float(self._damping(point.row)),
+            TWICE: lambda point: self._side(point, segment.a),
         }
         for bit, test in tests.items():
             if bits & bit:
@@ -142,6 +172,13 @@ class Watch(Examiner):
                 if found is not None:
                     return found
         return None
+
+    def _side(self, point: Solved, other: Solved) -> float:
+        """Distance of the nearest real multiplier from the circle; negative where another number of them is past it."""
+        spectrum = self.engine.spectrum(np.array([point.row, other.row]))
+        count = counts(spectrum, self.kind)[:, 0]
+        distance = float(nearest_to_circle(spectrum, self.kind)[0])
+        return distance if count[0] == count[1] else -distance
 
     def _damping(self, rows: np.ndarray) -> np.ndarray:
         """Positive where stable: minus the logarithm of the largest multiplier (minus the largest real part)."""

@@ -13,6 +13,7 @@ from ..problems.registry import without_problem
 from .builder import adopt, begin, work
 from .graph import Graph
 from .leaving import leave
+from .limits import NO_LIMITS, Limits
 from .run import Progress, Run
 
 
@@ -27,6 +28,8 @@ def diagram(
     journal: Any = None,
     progress: Callable[[Progress], None] | None = None,
     settings: Settings | Mapping[str, Any] | None = None,
+    stop: Mapping[str, Any] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
 ) -> Graph:
     """All branches that hang together with a solution: traced, switched, each listed once.
 
@@ -49,6 +52,10 @@ def diagram(
     progress : callable, optional
         Called with a :class:`Progress` after each chunk and each branch.
     settings : Settings or mapping, optional
+    stop : mapping, optional
+        Like ``user_functions``; branches end at their zeros.
+    bounds : mapping, optional
+        name of a measure (``"u0"``, ``"norm"``, an output of your own) -> (low, high), either may be None; branches end there.
 
     Returns
     -------
@@ -67,8 +74,9 @@ def diagram(
     description = problem.describe()
     model = description.get("model") or {"name": description.get("name", type(problem).__name__)}
     about = dict(model) if isinstance(model, Mapping) else {"name": model}
+    limits = Limits.of(stop, bounds, problem)
     run = new_run(
-        problem.parameter, about, within, depth, virtual, user_functions, journal, progress, settings
+        problem.parameter, about, within, depth, virtual, user_functions, journal, progress, settings, limits
     )
     begin(run, problem, u, p)
     work(run)
@@ -85,6 +93,7 @@ def new_run(
     journal: Any,
     progress: Callable[[Progress], None] | None,
     settings: Settings | Mapping[str, Any] | None,
+    limits: Limits = NO_LIMITS,
 ) -> Run:
     """A run with an empty graph.
 
@@ -103,7 +112,7 @@ def new_run(
         settings={**chosen.to_dict(), "depth": depth, "virtual": virtual},
     )
     kept = NullJournal() if journal is None else journal
-    return Run(graph, chosen, kept, depth, virtual, user_functions, progress)
+    return Run(graph, chosen, kept, depth, virtual, user_functions, progress, limits)
 
 
 @hinting
@@ -115,6 +124,8 @@ def switch(
     journal: Any = None,
     progress: Callable[[Progress], None] | None = None,
     settings: Settings | Mapping[str, Any] | None = None,
+    stop: Mapping[str, Any] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
 ) -> list[str]:
     """Follow the branches that leave a special point of a graph; the graph is extended in place.
 
@@ -125,7 +136,7 @@ def switch(
         A special point; its problem must be attached.
     depth : int
         How many more switches deep to go on from the new branches.
-    user_functions, journal, progress, settings
+    user_functions, journal, progress, settings, stop, bounds
         As for :func:`diagram`; the settings of the graph are the default.
 
     Returns
@@ -157,6 +168,7 @@ def switch(
         bool(graph.settings.get("virtual", False)),
         user_functions,
         progress,
+        Limits.of(stop, bounds, point.problem),
     )
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)

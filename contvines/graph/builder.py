@@ -37,6 +37,9 @@ def begin(run: Run, problem: Any, u: Any, p: float) -> None:
     """
     engine, _ = run.engine(problem)
     start = solve_start(engine, u, p)
+    outside = run.limits.outside(problem, start.u, start.p)
+    if outside:
+        raise ValueError(f"at the start {outside}; widen them, or start elsewhere")
     margin = float(engine.smallest_margin(start.row))
     if margin < MARGIN and not run.virtual:
         j = int(np.argmin(engine.margins(start.row)))
@@ -96,6 +99,10 @@ def trace_pending(run: Run, pending: Pending) -> None:
         )
         first = first_point(run, run.engine(pending.problem)[0], pending)
     if first is None:
+        return
+    if outside := run.limits.outside(pending.problem, first.u, first.p):
+        if pending.point is not None:
+            run.remark(pending.point, f"the branch that leaves here is not followed: {outside}")
         return
     engine, watch = run.engine(pending.problem)
     real = pending.real

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..doors import above
 from ..events.kinds import PREFIXES
 from ..hints import did_you_mean
 from .attractor import Attractor
@@ -108,9 +109,7 @@ class Graph:
         return len(self.branches)
 
     def __str__(self) -> str:
-        from .table import table, terminal_width
-
-        text = table(self, terminal_width())
+        text = above("table")(self)
         return f"{text}\n\n{self.message}" if self._cut else text
 
     @property
@@ -118,11 +117,7 @@ class Graph:
         return not self.complete and self.settings.get("max_branches") != 1
 
     def _repr_html_(self) -> str:
-        from .table import branches_table, special_table, title
-
-        parts = [f"<p>{title(self)}</p>", branches_table(self).html()]
-        parts += [special_table(self).html()] if self.special else []
-        return "".join([*parts, f"<p>{self.message}</p>" if self._cut else ""])
+        return above("graph_page")(self) + (f"<p>{self.message}</p>" if self._cut else "")
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -153,9 +148,7 @@ class Graph:
 
     def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
         """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""
-        from .proving import prove
-
-        return prove(self, labels, **options)
+        return above("prove")(self, labels, **options)
 
     def attach(self, problem: Any) -> None:
         """Give all branches and special points without a problem this one (after loading a callable's graph)."""
@@ -213,15 +206,11 @@ class Graph:
 
     def merge(self, other: Graph) -> dict[str, str]:
         """Add what another graph of the same problem has beside it; see :func:`contvines.coexistence.merging.merge`."""
-        from ..coexistence.merging import merge
-
-        return merge(self, other)
+        return above("merge")(self, other)
 
     def to_pandas(self) -> Any:
         """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
-        from ..export.frames import graph_frame
-
-        return graph_frame(self)
+        return above("graph_frame")(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
         """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat") is read off the name by default.
@@ -233,15 +222,11 @@ class Graph:
         """
         from pathlib import Path
 
-        from ..export import export
-
-        return export(self, to or Path(path).suffix.lstrip(".").lower(), path)
+        return above("export")(self, to or Path(path).suffix.lstrip(".").lower(), path)
 
     def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
-        from ..plots.diagram import plot_diagram
-
-        return plot_diagram(self, x=x, y=y, **options)
+        return above("plot_diagram")(self, x=x, y=y, **options)
 
     def save(self, path: str | Path) -> None:
         """Write the graph to a .vines file; see :mod:`contvines.store`.
@@ -253,8 +238,6 @@ class Graph:
         """
         from pathlib import Path
 
-        from ..store import save
-
         place = Path(path)
         if place.is_dir():
             raise ValueError(f"{place}: this is a folder; give the name of a file in it.")
@@ -262,11 +245,9 @@ class Graph:
             raise ValueError(
                 f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."
             )
-        save(self, path)
+        above("save")(self, path)
 
     @classmethod
     def load(cls, path: str | Path, *, trust: bool = False) -> Graph:
         """Read a graph from a .vines file; see :func:`contvines.load`."""
-        from ..store import load
-
-        return load(path, trust=trust)
+        return above("load")(path, trust=trust)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..branches.branch import Branch
-from ..branches.special_point import SpecialPoint
+from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..events.kinds import BORDERS
 from ..events.located import Role
@@ -98,7 +98,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 if point.criticality is not None and (exact := _cubic(point, name)) is not None:
                     point.coefficient = exact
             elif transcritical:
-                run.remark(point.label, "transcritical")
+                run.remark(point.label, TRANSCRITICAL)
             if departure.family:
                 run.remark(point.label, FAMILY)
                 continue

@@ -83,7 +83,10 @@ def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pe
                 run.connect(label, known.branch, branch.label)
         marks.append((index, label))
         if index in (0, last) and event.ends_branch:
-            ends[0 if index == 0 else 1] = _ending(run, label, kind, branch, meets)
+            ending = _ending(run, label, kind, branch, meets)
+            if event.role is Role.STOP:
+                ending = replace(ending, reason=Reason.STOPS, text=event.name)
+            ends[0 if index == 0 else 1] = ending
     branch.marks = tuple(sorted(marks))
     _tell_slivers(run, branch)
     branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))

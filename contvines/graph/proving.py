@@ -53,7 +53,8 @@ def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str,
             )
     found = {}
     for label, thing in subjects.items():
-        found[label] = proof = thing.prove(**options)
+        more = {"special": graph.special} if label in graph.branches else {}
+        found[label] = proof = thing.prove(**options, **more)
         graph.proofs[label] = kept(proof)
     return found
 

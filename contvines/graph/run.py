@@ -17,6 +17,7 @@ from ..events.located import Located
 from ..events.watch import Watch
 from .graph import Graph, Switch
 from .identity import Register
+from .limits import NO_LIMITS, Limits
 from .pending import Pending
 
 
@@ -44,6 +45,8 @@ class Run:
     virtual : bool
     user_functions : mapping or None
     progress : callable or None
+    limits : Limits
+        Where branches end because the user says so.
     """
 
     def __init__(
@@ -55,10 +58,12 @@ class Run:
         virtual: bool,
         user_functions: Mapping[str, Any] | None,
         progress: Callable[[Progress], None] | None,
+        limits: Limits = NO_LIMITS,
     ) -> None:
         self.graph, self.settings, self.journal = graph, settings, journal
         self.depth, self.virtual = depth, virtual
-        self.user_functions = dict(user_functions or {})
+        self.limits = limits
+        self.user_functions = {**(user_functions or {}), **limits.functions}
         self.progress = progress
         self.queue: deque[Pending] = deque()
         self.register = Register()
@@ -89,7 +94,8 @@ class Run:
         """Engine and watch of a problem, made once."""
         if id(problem) not in self.engines:
             engine = Engine(problem, self.graph.within, self.settings)
-            self.engines[id(problem)] = (problem, engine, Watch(engine, self.user_functions))
+            watch = Watch(engine, self.user_functions, tuple(self.limits.functions))
+            self.engines[id(problem)] = (problem, engine, watch)
         _, engine, watch = self.engines[id(problem)]
         return engine, watch
 

@@ -9,6 +9,7 @@ import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..branches.special_point import TRANSCRITICAL
 from .proving import mark
 from .shortening import short_word, short_words
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .graph import Graph
 
 GAP = "  "
+AT_END = 1e-9  # part of the interval: special points closer to its end are at it
 LEAST = 16  # characters for the last column, before its text goes on in further lines
 
 
@@ -93,6 +95,11 @@ def table(graph: Graph, width: int | None = None) -> str:
     return "\n".join(lines)
 
 
+def shown(graph: Graph) -> str:
+    """The same as it fits the terminal, if one shows it."""
+    return table(graph, terminal_width())
+
+
 def terminal_width() -> int | None:
     """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
     return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None
@@ -122,9 +129,12 @@ def branches_table(graph: Graph) -> Table:
 def special_table(graph: Graph) -> Table:
     """A row per special point: its kind, branch, value, what it leads to."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
-    rows = []
+    rows, width = [], graph.within[1] - graph.within[0]
     for point in graph.special.values():
-        remarks = [point.criticality or "", "" if point.real else "virtual", mark(graph, point.label)]
+        side = point.criticality or (TRANSCRITICAL if TRANSCRITICAL in point.remarks else "")
+        remarks = [side, "" if point.real else "virtual", mark(graph, point.label)]
+        if point.kind != "end" and any(abs(point.value - end) <= AT_END * width for end in graph.within):
+            remarks.append("at the end")
         targets = []
         for switch in graph.switches:
             if switch.point == point.label:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
+from ..doors import above
 from ..graph.persistence import branch_of, content_of
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
@@ -61,9 +62,7 @@ class Chart:
         return label in self.loci or label in self.points
 
     def __str__(self) -> str:
-        from .table import table
-
-        return table(self)
+        return above("chart_table")(self)
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -92,15 +91,11 @@ class Chart:
 
     def plot(self, **options: Any) -> Any:
         """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
-        from ..plots.chart import plot_chart
-
-        return plot_chart(self, **options)
+        return above("plot_chart")(self, **options)
 
     def save(self, path: str | Path) -> None:
         """Write the chart to a .vines file, as graphs are; ``contvines.load`` reads both."""
-        from ..store import save
-
-        save(self, path)
+        above("save")(self, path)
 
     # ------------------------------------------------------------------ to and from a file
     def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:

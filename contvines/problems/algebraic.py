@@ -18,7 +18,7 @@ from .pieces import Pieces
 from .protocol import Seed, Symmetry
 from .registry import addresses, find_callables
 from .scales import given_scale
-from .spectra import WATCHED, reference_of, watched, without_roundoff
+from .spectra import WATCHED, reference_of, vectors_of, watched, without_roundoff
 
 
 class AlgebraicProblem(CallableProblem):
@@ -163,6 +163,11 @@ class AlgebraicProblem(CallableProblem):
         """Whether they bend in each unknown at all."""
         return np.append(super().bends, np.ones(self.dimension - self.node, dtype=bool))
 
+    @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the equations or from the start."""
+        return np.append(super().known, np.ones(self.dimension - self.node, dtype=bool))
+
     # ------------------------------------------------------------------ numerics
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
         """F alone."""
@@ -202,6 +207,14 @@ class AlgebraicProblem(CallableProblem):
         if self.conditions is not None:
             return self.conditions.eigenvalues(work.jacobian)
         return without_roundoff(np.linalg.eigvals(work.jacobian))
+
+    def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
+        """Eigenvectors of dF/du as columns, in the order of eigenvalues that are known (inverse iteration where it is sparse)."""
+        matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
+        if self.functions.structure == "dense":
+            every = values if len(values) else np.linalg.eigvals(matrix)
+            return vectors_of(matrix, every)
+        return sparse.eigenvectors(matrix, values)
 
     def rates(self, work: Any) -> list[float]:
         """Median size of the eigenvalues, for spectrum "flow"."""

@@ -9,6 +9,7 @@ import numpy as np
 
 POINTS = 24  # on the line, each time it is looked at more closely
 ROUNDS = 7
+NOISY = 20.0  # times the noise, second differences say nothing
 CLEAR = 1e-3  # change of a slope, relative to what a row changes by, that makes a kink
 
 
@@ -20,7 +21,9 @@ class Break(NamedTuple):
     row: int
 
 
-def find_break(f: Callable[[float], np.ndarray], length: float, rows: np.ndarray) -> Break | None:
+def find_break(
+    f: Callable[[float], np.ndarray], length: float, rows: np.ndarray, noise: float | np.ndarray = 0.0
+) -> Break | None:
     """The sharpest kink or jump of f between -length and length, or None.
 
     The function is sampled, and looked at again where its second difference is largest. In the end the slopes on both sides differ
@@ -33,6 +36,8 @@ def find_break(f: Callable[[float], np.ndarray], length: float, rows: np.ndarray
     length : float
     rows : ndarray, shape (n,)
         How much the entries change when t changes by 1, roughly.
+    noise : float or ndarray
+        Standard deviation of f: what is no larger than a few of it is neither kink nor jump.
     """
     low, high = -length, length
     for _ in range(ROUNDS):
@@ -41,6 +46,8 @@ def find_break(f: Callable[[float], np.ndarray], length: float, rows: np.ndarray
         if not np.isfinite(values).all():
             return None
         second = np.abs(np.diff(values, 2, axis=0)).max(axis=1)
+        if second.max() < NOISY * float(np.max(noise / rows)):
+            return None
         k = int(np.argmax(second)) + 1
         step = t[1] - t[0]
         low, high = t[max(k - 2, 0)], t[min(k + 2, POINTS)]

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from ..doors import above
 from . import dense, sparse
 from .breaks import find_break
 from .checks import disagreement
@@ -109,6 +110,11 @@ class CallableProblem(ProblemDefaults):
         return self.functions.bends
 
     @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the equations or from the start; else it is 1."""
+        return self.functions.known
+
+    @property
     def noise(self) -> float:
         """Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff."""
         return 0.0 if self.scales is None else self.scales.noise
@@ -120,11 +126,10 @@ class CallableProblem(ProblemDefaults):
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""
-        if self.scales is None:
-            from ..continuation.learning import learn
-
-            self.scales = learn(self, within, self.given_scale)
-        return self.scales.joined()
+        scales = self.scales
+        if scales is None:
+            scales = self.scales = above("learn")(self, within, self.given_scale)
+        return scales.joined()
 
     def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown or the parameter changes by its scale."""
@@ -194,7 +199,9 @@ class CallableProblem(ProblemDefaults):
 
         for reach in (0.05, 2e-3):
             with np.errstate(all="ignore"):
-                found = find_break(line, reach, rows)
+                noise = np.zeros(self.dimension)
+                noise[:] = np.resize(self.functions.noise, self.dimension)
+                found = find_break(line, reach, rows, noise)
             if found is not None:
                 value = p + found.at * float(tangent[-1])
                 where = f"near {self.parameter} = {value:.6g} (row {found.row})"

@@ -1,12 +1,14 @@
-"""Measures of the cycles of a map."""
+"""What is told of the cycles of a map: measures, points, eigenvectors, iteration."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from .outputs import Outputs
+from .spectra import vectors_of
 
 
 class CycleMeasures:
@@ -15,6 +17,8 @@ class CycleMeasures:
     outputs: Outputs
     node: int
     cycle: int
+    pieces: Any
+    functions: Any
 
     @property
     def measure_names(self) -> tuple[str, ...]:
@@ -47,3 +51,25 @@ class CycleMeasures:
         if name not in {f"x{j}" for j in range(self.node)}:
             return None
         return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+
+    def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
+        """Eigenvectors of the product of the Jacobians along the cycle, as columns, in the order of its eigenvalues."""
+        product = np.eye(self.node)
+        for i, x in enumerate(np.asarray(u, dtype=float).reshape(self.cycle, self.node)):
+            self.pieces.current = i
+            product = self.functions.jacobian(x, p) @ product
+        return vectors_of(product, values)
+
+    def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
+        """The points of the cycle, shape (n, d)."""
+        return np.array(u).reshape(self.cycle, self.node)
+
+    def replay(self, u: np.ndarray, p: float) -> float:
+        """Largest distance after iterating each point of the cycle once."""
+        nodes = np.asarray(u, dtype=float).reshape(self.cycle, self.node)
+        worst = 0.0
+        for i, x in enumerate(nodes):
+            self.pieces.current = i
+            gap = self.functions.value(x, p) - nodes[(i + 1) % self.cycle]
+            worst = max(worst, float(np.abs(gap).max()))
+        return worst

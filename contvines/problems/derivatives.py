@@ -10,7 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from .differences import Difference, along, bend, noise_of
+from .differences import REACH, Difference, along, bend, coupling, noise_of
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
 
@@ -18,6 +18,8 @@ COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
 SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
 EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
+PAIRS = 12  # up to so many, couplings between two of them are looked at
+FEW = 2  # lengths tried on either side where the function is slow
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
 
@@ -44,6 +46,8 @@ class Differentiated:
         Over which f bends in each unknown; where it does not, the unknown's size, or 1.
     bends : ndarray of bool, shape (n,)
         Where it does.
+    known : ndarray of bool, shape (n,)
+        Where the length comes from f or from the unknown itself, and is not just 1.
     noise : ndarray, shape (n,)
         Standard deviation of each entry of f beyond roundoff.
     grain : ndarray, shape (n,)
@@ -229,10 +233,10 @@ class Differentiated:
 
     def _measure_lengths(self, u: np.ndarray, p: float, cost: float) -> None:
         n = len(u)
-        self.bends = np.zeros(n, dtype=bool)
+        self.bends, self.known = np.zeros(n, dtype=bool), u != 0.0
         largest = float(np.abs(u).max()) or 1.0
         each = n <= EACH
-        tries = 9 if (n if each else 1) * 39 * cost < PATIENCE else 2
+        tries = REACH if (n if each else 1) * 77 * cost < PATIENCE else FEW
 
         def line(direction: np.ndarray) -> Callable[[float], np.ndarray]:
             return self._quietly(lambda t: self._value(u + t * direction, p), n)
@@ -242,12 +246,33 @@ class Differentiated:
                 for j in range(n):
                     found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.grain)
                     if found is not None:
-                        self.lengths[j], self.bends[j] = found, True
+                        self.lengths[j], self.bends[j], self.known[j] = found, True, True
+                if tries > FEW and n <= PAIRS:
+                    self._measure_couplings(u, p)
             else:
                 direction = np.where(u == 0.0, largest, u)
                 found = bend(line(direction / np.abs(direction).max()), largest, tries, self.grain)
                 self.lengths[:] = largest if found is None else found
                 self.bends[:] = found is not None
+                self.known |= self.bends
+
+    def _measure_couplings(self, u: np.ndarray, p: float) -> None:
+        """Lengths of unknowns that are zero and in which f is linear, but which decide how it changes with others."""
+        n, unit = len(u), np.eye(len(u))
+        for j in np.flatnonzero(~self.known):
+            sizes = []
+            for k in range(n):
+                if k != j:
+
+                    def plane(t: float, s: float, j: int = int(j), k: int = k) -> np.ndarray:
+                        return self._quietly(
+                            lambda t: self._value(u + t * unit[j] + s * self.lengths[k] * unit[k], p), n
+                        )(t)
+
+                    sizes.append(coupling(plane, 1.0))
+            found = [size for size in sizes if size]
+            if found:
+                self.lengths[j], self.known[j] = min(found), True
 
     def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))

@@ -15,6 +15,7 @@ FOURTH = (2.0 / 3.0, -1.0 / 12.0)
 EPS = float(np.finfo(float).eps)
 GOOD = 1e-13  # relative error at which a difference is taken without trying a smaller step
 FACTOR = 64.0  # between the lengths that are tried by `bend`
+ASIDE = 1.37  # ratio of two lengths at which slopes are compared
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
 Line = Callable[[float], np.ndarray]
@@ -124,9 +125,14 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         floor = 1e3 * EPS * np.abs(here) + 30.0 * noise
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
+        beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
+            ASIDE * lengths[:, None]
+        )
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
         seen = np.abs(odd) > floor + 1e3 * EPS * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
+        # where rounding makes stairs of f, or it is a power, it is not linear
+        seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
         found = np.inf
         for r in range(odd.shape[1]):
             first = int(np.argmax(seen[:, r]))
@@ -176,3 +182,31 @@ def _table(f: Line, spacing: float) -> np.ndarray:
             gamma = factorial(k) ** 2 / factorial(2 * k)
             estimates.append(np.sqrt(gamma * (table**2).mean(axis=0)))
     return np.median(estimates, axis=0)
+
+
+def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int = REACH) -> float | None:
+    """Size of an unknown that decides how f changes with another one, though f is linear in either; None if it does not.
+
+    The change of f with the other unknown grows linearly with this one; the size is where it has doubled, or gone to zero.
+
+    Parameters
+    ----------
+    f : callable
+        (t, s) -> ndarray; this unknown is changed by t, the other one by the length over which f bends in it if s = 1.
+    guess : float
+        Sizes around this one are tried.
+    enough : int
+        How many on either side.
+    """
+    with np.errstate(all="ignore"):
+        here, there = f(0.0, 0.0), f(0.0, 1.0)
+        direct = np.abs(there - here)
+        plain = direct > 1e3 * EPS * np.maximum(np.abs(here), np.abs(there))
+        for t in guess * FACTOR ** np.arange(-enough, enough + 1.0):
+            low, high = f(t, 0.0), f(t, 1.0)
+            mixed = np.abs((high - low) - (there - here))
+            floor = 1e6 * EPS * np.max([np.abs(low), np.abs(high), direct], axis=0)
+            seen = plain & (mixed > floor) & np.isfinite(mixed)
+            if seen.any():
+                return float(t * (direct[seen] / mixed[seen]).min())
+    return None

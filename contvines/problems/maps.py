@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..doors import above
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
@@ -156,6 +157,11 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         """Whether it bends in each unknown at all."""
         return np.tile(self.functions.bends, self.cycle)
 
+    @property
+    def known(self) -> np.ndarray:
+        """Whether the length of each unknown comes from the map or from the start."""
+        return np.tile(self.functions.known, self.cycle)
+
     def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
         """The same map's cycles of another length, or in other pieces; scales are kept."""
         other = copy(self)
@@ -295,21 +301,9 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
 
     def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
-        from ..coexistence.maps import MapPopulation
-
-        return MapPopulation(self if over in (None, self.parameter) else self.against(str(over)), box)
-
-    def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
-        """The points of the cycle, shape (n, d)."""
-        return np.array(u).reshape(self.cycle, self.node)
-
-    def replay(self, u: np.ndarray, p: float) -> float:
-        """Largest distance after iterating each point of the cycle once."""
-        nodes = np.asarray(u).reshape(self.cycle, self.node)
-        images = self.equations(np.asarray(u, dtype=float), p)[0].reshape(nodes.shape) + np.roll(
-            nodes, -1, axis=0
+        return above("MapPopulation")(
+            self if over in (None, self.parameter) else self.against(str(over)), box
         )
-        return float(np.abs(images - np.roll(nodes, -1, axis=0)).max())
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""

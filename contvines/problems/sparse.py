@@ -278,6 +278,32 @@ def leading(work: SparseWork, count: int, shift: float) -> np.ndarray:
     return np.append(values, np.full(count - len(values), values[np.argmin(np.real(values))]))
 
 
+def eigenvectors(matrix: Any, values: np.ndarray) -> np.ndarray:
+    """Unit eigenvectors as columns, for eigenvalues that are known, by inverse iteration.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is a LinearOperator.
+    """
+    if not sp.issparse(matrix):
+        raise ValueError(
+            "a matrix-free Jacobian has no factors, so eigenvectors cannot be had from its eigenvalues"
+        )
+    n = matrix.shape[0]
+    size = float(abs(matrix).max())
+    columns = []
+    for k, value in enumerate(np.asarray(values, dtype=complex)):
+        near = value + 1e-10 * size * (1.0 + 0.3j)
+        factors = splu((matrix - near * sp.identity(n)).tocsc().astype(complex))
+        vector = np.random.default_rng(k).standard_normal(n).astype(complex)
+        for _ in range(3):
+            vector = factors.solve(vector)
+            vector /= np.linalg.norm(vector)
+        columns.append(vector)
+    return np.array(columns).T.reshape(n, len(columns))
+
+
 def inspect(data: Any, u: np.ndarray, p: float, work: SparseWork, row: np.ndarray) -> None:
     """Raw spectrum of the linearisation, then the margins of problems that have any."""
     spectrum = data.raw_spectrum(work)

@@ -8,7 +8,7 @@ REAL = (
     1e-9  # an imaginary part below this part of the largest eigenvalue is roundoff: a double real eigenvalue
 )
 WATCHED = (
-    20  # unknowns up to which the eigenvalues of problems without a spectrum are watched for branch points
+    60  # unknowns up to which the eigenvalues of problems without a spectrum are watched for branch points
 )
 
 
@@ -17,6 +17,17 @@ def without_roundoff(values: np.ndarray) -> np.ndarray:
     values = np.asarray(values, dtype=complex)
     tiny = np.abs(np.imag(values)) <= REAL * np.abs(values).max(initial=0.0)
     return np.where(tiny, np.real(values) + 0.0j, values)
+
+
+def vectors_of(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Unit eigenvectors as columns, in the order of eigenvalues that are known."""
+    found, vectors = np.linalg.eig(matrix)
+    left, order = list(range(len(found))), []
+    for value in values:
+        nearest = min(left, key=lambda j: abs(found[j] - value))
+        order.append(nearest)
+        left.remove(nearest)
+    return vectors[:, order]
 
 
 def watched(jacobian: np.ndarray, reference: np.ndarray) -> np.ndarray:

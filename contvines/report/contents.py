@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..graph.measures import default_measure
 from ..graph.proving import mark
 from ..graph.shortening import short_word
-from ..plots.diagram import default_measure
 from ..plots.style import MARKS, PLAIN, axis_label
 from .numbers import plain_label, rounded, shortened
 

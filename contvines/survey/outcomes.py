@@ -59,7 +59,7 @@ class Stretch:
 
 def stretches(graph: Any, measure: str | None = None) -> list[Stretch]:
     """The stable responses of a diagram; `measure` is that of the picture by default."""
-    from ..plots.diagram import default_measure
+    from ..graph.measures import default_measure
 
     name = measure or default_measure(graph)
     found = []
@@ -106,7 +106,7 @@ def highest(stretch: Stretch) -> tuple[float, float, int]:
 
 def peak(found: Findings) -> dict[str, float]:
     """The largest response, over all that coexist, and where it is."""
-    from ..plots.diagram import default_measure
+    from ..graph.measures import default_measure
 
     name = default_measure(found.graph)
     known = [highest(stretch)[:2] for stretch in stretches(found.graph)]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..doors import above
 from ..graph.table import with_unit
 from .plan import Plan, PlanError
 from .work import Row
@@ -114,9 +115,7 @@ class Survey:
 
     def plot(self, outcome: str | None = None, **options: Any) -> Figure:
         """A curve over one axis, with bands where there are samples, or a map over two; see `contvines.plots.survey`."""
-        from ..plots.survey import plot_survey
-
-        return plot_survey(self, outcome, **options)
+        return above("plot_survey")(self, outcome, **options)
 
     def best(
         self, outcome: str, largest: bool = False, quantile: float | None = None

@@ -216,7 +216,9 @@ def _depart(
 ) -> Departure | None:
     z = engine.join(u, p)
     best: Departure | None = None
-    for _ in range(7):
+    for attempt in range(14):
+        if attempt >= 7 and best is not None:
+            break
         half, offset = 0.5 * amplitude, bend * amplitude**2
         ahead, near = (
             _at(engine, z, direction, x, y) for x, y in ((amplitude, offset), (half, 0.25 * offset))

@@ -202,14 +202,13 @@ def _hold(
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
         unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
-        cavity = float(other.orbit(u, q).events.v_rate[first]) / unit[1]
+        cavity = _cavity_speed(other, u, q, first)
         node = slice(first * n, (first + 1) * n)
         slopes = other.model.cavity_speed_slopes(other.expand(u)[first], other.values(q))
         border[node] = -sign * slopes * unit / unit[1]
         border[first * n + 1] += sign
         near = NEAR * parameter_unit(other, p)
-        change_with = float(other.orbit(u, q + near).events.v_rate[first]) / unit[1] - cavity
-        border[size] = -sign * change_with / near
+        border[size] = -sign * (_cavity_speed(other, u, q + near, first) - cavity) / near
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if (
@@ -220,6 +219,13 @@ def _hold(
     if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
         return None
     return _Held(u, float(q_new), tangent, wanted)
+
+
+def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) -> float:
+    """v' at an impact, in the unit of its node's second entry."""
+    node = problem.expand(u)[place]
+    speed = problem.model.cavity_motion(node[None, None], problem.values(p)[None])[1][0, 0]
+    return float(speed / problem.equations.unit[place, 1])
 
 
 def _begins_at(

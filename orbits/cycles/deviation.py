@@ -7,14 +7,14 @@ the motion itself is not.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.cycles.sampling import flight, sample
-from orbits.machines.states import state_of
-from orbits.simulation.driver import machine, simulate
+from orbits.cycles.sampling import sample
+from orbits.machines.states import states_of
+from orbits.machines.stepping import PSI, TURNS, W
+from orbits.simulation.driver import follow, machine, simulate
 from orbits.simulation.replay import replay
 
 if TYPE_CHECKING:
@@ -65,33 +65,24 @@ def position_error(orbit: Solution, points: int = 400) -> float:
     places = definite if definite.size else _calm(orbit)
     places = places[:: -(-len(places) // STRETCHES)]
     ends = np.append(places[1:], places[0] + len(orbit.word))
-    follow = _follower(orbit, points)
-    return max(follow(int(a), int(b - a)) for a, b in zip(places, ends, strict=True))
+    engine = machine(orbit.model.name)
+    states = states_of(engine, orbit.params, orbit.word.codes, orbit.word.mode_codes, orbit.nodes)
+    left, right = engine.walls(orbit.params)
+    claimed = sample(orbit, points)
+    phases = np.append(claimed["phase"], claimed["phase"] + 2.0 * np.pi * orbit.periods)
+    positions = np.tile(claimed["w"], 2)
+    first = np.searchsorted(claimed["segment"], np.arange(len(orbit.word) + 1))
+    first = np.append(first[:-1], first + len(claimed["w"]))  # twice through the cycle
 
+    def error(place: int, end: int) -> float:
+        start, part = states[place].copy(), slice(first[place], first[end])
+        start[W] = min(max(start[W], right), left)
+        ahead = phases[part] - phases[part][0]
+        run = follow(orbit.model, engine, orbit.params, start, float(ahead[-1]) / (2.0 * np.pi) + 1e-6)
+        seen = run.sample(run.start[PSI] + 2.0 * np.pi * run.start[TURNS] + ahead)
+        return float(np.abs(seen.w - positions[part]).max())
 
-def _follower(orbit: Solution, points: int) -> Callable[[int, int], float]:
-    """The same from one event over the next ones, as a function of place and number of events."""
-    model = orbit.model
-    engine, durations = machine(model.name), orbit.durations
-    codes, modes = orbit.word.codes, orbit.word.modes
-
-    def error(place: int, events: int) -> float:
-        start = state_of(engine, orbit.params, int(codes[place]), int(modes[place]), orbit.nodes[place])
-        left, right = engine.walls(orbit.params)
-        start[1] = min(max(start[1], right), left)
-        phases, positions, passed = [], [], 0.0
-        for segment in np.arange(place, place + events) % len(codes):
-            count = max(2, round(points * durations[segment] / (2.0 * np.pi * orbit.periods)))
-            within = np.linspace(0.0, max(float(durations[segment]), 0.0), count)
-            phases.append(passed + within)
-            positions.append(flight(orbit, int(segment), within)[:, 0])
-            passed += float(durations[segment])
-        ahead, claimed = np.concatenate(phases), np.concatenate(positions)
-        run = simulate(model, start, periods=float(ahead[-1]) / (2.0 * np.pi) + 1e-6, **orbit.parameters)  # type: ignore[arg-type]
-        seen = run.sample(run.start[0] + 2.0 * np.pi * run.start[4] + ahead)
-        return float(np.abs(seen.w - claimed).max())
-
-    return error
+    return max(error(int(a), int(b)) for a, b in zip(places, ends, strict=True))
 
 
 def _calm(orbit: Solution) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from functools import cache
 
 import numpy as np
 
@@ -37,6 +38,12 @@ def is_symmetric(word: Word, periods: int, nodes: np.ndarray, tolerance: float =
     return bool(np.max(np.abs(image - nodes[half:])) < tolerance)
 
 
+@cache
+def _direction(size: int) -> np.ndarray:
+    """A direction in which no two different orbits look alike by chance."""
+    return np.sin(np.arange(1, size + 1) * np.sqrt(2.0)) + 0.1
+
+
 def canonical(
     word: Word, periods: int, nodes: np.ndarray, mirror: bool = True
 ) -> tuple[Hashable, np.ndarray]:
@@ -48,7 +55,7 @@ def canonical(
     word, periods, nodes = root_orbit(word, periods, nodes)
     target = word.canonical(mirror)
     flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
-    direction = np.sin(np.arange(1, flat.size + 1) * np.sqrt(2.0)) + 0.1
+    direction = _direction(flat.size)
     best, best_score = flat.ravel(), -np.inf
     for mirrored, place in word.readings(mirror):
         vector = (-1.0 if mirrored else 1.0) * np.roll(flat, -place, axis=0).ravel()

@@ -88,7 +88,9 @@ class Family:
                 return orbit
         refusal = None
         try:
-            orbit = None if self.word is None else find(model, self.word, self.periods, self.guess, loose)
+            orbit = (
+                None if self.word is None else find(model, self.word, self.periods, self.guess, loose, Orbit)
+            )
             if orbit is not None and orbit.real:
                 return orbit
         except StartError as error:

@@ -121,28 +121,16 @@ def conditions(
         for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights):
             if zero.event != i or not _vanishes(condition, zero):
                 yield condition
-        if zero.event == i and zero.name == "stop":
-            yield _no_time(motif, i, flight, phases, zero)
-        else:
-            yield Condition("duration", i, phases[1] - phases[0])
-            if zero.event == i and zero.phase is not None:  # else it would be no border of this flight
-                yield Condition("touch", i, zero.phase - phases[0])
-                yield Condition("touch", i, phases[1] - zero.phase)
-            yield from _in_flight(motif, i, flight, phases, flights, zero)
-
-
-def _no_time(motif: Motif, i: int, flight: Flight, phases: tuple[Any, Any], zero: Zero) -> Condition:
-    """That a stick lasts no time at all: the push reaches friction at both its ends, and only once in their neighbourhood."""
-    mode = motif.arrival(i)[1]
-    near = (phases[1] - phases[0]).contains(0) and zero.side == mode
-    rate = mode * flight(interval(*phases)).push1
-    return Condition("stop", i, rate if near else library().arb(-1))
+        yield Condition("duration", i, phases[1] - phases[0])
+        if zero.event == i and zero.phase is not None:  # else it would be no border of this flight
+            yield Condition("touch", i, zero.phase - phases[0])
+            yield Condition("touch", i, phases[1] - zero.phase)
+        yield from _in_flight(motif, i, flight, phases, flights, zero)
 
 
 def _vanishes(condition: Condition, zero: Zero) -> bool:
     """Whether a condition at the border's event is the one that vanishes."""
-    name = "stick" if zero.name == "stop" else zero.name
-    return condition.name == name and (name not in ("wall", "stick") or condition.side == zero.side)
+    return condition.name == zero.name and (zero.name not in ("wall", "stick") or condition.side == zero.side)
 
 
 def _at_event(
@@ -190,7 +178,7 @@ def _in_flight(
 
             def hold(phase: Any, side: int = side) -> Rates:
                 m = flight(phase)
-                return machine.limit[side] - side * m.push, -side * m.push1, None, None
+                return machine.limit[side] - side * m.push, -side * m.push1, -side * m.push2, None
 
             held = zero.name == "stick" and zero.event == i and side == zero.side
             touch = touching if zero.name == "hold" and zero.side == side else None
@@ -209,8 +197,6 @@ def _in_flight(
             start += 1
         if zero.event == following and zero.name == "approach":
             end = 1
-        if zero.event == following and zero.name == "stop" and zero.side == mode:
-            end = 2  # it would slide on in the same direction
         yield Condition(
             "flight", i, None, 0, slide, phases, pace, start, end, touching if zero.name == "flight" else None
         )

@@ -1,311 +1,245 @@
 # fmt: off
-"""Certificates checked anew, with nothing but the certificate and mpmath's intervals; none of the prover's code is used.
+"""Certificates checked anew with nothing but the certificate and mpmath's intervals; none of the prover's code is used.
 
-The equations of motion are in `motion`; all else follows from w and v there. Numbers are truncated power series in time, in the
-directions of eigenvectors and in the unknowns, {(power of time, direction, unknown): interval}: coefficients are derivatives."""
+A certificate is a chain of boxes: orbit, tile, orbit ... tile, orbit. In a box the unknowns (nodes, then the parameter) are m + s q + [-r, r]
+for |q| <= h, one solution for every q; r = 0 where q alone fixes an unknown, h = 0 for an orbit. A tile holds the orbits beside it, so all lie
+on one branch. Tiles are real and stable as claimed; the orbits beside a special one differ so that the special point must lie between."""
 import math
+import re
 from typing import Any
 
 import mpmath
+import numpy as np
 
 iv: Any = mpmath.iv
-WALL, ZERO, MIRROR = {"L": 1, "R": -1}, (0, 0, 0), {"L": "R", "R": "L"}
-OWN = {"absorber": "amplitude restitution friction", "coupled": "forcing damping restitution excitation friction",
-       "cavity": "amplitude slope " + " ".join(f"{name}_{s}" for name in ("restitution", "friction", "distance") for s in ("left", "right"))}
-FITS = {"L": ((1,), (-1,)), "R": ((-1,), (1,)), "t": ((1, -1), (1, -1)), "s": ((1, -1), (0,)), "u": ((0,), (1, -1))}
+VALUE, WALL, MIRROR, SIDES = (0, 0), {"L": 1, "R": -1}, {"L": "R", "R": "L"}, {1: "_left", -1: "_right"}
+MODES = {"L": [(1, -1)], "R": [(-1, 1)], "t": [(1, -1), (-1, 1)], "s": [(1, 0), (-1, 0)], "u": [(0, 1), (0, -1)],
+         "o": [(0, 0)]}  # before and after an event; o is none, the absorber is stuck for ever
+PAIRS = [(name + "_left", name + "_right") for name in ("restitution", "friction", "distance")]
+OWN = {"absorber": ["amplitude", "restitution", "friction"], "cavity": ["amplitude", "slope", *sum(PAIRS, ())],
+       "coupled": ["forcing", "damping", "excitation", "restitution", "friction"]}
 
-class Refused(ValueError):
-    """The certificate does not prove what it claims."""
+class Refused(ValueError): """The certificate does not prove what it claims."""
 
 def need(holds, why):
-    if not holds: raise Refused(why)
+    if not holds:
+        raise Refused(why)
 
-def num(text):
-    mid, rad = (text, "0") if isinstance(text, str) else text
-    need(iv.mpf(str(rad)) >= 0, "a radius is negative")
-    return iv.mpf(str(mid)) + iv.mpf([-1, 1]) * iv.mpf(str(rad))
+def number(text):
+    need(re.fullmatch(r"-?\d+(\.\d+)?(e[+-]?\d+)?", text), f"{text!r} is no decimal number")
+    return iv.mpf(text)
 
-class A:
-    def __init__(self, c): self.c = c if isinstance(c, dict) else {ZERO: iv.mpf(c)}
-    def __call__(self): return self.c.get(ZERO, iv.mpf(0))
-    def __sub__(self, o): return self + o * -1
-    def __truediv__(self, o): return self * (o.f("inv") if isinstance(o, A) else 1 / iv.mpf(o))
-    def rate(self, k) -> Any: return A({(0, d, v): x * math.factorial(k) for (t, d, v), x in self.c.items() if t == k})
-    def __add__(self, o):
-        o = (o if isinstance(o, A) else A(o)).c
-        return A({k: self.c[k] + o[k] if k in o and k in self.c else self.c.get(k, o.get(k)) for k in self.c | o})
-    def __mul__(self, o):
-        out, o = {}, o if isinstance(o, A) else A(o)
-        for ((t, d, v), a), ((s, e, w), b) in ((x, y) for x in self.c.items() for y in o.c.items()):
-            if t + s < 4 and not (d and e) and not (v and w):
-                out[key] = out.get(key := (t + s, d or e, v or w), 0) + a * b
-        return A(out)
-    __radd__, __rmul__ = __add__, __mul__
-    def f(self, name):  # sum of f^(k)(a)/k! (self - a)^k, finite since powers are truncated
-        a, out, power, k, c = self(), A(0), A(1), 0, None
-        rest, sines = A({key: x for key, x in self.c.items() if key != ZERO}), name in ("sin", "cos")
-        wave = [iv.sin(a), iv.cos(a), -iv.sin(a), -iv.cos(a)] * 2 if sines else [iv.exp(a)] if name == "exp" else []
-        while power.c:
-            if wave: c = wave[(k % 4 + (name == "cos")) * sines] / math.factorial(k)
-            elif k: c = c * ((-1 if name == "inv" else iv.mpf(3) / (2 * k) - 1) / a)  # the powers -1 and 1/2
-            else: c = 1 / a if name == "inv" else iv.sqrt(a)
-            out, power, k = out + power * c, power * rest, k + 1
+def jet(x): return x if isinstance(x, Jet) else Jet({VALUE: iv.mpf(x)})
+
+class Jet(dict):
+    """A power series in time with derivatives in the unknowns 1, 2 ...: {(power, unknown or 0): interval}."""
+    def __add__(self, other) -> Any: return Jet({key: self.get(key, 0) + jet(other).get(key, 0) for key in self | jet(other)})
+    def __sub__(self, other) -> Any: return self + jet(other) * -1
+    def __truediv__(self, other) -> Any: return self * power(jet(other), -1)
+    def dot(self) -> Any: return Jet({(t - 1, u): a * t for (t, u), a in self.items() if t})
+    def __mul__(self, other) -> Any:
+        out = Jet()
+        for (s, u), a in self.items():
+            for (t, v), b in jet(other).items():
+                if s + t < 5 and not (u and v):
+                    out[s + t, u + v] = out.get((s + t, u + v), 0) + a * b
         return out
 
-def response(p, mass):  # q1 = X sin + Y cos under the forcing; decay and frequency of its free motion
-    e, om, chi, g = p["mass_ratio"], p["frequency"], p["excitation"], p["mass_ratio"] * p["damping"] * p["frequency"]
-    K, al = om * om * mass * -1 + 1, e * p["damping"] / (mass * 2)
-    n = e * p["forcing"] / (K * K + g * g)
-    return n * (K + chi * g * g), n * g * (chi * K - 1), al, (A(1) / mass - al * al).f("sqrt")
+    def of(self, derivatives) -> Any:
+        """A function, by Taylor's series about the value; powers of all else vanish from the sixth on."""
+        rest, total, term = Jet({key: a for key, a in self.items() if key != VALUE}), Jet(), jet(1)
+        for k, f in enumerate(derivatives(self.get(VALUE, iv.mpf(0)))):
+            total, term = total + term * (f / math.factorial(k)), term * rest
+        return total
+
+def sin(x): return x.of(lambda a: ([iv.sin(a), iv.cos(a), -iv.sin(a), -iv.cos(a)] * 2)[:6])
+def cos(x): return sin(x + iv.pi / 2)
+def exp(x): return x.of(lambda a: [iv.exp(a)] * 6)
+def power(x, k): return x.of(lambda a: [a ** (k - j) * math.prod(k - i for i in range(j)) for j in range(6)])
+
+def machine(c, parameter):
+    """All numbers: constants times powers of the parameter; friction's limit by mode, the walls by side."""
+    p = {name: (power(parameter, k) if k else jet(1)) * (number(a) + iv.mpf([-1, 1]) * abs(number(r)))
+         for name, (a, r, k) in c["parameters"].items()}
+    weight, tilt = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", Jet())
+    p |= {"limit0": Jet(), "bias": weight * sin(tilt) * -1, "e": p["mass_ratio"] if c["n"] == 4 else Jet()}
+    for side, name in SIDES.items():
+        p[f"limit{side}"] = weight * cos(tilt) * p.get("friction" + name, p.get("friction"))
+        p[f"wall{side}"] = p.get("distance" + name, jet(1)) * side
+        p[f"bounce{side}"] = p.get("restitution" + name, p.get("restitution"))
+    return p
 
 def motion(p, letter, mode, x, phase):
-    """Series of w and v in the time after `phase`, on the flight that starts at node x; no letter: stuck for ever."""
-    om, e, T = p["frequency"], p["mass_ratio"], A({(1, 0, 0): iv.mpf(1)})
-    s, c, C = (om * T + phase).f("sin"), (om * T + phase).f("cos"), p.get("amplitude")
-    if not letter:
-        X, Y = (C, 0) if C else response(p, e + 1)[:2]
-        return A(0), (X * s + Y * c) * (A(1) if C else e + 1)
-    t, w0, s0, c0 = (phase - x[0]) / om + T, p["d", WALL[letter]] * WALL[letter] if letter in WALL else x[1], x[0].f("sin"), x[0].f("cos")
-    if C:
-        b = x[1] if letter in WALL else C * om * c0
-        return (w0 + C * s - C * s0 - b * t + (p["bias"] - p["a", mode] * mode) * t * t / 2 if mode else w0), C * s
-    k1, pull = (x[1] if letter in WALL else x[3]) / (e + 1), p["friction"] * p["gravity"] * mode
-    X, Y, al, be = response(p, A(1) if mode else e + 1)
-    z, u = (x[2] + e * w0) / (e + 1) + e * pull - X * s0 - Y * c0, x[3] - e * k1 if letter in WALL else k1
-    u = u - om * (X * c0 - Y * s0)
-    q = X * s + Y * c - e * pull + (al * t * -1).f("exp") * (z * (be * t).f("cos") + (u + al * z) / be * (be * t).f("sin"))
-    k = (x[2] - w0) / (e + 1) + k1 * t + pull * t * t / 2
-    return (q - k, q + e * k) if mode else (w0, q * (e + 1) - e * w0)
+    """Series of w = q1 - q2 and v = q1 + e q2 in the time after a phase of the flight that starts at node x.
 
-def finish(p):  # the bias by the slope; friction's limit a and the wall's distance d on either side
-    weight, tilt, p = (p["mass_ratio"] + 1) * p["gravity"], p.get("slope", A(0)), p | {("a", 0): A(0)}
-    for s, side in ((1, "_left"), (-1, "_right")):
-        p["a", s] = weight * (p["friction" + side] if "slope" in p else p["friction"]) * tilt.f("cos")
-        p["d", s] = p["distance" + side] if "slope" in p else A(1)
-    return p | {"bias": weight * tilt.f("sin") * -1}
+    The oscillator q1 has a forced part X sin + Y cos, a free and a constant one, the absorber q2 falls; a shaken cavity has e = 0, q1 = C sin."""
+    e, om, whole, wall = p["e"], p["frequency"], p["e"] + 1, WALL.get(letter)
+    X, Y, drag, mass = p.get("amplitude"), Jet(), e * p.get("damping", 0), jet(1) if mode else whole
+    if not X:
+        K, g = jet(1) - mass * om * om, drag * om
+        size = e * p["forcing"] / (K * K + g * g)
+        X, Y = size * (K + p["excitation"] * g * g), size * g * (p["excitation"] * K - 1)
+    s, c, angle, t = sin(x[0]), cos(x[0]), om * Jet({(1, 0): iv.mpf(1)}) + phase, (phase - x[0]) / om + Jet({(1, 0): iv.mpf(1)})
+    q, w0, (v0, v1) = X * sin(angle) + Y * cos(angle), p[f"wall{wall}"] if wall else x[1], x[2:] or (X * s, X * om * c)
+    pull, speed = (p[f"limit{mode}"] * mode - p["bias"]) / whole, (x[1] if wall else v1) / whole
+    if x[2:] and letter != "o":
+        z, u, decay = (v0 + e * w0) / whole + e * pull - X * s - Y * c, v1 - e * speed - om * (X * c - Y * s), drag / (mass * 2)
+        be = power(jet(1) / mass - decay * decay, iv.mpf(1) / 2)
+        q += exp(decay * t * -1) * (z * cos(be * t) + (u + decay * z) / be * sin(be * t)) - e * pull
+    fall = (v0 - w0) / whole + speed * t + pull * t * t * (iv.mpf(1) / 2)
+    return (q - fall, q + e * fall) if mode else (w0, whole * q - e * w0)
 
-def closed(c, x, angle=None):  # the first node as it must be after the last flight, its directions times the multiplier
-    out, one = [], iv.mpf(1)
-    for j, y in enumerate(x):
-        a, b, d = (A({(t, 0, v): x for (t, d, v), x in y.c.items() if d == k}) for k in range(3))
-        if angle: b, d = angle.f("cos") * b - angle.f("sin") * d, angle.f("sin") * b + angle.f("cos") * d
-        y = a + b * A({(0, 1, 0): one * c.get("multiplier", 1)}) + d * A({(0, 2, 0): one})
-        out.append(y * c["sign"] if j else y + iv.pi * c["periods"] * (1 if c["half"] else 2))
-    return out
+def flights(c, x, end):
+    """Of every flight: letter, mode, the event after it and the mode then, both nodes; `end` is the node that closes the word."""
+    nodes, n = [x[j:j + c["n"]] for j in range(0, len(x) - 1, c["n"])], len(c["events"])
+    nodes.append([end[0] + c["span"], *(a * (-1 if c["half"] else 1) for a in end[1:])])
+    return [(c["events"][i], c["modes"][i], *c["arrivals"][i], nodes[i], nodes[i + 1]) for i in range(n)]
 
-def equations(c, p, z, e, shift=1):
-    """Rows {0: value, unknown: derivative}; the closing node's unknowns are numbered from `shift`, others from 1."""
-    n, k, size = c["n"], len(z[0]), len(z) * len(z[0]) + len(e)
-    def node(i, shift=1):
-        x = [A({ZERO: z[i][j], (0, 0, i * k + j + shift): iv.mpf(1)}) for j in range(min(n, k))]
-        for j in range(n, k): x[j % n] += A({(0, j // n, 0): z[i][j], (0, j // n, i * k + j + shift): iv.mpf(1)})
-        return x
-    ext, out = [A({ZERO: v, (0, 0, 1 + size - len(e) + j): iv.mpf(1)}) for j, v in enumerate(e)], []
-    p = finish(p | ({c["parameter"]: ext[0]} if e else {}))
-    for i, letter in enumerate(c["events"]):
-        y = node(i + 1) if i + 1 < len(z) else closed(c, node(0, shift), ext[1] if k == 3 * n else None)
-        (w, v), wall = motion(p, letter, c["signs"][i], node(i), y[0]), c["letters"][i + 1]
-        r = p.get("restitution", p.get("restitution_left" if wall == "L" else "restitution_right"))
-        out += [w.rate(0) - p["d", WALL[wall]] * WALL[wall], v.rate(1) + r * w.rate(1) - y[1]] if wall in WALL else [
-            v.rate(2) + p["bias"] - p["a", c["signs"][i + 1]] * c["signs"][i + 1] if wall == "u" else w.rate(1), w.rate(0) - y[1]]
-        out += [v.rate(0) - y[2], v.rate(1) - y[3]] if n == 4 else []
-    rows = [{v: x for (_, f, v), x in row.c.items() if f == d} for row in out for d in range(k // n or 1)]
-    if "normal" in c:
-        b, j = c["normal"]
-        return rows + [{0: z[b][d * n + j] - (d == 1), 1 + b * k + d * n + j: iv.mpf(1)} for d in range(1, k // n)]
-    if "border" not in c: return rows
-    (name, i, side), x = c["border"], node(c["border"][1])
-    w, v = motion(p, c["events"][i:i + 1], c["signs"][i], x, ext[1] if len(e) > 1 else x[0])
-    push = p["a", side] - (v.rate(2) + p["bias"]) * side
-    out = {"flight": [w.rate(1), w.rate(2)], "hold": [push, v.rate(3)], "slip": [v.rate(3)], "approach": [w.rate(1)], "rest": [v.rate(3), push],
-           "reversal": [w.rate(0) * side - p["d", side], w.rate(1)], "wall": [w.rate(0) * side - p["d", side]]}.get(name, [push])
-    return rows + [{v: x for (_, _, v), x in row.c.items()} for row in out]
+def equations(c, flat, shift=0):
+    """Rows {unknown: derivative, 0: value}; unknowns are numbered from 1, those of the node that closes the word from 1 + shift."""
+    x, end = ([Jet({VALUE: a, (0, u): iv.mpf(1)}) for u, a in enumerate(flat, 1 + first)] for first in (0, shift))
+    p, rows = machine(c, x[-1]), []
+    for letter, mode, wall, after, node, y in flights(c, x, end[:c["n"]]) if c["events"] != "o" else []:
+        (w, v), side = motion(p, letter, mode, node, y[0]), WALL.get(wall)
+        if side:
+            rows += [w - p[f"wall{side}"], v.dot() + p[f"bounce{side}"] * w.dot() - y[1]]
+        else:
+            rows += [v.dot().dot() + p["bias"] - p[f"limit{after}"] * after if wall == "u" else w.dot(), w - y[1]]
+        rows += [v - y[2], v.dot() - y[3]] if y[2:] else []
+    return [{u: a for (t, u), a in row.items() if t == 0} for row in rows]
 
-def solve(rows, order):
-    """Interval Gauss elimination of sparse rows {unknown: coefficient, 0: right side}."""
-    pivots, x = [], {}
-    need(len(rows) == len(order), "there are not as many equations as unknowns")
-    for col in order:
-        near = [row for row in rows if col in row and 0 not in row[col]]
-        need(near, "the equations may be singular")
-        pivot = max(near, key=lambda row: min(abs(row[col].a), abs(row[col].b)))
-        rows = [row for row in rows if row is not pivot]
-        for row in (row for row in rows if col in row):
-            factor = row.pop(col) / pivot[col]
-            for j in pivot.keys() - {col}: row[j] = row.get(j, 0) - factor * pivot[j]
-        pivots.append((col, pivot))
-    for col, pivot in reversed(pivots):
-        x[col] = (pivot.get(0, iv.mpf(0)) - sum(b * x[j] for j, b in pivot.items() if j not in (0, col))) / pivot[col]
-    return x
+def exists(c, box):
+    """Exactly one solution for every q: |Y F(m + s q)| + |1 - Y DF(box)| r < r with some Y (Krawczyk); here it is near the inverse."""
+    (m, s, r), q, over = zip(*box["flat"]), box["q"], equations(c, box["hull"])
+    free, slopes = [j for j, b in enumerate(r, 1) if b != 0], equations(c, [a + b * q for a, b in zip(m, s)])
+    F = [f.get(0, 0) + q * sum(g.get(j, 0) * b for j, b in enumerate(s, 1)) for f, g in zip(equations(c, m), slopes)]
+    need(len(F) == len(free), "there are not as many equations as unknowns")
+    middle = [[float(row[j].mid) if j in row else 0.0 for j in free] for row in over]
+    for j, y in zip(free, np.linalg.inv(middle).tolist() if F else []):
+        defect = {j: iv.mpf(-1)}
+        for weight, row in zip(y, over):
+            defect |= {u: defect.get(u, 0) + weight * row[u] for u in row.keys() & set(free)}
+        moved = abs(sum(weight * f for weight, f in zip(y, F))) + sum(abs(a) * r[u - 1] for u, a in defect.items())
+        need(moved < r[j - 1], f"unknown {j} leaves its box")
 
-def exists(c, p, z, e):
-    """The interval Newton operator maps the box into its interior."""
-    k, last, flat = len(z[0]), len(z) * len(z[0]), [v for node in z for v in node] + e
-    mid = [iv.mpf(v.mid) for v in flat]
-    values = equations(c, p, [mid[i * k:i * k + k] for i in range(len(z))], mid[last:])
-    rows = [row | {0: value.get(0, iv.mpf(0))} for row, value in zip(equations(c, p, z, e), values)]
-    step = solve(rows, [*range(k + 1, last + 1), *range(1, k + 1), *range(last + 1, len(flat) + 1)])
-    for j, (m, box) in enumerate(zip(mid, flat), start=1):
-        need((m - step[j]).a > box.a and (m - step[j]).b < box.b, f"unknown {j} leaves its ball")
-
-def conditions(c, p, z, name, event, side, touch):
-    """Inequalities (name, event, number) and (name, event, (f and its rates, first, last, zeros at start and end, touching phase))."""
-    (a, d), frame, signs = ({s: p[name, s]() for s in (1, -1)} for name in "ad"), [[A(v) for v in node] for node in z], c["signs"]
-    def ws(ph, i, s): return [(motion(p, c["events"][i], signs[i], frame[i], A(ph))[0].rate(k) * s)() for k in range(4)]
-    def push(ph, i):
-        v = motion(p, c["events"][i], signs[i], frame[i], A(ph))[1]
-        return (v.rate(2) + p["bias"])(), v.rate(3)()
-    for i, letter in enumerate(c["events"]):
-        mode, wall, j, first = signs[i], c["letters"][i + 1], (i + 1) % len(z), z[i][0]
-        last, here, there = (frame[j] if j else closed(c, frame[0]))[0](), name if event == i else "", name if event == j else ""
-        P = push(first, i)
-        tests = [("approach", 0, ws(first, i, -WALL[letter])[1])] if letter in WALL else [("wall", s, d[s] - z[i][1] * s) for s in (1, -1)]
-        tests += {"t": [("turn", 0, mode * P[0] - a.get(mode, 0))], "u": [("slip", 0, mode * P[1])],
-                  "s": [("stick", s, a[s] - P[0] * s) for s in (1, -1)]}.get(letter, [])
-        yield from ((n, i, v) for n, s, v in tests if here.replace("stop", "stick") != n or s not in (0, side))
-        if here == "stop":  # no time at all: the push reaches friction at both ends, and once in their neighbourhood
-            once = push(iv.mpf([min(first.a, last.a), max(first.b, last.b)]), i)[1] * signs[i + 1]
-            yield "stop", i, once if 0 in last - first and side == signs[i + 1] else iv.mpf(-1)
-            continue
-        yield "duration", i, last - first
-        if event == i and touch is not None: yield from (("touch", i, touch - first), ("touch", i, last - touch))
-        for s in (1, -1) if mode == 0 or c["frictionless"] else (mode,):
-            if c["frictionless"]:
-                f: Any = lambda ph, i=i, s=s: [v + (k == 0) * d[s] for k, v in enumerate(ws(ph, i, -s))]  # noqa: E731
-                kind, start, end = "wall", (WALL[letter] == s) * (1 + (here == "approach")), (WALL[wall] == s) * (1 + (there == "approach"))
-            elif mode == 0:
-                f = lambda ph, i=i, s=s: [a[s] - push(ph, i)[0] * s, push(ph, i)[1] * -s]  # noqa: E731
-                kind, start, end = "hold", here == "stick" and side == s, s == signs[i + 1]
-            else:
-                f = lambda ph, i=i, s=s: ws(ph, i, s)[1:]  # noqa: E731
-                kind, start = "flight", {"t": 1, "u": 2}.get(letter, 0) + (here in ("turn", "approach", "slip"))
-                end = 2 if there == "stop" and side == mode else wall in "ts" or there == "approach"
-            at = touch if here == {"wall": "reversal"}.get(kind, kind) and (kind == "flight" or side == s) else None
-            yield kind, i, (f, first, last, int(start), int(end), at)
-
-def positive(test, pace):
-    """True: f > 0 is proved; False: its contrary somewhere; None."""
-    if not isinstance(test, tuple): return True if test > 0 else False if test < 0 else None
-    (f, first, last, start, end, touch), todo = test, [(iv.mpf(0), iv.mpf(1))]
+def positive(rates, first, last, start, end, pace):
+    """Whether f > 0 between two phases: by mean values on cells, and beside an end at which k rates of f vanish by the k-th."""
+    cells = [(iv.mpf(0), iv.mpf(1))]
     for _ in range(4000):
-        if not todo: return True
-        low, high = todo.pop()
-        half, mid, over = (low + high) / 2, first + (last - first) * (low + high) / 2, first + (last - first) * iv.mpf([low.a, high.b])
-        value, zero = f(mid)[0], touch is not None and not (over.b < touch.a or over.a > touch.b)
-        if value < 0: return False
-        rates = f(iv.mpf([min(over.a, touch.a), max(over.b, touch.b)]) if touch is not None and zero else over)
-        ends = [(2, 1)] if zero else [(0, 1), (start * (low == 0), 1), (end * (high == 1), (-1) ** end if high == 1 else 1)]
-        if not any(k < len(rates) and rates[k] * s > 0 for k, s in ends) and (zero or not value + rates[1] * (over - mid) * pace > 0):
-            todo += [(low, half), (half, high)]
+        if not cells:
+            return True
+        low, high = cells.pop()
+        here, over = (first + (last - first) * part for part in ((low + high) / 2, iv.mpf([low.a, high.b])))
+        value, f = rates(here)[0], rates(over)
+        if value < 0:
+            return False
+        beside = (low == 0 and start and f[start] > 0) or (high == 1 and end and f[end] * (-1) ** end > 0)
+        if not beside and not value + f[1] * (over - here) * pace > 0:
+            cells += [(low, (low + high) / 2), ((low + high) / 2, high)]
 
-def steady(c, p, z, basis=()):
-    """Whether all multipliers lie inside the unit circle, or one outside: by norm and trace of powers of their matrix."""
-    n, size, e = c["n"], len(z) * c["n"], p["mass_ratio"]()
-    rows = equations(c, p, z, [], size + 1)
-    M, B = [[0] * n for _ in range(n)], [[num(x) for x in row] for row in basis] or [[iv.mpf(int(i == j)) for i in range(n)] for j in range(n)]
-    for j in range(n):
-        x = [row[j] for row in B]
-        for i in range(len(z)):  # from node to node
-            known, new = range(1 + i * n, 1 + i * n + n), range(1 + i * n + n, 1 + i * n + 2 * n)
-            step = solve([{q: row[q] for q in row if q in new} | {0: -sum(row.get(q, iv.mpf(0)) * v for q, v in zip(known, x))}
-                          for row in rows[i * n:i * n + n]], new)
-            x = [step[q] for q in new]
-        for i in range(n): M[i][j] = x[i]
-    if not any(letter in WALL for letter in c["events"]):  # shifting w, v + eps w kept, changes nothing: a trivial multiplier
-        need(c["half"], "a sliding motion is stable or not on half its word")
-        if n == 4: M[2] = [x + e * y for x, y in zip(M[2], M[1])]
-        M = [[row[0], *(row[j] for j in range(2, n))] for i, row in enumerate(M) if i != 1]
-    if basis:  # the similar matrix in another basis
-        X = [solve([dict(enumerate(row, 1)) | {0: M[i][j]} for i, row in enumerate(B)], [*range(1, n + 1)]) for j in range(n)]
-        M = [[X[j][1 + i] for j in range(n)] for i in range(n)]
-    for _ in range(26):
-        if all(sum(abs(x) for x in row) < 1 for row in M): return True
-        if abs(sum(M[i][i] for i in range(len(M)))) > len(M): return False
-        M = [[sum(row[k] * M[k][j] for k in range(len(M))) for j in range(len(M))] for row in M]
+def conditions(c, box, wanted):
+    """Whether inequalities of a real motion hold throughout the box: {(what, event, side): True, False or None}."""
+    x, p, found = [jet(a) for a in box["hull"]], machine(c, jet(box["hull"][-1])), {}
+    for i, (letter, mode, wall, after, node, y) in enumerate(flights(c, x, x[:c["n"]])):
+        tests = {("duration", i, 0): (y[0] - node[0])[VALUE]}
+        tests |= {("wall", i, s): (p[f"wall{s}"] - node[1])[VALUE] * s for s in SIDES if letter in "tsu"}
+        found |= {key: True if value > 0 else False if value < 0 else None for key, value in tests.items()}
+        for s in SIDES if c["frictionless"] or mode == 0 else (mode,):
+            def rates(phase, letter=letter, mode=mode, node=node, s=s):
+                w, v = motion(p, letter, mode, node, jet(phase))
+                f = w.dot() * s if mode else p[f"limit{s}"] - (v.dot().dot() + p["bias"]) * s
+                f = (p[f"wall{s}"] - w) * s if c["frictionless"] else f
+                return [f.get((k, 0), iv.mpf(0)) * math.factorial(k) for k in range(3)]
+            start, end = {"t": 1, "u": 2}.get(letter, 0), wall in "ts" if mode else after == s
+            zeros = (WALL[letter] == s, WALL[wall] == s) if c["frictionless"] else (start, end)
+            if wanted(["flight", i, s]):
+                found["flight", i, s] = positive(rates, node[0][VALUE], y[0][VALUE], *zeros, (jet(1) / p["frequency"])[VALUE])
+    return {key: holds for key, holds in found.items() if wanted([*key])}
 
-def cover(c, p, length):
-    """A piece of a branch: tiles m + s q + [-r, r] at p_c + q with one orbit each for every q, joined at common orbits."""
-    n, claims, joints, end, last = c["n"], c["claims"], [*c["joints"], None], iv.mpf(c["covered"][0]).b, None
-    for (center, half, nodes, basis), joint in zip(c["tiles"], joints, strict=True):
-        (m, s, r), q, P = ([[[num(t[k]) for t in x] for x in nodes] for k in range(3)]), num(["0", half]), num([center, half])
-        def box(q, wide, m=m, s=s, r=r):
-            return [[a + b * q + d * iv.mpf([-1, 1]) * wide for a, b, d in zip(*row)] for row in zip(m, s, r)]
-        here, size, flat = num([center, "0"]), n * length, [b for x in s for b in x]
-        need(len(m) == length and all(len(x) == n for x in m) and P.a <= end, "the tiles leave a gap")
-        move, rows = equations(c, p, box(q, 0), [P]), equations(c, p, box(q, 1), [P])
-        for row, at, along in zip(rows, equations(c, p, m, [here]), move):
-            slope = sum((along.get(1 + j, 0) * b for j, b in enumerate(flat)), along.get(1 + size, iv.mpf(0)))
-            row.pop(1 + size, None)
-            row[0] = at.get(0, iv.mpf(0)) + slope * q
-        step = solve(rows, [*range(n + 1, size + 1), *range(1, n + 1)])
-        need(all(abs(step[1 + j]) < d for j, d in enumerate(d for x in r for d in x)), "a solution leaves its tile")
-        here, z = finish(p | {c["parameter"]: A(P)}), box(q, 1)
-        found = [positive(test, 1 / here["frequency"]()) for _, _, test in conditions(c, here, z, "", -1, 0, None)]
-        need(claims["real"] is None or (all(found) if claims["real"] else False in found), "a tile is not proved real, or virtual")
-        fixed = p | {c["parameter"]: A(P)}
-        need(claims["stable"] is None or steady(c, fixed, z, basis) is claims["stable"], "a tile is not proved stable, or unstable")
-        for value, point in [x for x in (last, joint) if x]:
-            at, x = num(value), [[num(t) for t in node] for node in point]
-            need(at.a > P.a and at.b < P.b, "a joint lies outside its tile")
-            exists(c, p | {c["parameter"]: A(at)}, x, [])
-            inside = zip([v for node in x for v in node], [v for node in box(at - num([center, "0"]), 1) for v in node])
-            need(all(a.a > b.a and a.b < b.b for a, b in inside), "a joint lies outside its tile")
-        last, end = joint, P.b
-    need(iv.mpf(c["covered"][1]).b <= end, "the tiles end too early")
+def spectrum(c, box):
+    """Whether all multipliers lie inside the unit circle; det(1 - A) and det(1 + A) of their matrix A, in the basis that is given."""
+    n, p, rows, loose = c["n"], machine(c, jet(box["hull"][-1])), equations(c, box["hull"], 10**6), not set(c["events"]) & set(WALL)
+    if c["events"] == "o":
+        return n == 2 or p["damping"][VALUE] > 0 or None, iv.mpf(1), iv.mpf(1)
+    A = basis = iv.matrix([[number(text) for text in row] for row in box["basis"]])
+    for j, shift in enumerate([0, 1, p["e"].get(VALUE, iv.mpf(0)) * -1, 0][:n] if loose else []):
+        basis[j, 1] = shift  # w may be shifted, with v + e w kept: that multiplier is left out
+    for i in range(0, len(rows), n):
+        old, new = (iv.matrix([[row.get(j, 0) for j in range(first + 1, first + n + 1)] for row in rows[i:i + n]])
+                    for first in (i, i + n if i + n < len(rows) else 10**6))
+        A = new**-1 * old * A * -1
+    A, kept = basis**-1 * A, [j for j in range(n) if j != 1 or not loose]
+    A, one, pairs = iv.matrix([[A[i, j] for j in kept] for i in kept]), iv.eye(len(kept)), [(i, j) for j in range(len(kept)) for i in range(j)]
+    minors = [[int((i, j) == (k, m)) - A[i, k] * A[j, m] + A[i, m] * A[j, k] for k, m in pairs] for i, j in pairs]
+    minus, plus, short = iv.det(one - A), iv.det(one + A), one - A.T * A  # short is definite where A shortens all vectors
+    inside = all(iv.det(short[:k, :k]) > 0 for k in range(1, len(kept) + 1))
+    outside = minus < 0 or plus < 0 or (pairs and iv.det(iv.matrix(minors)) < 0)  # the product of all 1 - mu_i mu_j
+    return True if inside else False if outside else None, minus, plus
 
-def check(c):
-    """Verify a certificate (a dict, as from JSON); raises `Refused` where it does not prove its claims."""
-    try: verify(c)
-    except (LookupError, TypeError, AttributeError, ArithmeticError, ValueError) as error: raise Refused(str(error)) from None
+def changed(c, tile, one, other):
+    """Whether the orbits on both sides of a tile differ as they do about a special point of its kind."""
+    kind, (inside, minus, plus), (inside_, minus_, plus_) = tile["kind"], spectrum(c, one), spectrum(c, other)
+    if kind == "border":
+        sides = [conditions(c, box, lambda key: key == tile["condition"]) for box in (one, other)]
+        return [{*side.values()} for side in sides] in ([{True}, {False}], [{False}, {True}])
+    if kind == "neimark-sacker":
+        return {inside, inside_} == {True, False} and all(0 not in value for value in spectrum(c, tile)[1:])
+    if kind == "fold":
+        return one["parameter"] == other["parameter"] and minus * minus_ < 0
+    return kind == ("symmetry-breaking" if c["half"] else "period-doubling") and plus * plus_ < 0
+
+def unfolded(c, box):
+    """The box in intervals; the machine's numbers are within their bounds, and the solution exists."""
+    flat = [[number(text) for text in triple] for node in [*box["nodes"], [box["parameter"]]] for triple in node]
+    h, both = abs(number(box["half_width"])), iv.mpf([-1, 1])
+    box = box | {"flat": flat, "q": both * h, "hull": [m + both * (abs(s) * h + r) for m, s, r in flat]}
+    p, fits = machine(c, jet(box["hull"][-1])), [len(node) == c["n"] for node in box["nodes"]]
+    need(all(fits) and len(fits) == len(c["events"]) and all(r >= 0 for *_, r in flat), "nodes do not fit the word")
+    need(all(p[name].get(VALUE, 0) >= 0 for name in c["parameters"] if name != "slope") and p["frequency"][VALUE] > 0, "out of range")
+    need(all(p[f"bounce{s}"][VALUE] > 0 and p[f"bounce{s}"][VALUE] <= 1 for s in SIDES), "a restitution is out of range")
+    need(all((p[f"limit{s}"][VALUE] == 0 if c["frictionless"] else p[f"limit{s}"][VALUE] > 0) for s in SIDES), "friction does not fit the word")
+    exists(c, box)
+    return box
 
 def verify(c):
-    if c["kind"] == "branch": return [verify(piece) for piece in c["pieces"]]
-    need(c["format"] == "contvines certificate 1" and 64 <= c["bits"] <= 9000, "not a certificate of this format")
-    iv.prec, sign, half = c["bits"] + 64, -1 if c["half"] else 1, c["half"]
-    (events, modes), first = (c["events"], c["modes"]), c.get("tiles", [[0, 0, [], []]])[0]
-    if c["kind"] == "piece": c = c | {"nodes": [[t[0] for t in x] for x in first[2]], "extras": [[first[0], first[1]]]}
-    z, e = [[num(t) for t in x] for x in c["nodes"]], [num(t) for t in c["extras"]]
-    kind, stuck, border, claims = c["kind"], not events, c.get("border"), c["claims"]
-    need(len(events) == len(modes) == len(z) - bool(stuck and e) and claims["existence"] is True, "its parts do not fit together")
-    c = c | {"n": 4 if c["machine"] == "coupled" else 2, "sign": sign, "signs": [*modes, *(sign * m for m in modes[:1] or [0])],
-             "letters": [*events, MIRROR.get(events[:1], events[:1]) if half else events[:1]], "before": [sign * m for m in modes[-1:]] + modes[:-1]}
-    p = {name: A(num(t)) for name, t in c["parameters"].items()}
-    q = finish(p | ({c["parameter"]: A(e[0])} if e else {}))
-    names = {*OWN[c["machine"]].split(), "mass_ratio", "gravity", "frequency"}
-    need({*p, *([c["parameter"]] if e else [])} == names and len(p) + bool(e) == len(names), "parameters are missing, or too many")
-    need(all(q[name]() >= 0 for name in names - {"slope"}) and q["frequency"]() > 0, "a parameter is out of range")
-    need(all(q[name]() > 0 and q[name]() <= 1 for name in names if name[:4] == "rest"), "a restitution is out of range")
-    need(all(q["a", s]() >= 0 for s in (1, -1)) and c["frictionless"] == all(q["a", s]() == 0 for s in (1, -1)), "the word does not fit the friction")
-    if half: need(c["periods"] % 2 and c["machine"] != "cavity", "no mirror symmetry")
-    for i, letter in enumerate(events):
-        fits = letter in WALL if c["frictionless"] else c["before"][i] in FITS[letter][0] and modes[i] in FITS[letter][1]
-        need(fits and (letter != "t" or modes[i] == -c["before"][i]), "no machine has this word")
-    wide, tau = {"fold": 2, "symmetry-breaking": 2, "period-doubling": 2, "neimark-sacker": 3}.get(kind, 1), c["periods"] * 1
-    need(tau > 0 and tau == int(tau) and all(len(x) == (wide * c["n"] if events else 1) for x in z), "nodes or periods")
-    if wide > 1:
-        mu = {"fold": (1, half), "symmetry-breaking": (-1, True), "period-doubling": (-1, False)}.get(kind, (1, half))
-        need((c.get("multiplier", 1), half) == mu and len(e) == wide - 1 and border is None, f"no system of a {kind}")
-        need(c["normal"][0] in range(len(z)) and c["normal"][1] in range(c["n"]), "no component to be 1")
-        need(wide == 2 or 0 not in iv.sin(e[1]), "the multipliers are real")
-    elif kind == "piece": return cover(c, p, len(events))
-    else: need(bool(border) == bool(e) == (kind != "orbit") and "normal" not in c and c.get("multiplier", 1) == 1, f"no {kind}")
-    if border:
-        (name, i, side), free = border, c["frictionless"]
-        which = {"flight": "velocity-graze", "wall": "wall-graze", "approach": "wall-graze", "reversal": "wall-graze"}
-        need(kind == which.get(name, "stick") and side in (1, -1) and (i == 0 if stuck else i in range(len(z))), "no border")
-        fits = [name == "rest"] if stuck else [
-            name == "reversal" and free, name in ("flight", "hold") and not free and (modes[i] == 0) == (name == "hold"), name == "approach"
-            and events[i] in WALL, name == "wall" and events[i] in "tsu", (name, events[i]) in [("turn", "t"), ("stick", "s"), ("stop", "s"), ("slip", "u")]]
-        need(any(fits) and len(e) == 1 + (name in ("flight", "hold", "reversal")), "no such margin at this event")
-    if z: exists(c, p, z, e)
-    name, event, side, touch = (*border, e[1] if len(e) > 1 else None) if border else ("", -1, 0, None)
-    if stuck:  # the push is a harmonic of the forcing about the bias
-        one, two = (motion(q, "", 0, None, A(ph))[1].rate(2)() for ph in (iv.mpf(0), iv.pi / 2))
-        held = [q["a", s]() - q["bias"]() * s - iv.sqrt(one * one + two * two) for s in (1, -1)]
-        found = [("stick", 0, True if all(h > 0 for h in held) or border else False if any(h < 0 for h in held) else None)]
-    else: found = [(n, i, positive(test, 1 / q["frequency"]())) for n, i, test in conditions(c, q, [x[:c["n"]] for x in z], name, event, side, touch)]
-    real, stable, broken = claims["real"], claims["stable"], c.get("broken")
-    need(real is None or (all(v for *_, v in found) if real else (*broken, False) in found), "it is not proved real, or not virtual")
-    if kind != "orbit": return need(stable is None, "stability at a special point")
-    if stuck: return need(stable is None or (stable and (c["n"] == 2 or p["damping"]() > 0)), "stability")
-    need(stable is None or steady(c, q, z) is stable, "it is not proved stable, or not unstable")
+    """Verify a certificate (a dict, as from JSON); raises `Refused` where it does not prove its claims."""
+    if c["kind"] == "branch":
+        return [verify(piece) for piece in c["pieces"]]
+    need(c["format"] == "contvines certificate 2" and 64 <= c["bits"] <= 9000, "not a certificate of this format")
+    iv.prec, events, modes, half, given = c["bits"] + 64, c["events"], c["modes"], c["half"], c["parameters"]
+    last = (MIRROR.get(events[0], events[0]), -modes[0]) if half else (events[0], modes[0])
+    c = c | {"n": 4 if c["machine"] == "coupled" else 2, "arrivals": [*zip(events[1:], modes[1:]), last],
+             "span": iv.pi * c["periods"] * (1 if half else 2)}
+    need(len(events) == len(modes) and c["periods"] > 0 and c["periods"] == int(c["periods"]), "word or periods")
+    for before, (wall, after) in zip(modes, c["arrivals"]):
+        need((before, after) in MODES[wall] or (c["frictionless"] and after == -WALL[wall]), "no machine has this word")
+    need({*given} == {*OWN[c["machine"]], "mass_ratio", "gravity", "frequency"}, "parameters are missing, or too many")
+    if half:
+        alike = [given[a] == given[b] and given[a][1] == "0" for a, b in PAIRS] if c["machine"] == "cavity" else []
+        need(c["periods"] % 2 and all(alike) and (not alike or given["slope"] == ["0", "0", 0]), "no mirror symmetry")
+    boxes, claims = [unfolded(c, box) for box in c["boxes"]], c["claims"]
+    kinds = [box.get("kind") for box in boxes]
+    alone = len(boxes) == 3 and kinds[1]  # a special point by itself
+    need(c["kind"] == ("orbit" if len(boxes) == 1 else alone or "piece") and len(boxes) % 2 and not any(kinds[::2]), "no such kind")
+    need(claims["stable"] is None if alone else len(boxes) == 1 or None in kinds[1::2], "nothing but special points")
+    for i, (box, kind) in enumerate(zip(boxes, kinds)):
+        need(i % 2 or box["q"] == 0, "an orbit has no width")
+        for orbit in boxes[i - 1:i + 2:2] if i % 2 else []:  # lies in the tile
+            at, = (j for j, (_, s, r) in enumerate(box["flat"]) if r == 0 and s != 0)
+            q = (orbit["hull"][at] - box["flat"][at][0]) / box["flat"][at][1]
+            within = [abs(x - m - s * q) < r for x, (m, s, r) in zip(orbit["hull"], box["flat"]) if r != 0]
+            need(all(within) and abs(q) <= box["q"].b, "an orbit lies outside its tile")
+        if kind:
+            need(i in (1, len(boxes) - 2) and changed(c, box, *boxes[i - 1:i + 2:2]), "nothing special happens in a tile")
+        if i % 2 or len(boxes) == 1:
+            border = box.get("condition") if kind == "border" else None
+            found = conditions(c, box, lambda key, border=border: key != border).values()
+            need(claims["real"] in (None, True if all(found) else False if False in found else None), "not proved real, or virtual")
+            need(claims["stable"] is None or kind or spectrum(c, box)[0] is claims["stable"], "not proved stable, or unstable")
+
+def check(c):
+    """Verify a certificate whatever is wrong with it."""
+    try:
+        verify(c)
+    except (LookupError, TypeError, AttributeError, ArithmeticError, ValueError) as error:
+        raise Refused(str(error)) from None

@@ -30,7 +30,7 @@ WALLS = {"L": 1, "R": -1}
 
 @dataclass(frozen=True)
 class Motion:
-    """The motion at one instant: w with three rates, what pushes against friction and its rate, v and its rate."""
+    """The motion at one instant: w with three rates, what pushes against friction with two, v and its rate."""
 
     w: Any
     w1: Any
@@ -38,6 +38,7 @@ class Motion:
     w3: Any
     push: Any
     push1: Any
+    push2: Any
     v: Any
     v1: Any
 
@@ -106,13 +107,14 @@ class Shaken:
         def flight(phase: Any) -> Motion:
             s, c = sin_cos(phase)
             shake, shake1 = -peak * s, -peak * omega * c
+            shake2 = -omega * omega * shake
             push = shake + self.bias
             v, v1 = C * s, speed * c
             if mode == 0:
-                return Motion(w0, 0, 0, 0, push, shake1, v, v1)
+                return Motion(w0, 0, 0, 0, push, shake1, shake2, v, v1)
             t = (phase - phase0) / omega
             w = w0 + C * (s - s0) - (beta - pull * t / 2) * t
-            return Motion(w, v1 - beta + pull * t, shake + pull, shake1, push, shake1, v, v1)
+            return Motion(w, v1 - beta + pull * t, shake + pull, shake1, push, shake1, shake2, v, v1)
 
         return flight
 
@@ -188,15 +190,18 @@ class Coupled:
             h, h1 = X * s + Y * c, omega * (X * c - Y * s)
             q, q_1 = offset + h + Z, h1 + Z1
             q_2 = Z2 - omega * omega * h
-            q_3 = -2 * alpha * Z2 - kappa * Z1 - omega * omega * h1
+            Z3 = -2 * alpha * Z2 - kappa * Z1
+            q_3 = Z3 - omega * omega * h1
+            q_4 = -2 * alpha * Z3 - kappa * Z2 + omega * omega * omega * omega * h
             if mode == 0:
                 v, rate = whole * q - eps * w0, whole * q_1
-                return Motion(w0, 0, 0, 0, whole * q_2, whole * q_3, v, rate)
+                return Motion(w0, 0, 0, 0, whole * q_2, whole * q_3, whole * q_4, v, rate)
             slide = self.pull * mode
             q2_1 = q2r + slide * t
             q2_0 = q2 + (q2r + slide * t / 2) * t
             push = q_2 + eps * slide
-            return Motion(q - q2_0, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q + eps * q2_0, q_1 + eps * q2_1)
+            w, v = q - q2_0, q + eps * q2_0
+            return Motion(w, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q_4, v, q_1 + eps * q2_1)
 
         return flight
 

@@ -98,6 +98,15 @@ def sqrt(x: Any) -> Any:
     return x.chain(value, 1 / (2 * value))
 
 
+def power(x: Any, exponent: int | float) -> Any:
+    """A power of a ball or a jet; for exponents that are no whole numbers of a positive one."""
+    if exponent == 1:
+        return x
+    if not isinstance(x, Jet):
+        return x ** type(x)(exponent)
+    return x.chain(power(x.value, exponent), exponent * power(x.value, exponent - 1))
+
+
 def base(x: Any) -> Any:
     """The ball at the bottom of a jet of any depth."""
     while isinstance(x, Jet):

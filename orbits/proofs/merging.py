@@ -1,6 +1,6 @@
-"""Borders seen from the side where a flight has shrunk to nothing, rewritten to the word without it.
+"""Borders seen from the side where a flight or an impact has shrunk to nothing, rewritten to the word without it.
 
-There the equations of the longer word are singular, those of the shorter one are not: it is the same motion.
+There the equations of the longer word are singular, those of the other one are not: it is the same motion.
 
 =========  ==============================  ======================================
 events     at one instant                  becomes
@@ -8,45 +8,91 @@ events     at one instant                  becomes
 ``t s``    a turn just before a stick      ``s``, friction just holding
 ``t t``    two turns                       none, a flight that touches w' = 0
 ``u s``    a slip that stops at once       none, a stick that just holds inside
+``s u``    a stick of no time              ``t`` just turning; none, a flight that touches w' = 0, where it goes on as before
+``L``      an impact without speed         ``t`` at the wall; without friction none, a flight that touches the wall
 =========  ==============================  ======================================
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from orbits.proofs.equations import Motif
+from orbits.proofs.equations import MIRRORED, Motif
+from orbits.proofs.flights import WALLS
 
 SHORT = 1e-3  # radians of the forcing
+PAIRS = ("ts", "tt", "us", "su")
 Merged = tuple[Motif, np.ndarray, tuple[str, int]]
 
 
-def merged(motif: Motif, nodes: np.ndarray) -> Merged | None:
-    """The shorter word, its nodes and the margin that vanishes; None where no flight has shrunk to nothing.
+def merged(
+    motif: Motif, nodes: np.ndarray, margin: tuple[str, int], room: Mapping[int, float]
+) -> Merged | None:
+    """The shorter word, its nodes and the margin that vanishes; None where nothing has shrunk to nothing.
 
     A word with no events left is the stuck absorber.
+
+    Parameters
+    ----------
+    motif, nodes : the longer word, and the nodes (l, n) of its part.
+    margin : (str, int)
+        The margin that vanishes there, and its event.
+    room : dict
+        Distance of the left (1) and of the right wall (-1).
     """
+    name, event = margin
+    if name == "approach":
+        return _grazing(motif, nodes, event, room)
     pairs = [i for i in range(len(motif)) if _pair(motif, nodes, i)]
-    if not pairs:
+    if name == "wall" or not any(event in (i, (i + 1) % len(motif)) for i in pairs):
         return None
     if 2 * len(pairs) == len(motif) and all(_pair(motif, nodes, i) == "us" for i in pairs):
         return replace(motif, events=(), modes=()), nodes[:0], ("hold", 0)
-    i = pairs[0]
-    if i + 1 >= len(motif):
+    mine = next(i for i in pairs if event in (i, (i + 1) % len(motif)))
+    motif, nodes, i = _inwards(motif, nodes, mine)
+    if i + 1 >= len(motif) or i == 0:
         return None
     kind = _pair(motif, nodes, i)
     if kind == "ts":
-        return _without(motif, nodes, [i]), np.delete(nodes, i, axis=0), ("stick", i)
-    if i == 0:
-        return None
-    return (
-        _without(motif, nodes, [i, i + 1]),
-        np.delete(nodes, [i, i + 1], axis=0),
-        ("flight" if kind == "tt" else "hold", i - 1),
-    )
+        return _without(motif, nodes, [i], ("stick", i))
+    if kind == "su" and motif.incoming(i) != motif.modes[i + 1]:
+        events, modes = list(motif.events), list(motif.modes)
+        events[i], modes[i] = "t", motif.modes[i + 1]
+        turning = replace(motif, events=tuple(events), modes=tuple(modes))
+        return _without(turning, nodes, [i + 1], ("turn", i))
+    return _without(motif, nodes, [i, i + 1], ("hold" if kind == "us" else "flight", i - 1))
+
+
+def _grazing(motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float]) -> Merged | None:
+    if motif.frictionless:
+        motif, nodes, i = _inwards(motif, nodes, i)
+        return _without(motif, nodes, [i], ("reversal", i - 1)) if i > 0 else None
+    side = WALLS[motif.events[i]]
+    events, nodes = list(motif.events), nodes.copy()
+    events[i], nodes[i, 1] = "t", side * room[side]
+    return replace(motif, events=tuple(events)), nodes, ("wall", i)
+
+
+def _inwards(motif: Motif, nodes: np.ndarray, i: int) -> tuple[Motif, np.ndarray, int]:
+    """The word begun elsewhere, so that places i and i + 1 are neither its first nor beyond its last, if it is long enough."""
+    for _ in range(len(motif)):
+        if i > 0 and i + 1 < len(motif):
+            break
+        last = nodes[:1].copy()
+        last[:, 1:] *= motif.twist
+        last[:, 0] += np.pi * motif.periods * (1 if motif.half else 2)
+        letter = motif.events[0]
+        following = MIRRORED.get(letter, letter) if motif.half else letter
+        motif = replace(
+            motif,
+            events=(*motif.events[1:], following),
+            modes=(*motif.modes[1:], motif.twist * motif.modes[0]),
+        )
+        nodes, i = np.concatenate([nodes[1:], last]), (i - 1) % len(motif)
+    return motif, nodes, i
 
 
 def _pair(motif: Motif, nodes: np.ndarray, i: int) -> str:
@@ -54,11 +100,12 @@ def _pair(motif: Motif, nodes: np.ndarray, i: int) -> str:
     turn = np.pi * motif.periods * (1 if motif.half else 2)
     span = nodes[0, 0] + turn - nodes[i, 0] if last else nodes[i + 1, 0] - nodes[i, 0]
     pair = motif.events[i] + motif.arrival(i)[0]
-    return pair if abs(span) < SHORT and pair in ("ts", "tt", "us") else ""
+    return pair if abs(span) < SHORT and pair in PAIRS else ""
 
 
-def _without(motif: Motif, nodes: np.ndarray, places: Sequence[int]) -> Motif:
+def _without(motif: Motif, nodes: np.ndarray, places: Sequence[int], margin: tuple[str, int]) -> Merged:
     keep = [i for i in range(len(motif)) if i not in places]
-    return replace(
+    shorter = replace(
         motif, events=tuple(motif.events[i] for i in keep), modes=tuple(motif.modes[i] for i in keep)
     )
+    return shorter, nodes[keep], margin

@@ -10,17 +10,23 @@ import numpy as np
 
 from orbits.proofs.admissible import examine
 from orbits.proofs.balls import Given, ball, decimal, library, precision
-from orbits.proofs.enclosing import enclose, refine
+from orbits.proofs.certificates import FORMAT, Entry, certificate, tile_box
+from orbits.proofs.crossing import orbit_at, orbit_entry
+from orbits.proofs.enclosing import Box, refine
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
-from orbits.proofs.proof import FORMAT
+from orbits.proofs.proof import Proof
+from orbits.proofs.prove import check_symmetry
 from orbits.proofs.stability import stable_in_basis
-from orbits.proofs.tiles import Tile, joined, lay
+from orbits.proofs.tiles import Along, Tile, lay
+from orbits.proofs.varying import Varying
 
-BITS = 128
+BITS = 192
 FIRST = 1 / 16  # first tile's share of the piece
 ROOM = 0.8  # by which a tile is widened where its stability is judged
 LEAST = 1e-6  # smallest tile's share
+GRADED = 1e-8  # by which it may be smaller near special points
+GRADE = 0.35  # near a special point a tile's width over the distance
 
 
 @dataclass(frozen=True)
@@ -31,14 +37,20 @@ class Piece:
     ----------
     motif : Motif
     parameters : dict
-        All but the one that varies.
-    parameter : str
+        All but those that vary.
+    varying : Varying
     asked : (float, float)
         The interval that was to be covered.
-    tiles : tuple of Tile
-        In ascending order, neighbours overlapping; empty where not even the first was proved.
-    joints : tuple of (str, list)
-        A value of the parameter common to neighbouring tiles, and the box of an orbit there that lies in both.
+    boxes : tuple of dict
+        For the certificate: orbits and tiles in turn, in ascending order.
+    covered : (str, str) or None
+        The interval that is covered by orbits with one verdict, as exact decimals.
+    count : int
+        Of tiles.
+    radius : float or None
+        The largest radius of a tile at one value of the parameter.
+    ends : (str or None, str or None)
+        The kinds of the special points up to which it goes.
     real, stable : bool or None
         Of all orbits of the piece; None where the verdict is not the same, or not proved, everywhere.
     obstacles : tuple of Obstacle
@@ -47,10 +59,13 @@ class Piece:
 
     motif: Motif
     parameters: Mapping[str, Any]
-    parameter: str
+    varying: Varying
     asked: tuple[float, float]
-    tiles: tuple[Tile, ...] = ()
-    joints: tuple[tuple[str, Any], ...] = ()
+    boxes: tuple[Entry, ...] = ()
+    covered: tuple[str, str] | None = None
+    count: int = 0
+    radius: float | None = None
+    ends: tuple[str | None, ...] = (None, None)
     real: bool | None = None
     stable: bool | None = None
     obstacles: tuple[Obstacle, ...] = ()
@@ -60,21 +75,12 @@ class Piece:
     @property
     def existence(self) -> bool:
         """Whether the whole interval is covered."""
-        return bool(self.tiles) and not self.obstacles
+        return bool(self.count) and not self.obstacles
 
     @property
-    def covered(self) -> tuple[str, str] | None:
-        """The interval that is covered, as exact decimals."""
-        if not self.tiles:
-            return None
-        last = self.tiles[-1]
-        reached = min(self.asked[1], float(last.center) + float(last.half) * (1 - 1e-3))
-        return repr(self.asked[0]), repr(reached)
-
-    @property
-    def radius(self) -> float | None:
-        """The largest radius of a tile at one value of the parameter."""
-        return max((tile.radius for tile in self.tiles), default=None)
+    def parameter(self) -> str:
+        """Name of the parameter that varies."""
+        return self.varying.name
 
     def to_dict(self) -> dict[str, Any]:
         """The piece as JSON."""
@@ -88,7 +94,8 @@ class Piece:
             "parameter": self.parameter,
             "asked": list(self.asked),
             "covered": list(self.covered) if self.covered else None,
-            "tiles": len(self.tiles),
+            "tiles": self.count,
+            "ends": list(self.ends),
             "obstacles": [obstacle.to_dict() for obstacle in self.obstacles],
             "bits": self.bits,
         }
@@ -101,28 +108,13 @@ class Piece:
         ValueError
             If nothing was proved.
         """
-        if not self.tiles:
+        if not self.count:
             raise ValueError(
                 "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
             )
-        motif = self.motif
-        return {
-            "format": FORMAT,
-            "kind": "piece",
-            "machine": motif.machine,
-            "parameters": {name: v if isinstance(v, str) else list(v) for name, v in self.parameters.items()},
-            "parameter": self.parameter,
-            "events": "".join(motif.events),
-            "modes": list(motif.modes),
-            "periods": motif.periods,
-            "half": motif.half,
-            "frictionless": motif.frictionless,
-            "tiles": [[tile.center, tile.half, tile.nodes, tile.basis] for tile in self.tiles],
-            "joints": [[value, nodes] for value, nodes in self.joints],
-            "covered": list(self.covered or ()),
-            "claims": {"existence": True, "real": self.real, "stable": self.stable},
-            "bits": self.bits,
-        }
+        claims = {"existence": True, "real": self.real, "stable": self.stable}
+        made = certificate("piece", self.motif, self.parameters, self.varying, self.boxes, claims, self.bits)
+        return made | {"covered": list(self.covered or ()), "ends": list(self.ends)}
 
     def __str__(self) -> str:
         from orbits.proofs.wording import piece_sentence
@@ -134,9 +126,10 @@ def prove_piece(
     motif: Motif,
     guess: Callable[[float], np.ndarray],
     parameters: Mapping[str, Given],
-    parameter: str,
+    varying: Varying,
     low: float,
     high: float,
+    ends: tuple[Proof | None, Proof | None] = (None, None),
 ) -> Piece:
     """Cover an interval of the parameter by tiles on which all orbits are real (or virtual) and stable (or unstable) alike.
 
@@ -146,121 +139,177 @@ def prove_piece(
     guess : function of the parameter's value
         Computed nodes (l, n) near the branch there.
     parameters : dict
-        Of the machine; the one that varies is left out of account.
-    parameter : str
+        Of the machine; those that vary are left out of account.
+    varying : Varying
     low, high : float
         low < high.
+    ends : (Proof or None, Proof or None)
+        Special points at which the piece begins and ends: then it goes up to the points themselves.
     """
-    given = {name: decimal(value) for name, value in parameters.items() if name != parameter}
-    tiles: list[Tile] = []
-    joints: list[tuple[str, Any]] = []
-    verdict: tuple[bool | None, bool | None] | None = None
-    length = high - low
-    place, width = low, length * FIRST
-    obstacle = None
+    given = {name: decimal(value) for name, value in parameters.items() if name not in varying.numbers}
+    check_symmetry(motif, given, varying)
     with precision(BITS):
         p = {name: ball(value) for name, value in given.items()}
-        while place < high:
-            width = min(width, 1.02 * (high - place) + 1e-12)
-            made = _made(motif, p, parameter, guess, place, width, verdict, tiles[-1] if tiles else None)
-            if isinstance(made, Obstacle):
-                if width < LEAST * length:
-                    obstacle = made
-                    break
-                width /= 2
-                continue
-            tile, verdict, joint = made
-            tiles.append(tile)
-            joints += [joint] if joint else []
-            place = float(tile.center) + float(tile.half) * (1 - 1e-3)
-            width *= 1.6
-    real, steady = verdict or (None, None)
+        cover = _Cover(motif, p, varying)
+        first, last = ((end and _chain(end, guess, 0.5 * (low + high))) for end in ends)
+        obstacle = cover.run(guess, low, high, first, last)
+    real, steady = cover.verdict or (None, None)
     return Piece(
         motif,
         given,
-        parameter,
+        varying,
         (low, high),
-        tuple(tiles),
-        tuple(joints),
+        tuple(cover.boxes),
+        cover.reached,
+        len(cover.tiles),
+        max((tile.radius for tile in cover.tiles), default=None),
+        tuple(end.kind if end and met else None for end, met in zip(ends, (bool(first), cover.arrived))),
         real,
         steady,
         (obstacle,) if obstacle else (),
     )
 
 
-def _made(
-    motif: Motif,
-    p: Mapping[str, Any],
-    name: str,
-    guess: Callable[[float], np.ndarray],
-    place: float,
-    width: float,
-    verdict: tuple[bool | None, bool | None] | None,
-    before: Tile | None,
-) -> tuple[Tile, tuple[bool | None, bool | None], tuple[str, Any] | None] | Obstacle:
-    """The next tile and the verdict on it, or what was in the way."""
-    where = f"{name} = {place:.6g}"
-    # a little to the left of `place`, so that neighbours overlap
-    start = place - 0.01 * width
-    center, half = f"{start + width / 2:.15g}", f"{width / 2:.6g}"
-    try:
-        middle = _point(motif, p, name, center, guess)
-    except Obstacle as obstacle:
-        return obstacle
-    tile = lay(motif, p, name, center, half, middle)
-    if tile is None:
-        return Obstacle(Step.PIECE, Remedy.SMALLER, detail=where)
-    joint = _joint(motif, p, name, before, tile, guess, place) if before is not None else None
-    if before is not None and joint is None:
-        return Obstacle(Step.PIECE, Remedy.SMALLER, detail=f"{where}, joint")
-    here = {**p, name: tile.values()}
-    balls = tile.balls()
-    # with room to spare, so that another arithmetic comes to the same verdict
-    roomy = {**p, name: _wider(tile.values())}
-    steady, basis = stable_in_basis(System(motif, roomy), [[_wider(v) for v in node] for node in balls])
-    found = (examine(motif, here, balls).real, steady)
-    tile = replace(tile, basis=basis)
-    if verdict is None and None in found and width > 1e-4 * abs(place):
-        return Obstacle(Step.PIECE, Remedy.SMALLER, detail=where)
-    if None in found or (verdict is not None and found != verdict):
-        return Obstacle(
-            Step.ADMISSIBILITY if found[0] is None else Step.STABILITY, Remedy.SMALLER, detail=where
+def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> list[Entry]:
+    """The chain of a special point, its last orbit the one on the piece's side."""
+    one, tile, other = end.chain
+    if one["parameter"] != other["parameter"]:
+        ascending = float(one["parameter"][0]) < inside
+        return [one, tile, other] if ascending else [other, tile, one]
+    near = guess(float(one["parameter"][0]) + 1e-4 * (inside - float(one["parameter"][0])))
+
+    def away(entry: Entry) -> float:
+        nodes = [[float(m) for m, _, _ in node] for node in entry["nodes"]]
+        return float(np.max(np.abs(np.array(nodes) - near)))
+
+    return [one, tile, other] if away(other) <= away(one) else [other, tile, one]
+
+
+class _Cover:
+    """Tiles laid one after another from the left to the right end, and the orbits that join them."""
+
+    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying) -> None:
+        self.motif, self.p, self.varying = motif, p, varying
+        self.tiles: list[Tile] = []
+        self.boxes: list[Entry] = []
+        self.verdict: tuple[bool | None, bool | None] | None = None
+        self.reached: tuple[str, str] | None = None
+        self.arrived = False
+
+    def run(
+        self,
+        guess: Callable[[float], np.ndarray],
+        low: float,
+        high: float,
+        first: list[Entry] | None,
+        last: list[Entry] | None,
+    ) -> Obstacle | None:
+        """Cover from `low`, or from the special point `first`, to `high`, or to `last`; what was in the way."""
+        begin, end = low, high
+        try:
+            if first:
+                self.boxes += first
+                at, box = first[-1]["parameter"][0], _box_of(first[-1])
+                begin = float(first[1]["parameter"][0])
+            else:
+                at = repr(low)
+                box = self._orbit(at, guess(low))
+                self.boxes.append(orbit_entry(self.motif, self.p, self.varying, at, box))
+        except Obstacle as obstacle:
+            return obstacle
+        goal = last[-1]["parameter"][0] if last else repr(high)
+        if last:
+            end = float(last[1]["parameter"][0])
+        start = at
+        width = (high - low) * FIRST
+        least = LEAST * (high - low) * (GRADED if first or last else 1.0)
+        while float(at) < float(goal):
+            place = float(at)
+            width = min(width, 1.03 * (float(goal) - place) + 1e-3 * least)
+            if first:
+                width = min(width, GRADE * (place - begin))
+            if last:
+                width = min(width, max(GRADE * (end - place), 1.03 * (float(goal) - place)))
+            made = self._next(at, box, width, 2 * least, goal, last)
+            if isinstance(made, Obstacle):
+                if width < least:
+                    self.reached = (start, at)
+                    return made
+                width /= 2
+                continue
+            at, box = made
+            width *= 1.6
+        self.reached = (start, at)
+        if last:
+            self.boxes += last[1::-1]
+            self.arrived = True
+        return None
+
+    def _orbit(self, value: str, start: Any) -> Box:
+        nodes = [[ball(float(v)) for v in node] for node in start]
+        return orbit_at(self.motif, self.p, self.varying, value, nodes, BITS)
+
+    def _next(
+        self, at: str, box: Box, width: float, least: float, goal: str, last: list[Entry] | None
+    ) -> tuple[str, Box] | Obstacle:
+        """Lay a tile of this width from the orbit `box` at `at` on, and prove the orbit near its right end.
+
+        The first tile may leave a verdict open only where it is narrower than `least`.
+        """
+        motif, varying = self.motif, self.varying
+        where = f"{varying.name} = {float(at):.6g}"
+        smaller = Obstacle(Step.PIECE, Remedy.SMALLER, detail=where)
+        # a little to the left of `at`, so that the orbit lies within
+        center = repr(float(at) + 0.49 * width)
+        half = f"{width / 2:.6g}"
+        before = np.array([[float(mid) for mid, _ in node] for node in box.nodes])
+        nodes = self.tiles[-1].end(float(center)) if self.tiles else before
+        along = Along(motif, self.p, varying, None, ball(center))
+        try:
+            system = System(motif, {**self.p, **varying.at(ball(center))})
+            z, _ = refine(system, [[ball(float(v)) for v in node] for node in nodes], [], BITS)
+            tile = lay(along, center, half, z, ball(center))
+            if tile is None or not tile.holds(at, box):
+                return smaller
+            verdict, tile = self._judged(tile)
+            if self.verdict is not None and verdict != self.verdict:
+                step = Step.STABILITY if verdict[0] == self.verdict[0] else Step.ADMISSIBILITY
+                return Obstacle(step, Remedy.SMALLER, detail=where)
+            if None in verdict and self.verdict is None and width > least:
+                return smaller
+            reached = repr(float(center) + 0.499 * width)
+            if float(reached) >= float(goal):
+                reached = goal
+            if reached == goal and last:
+                following = _box_of(last[-1])
+            else:
+                following = self._orbit(reached, tile.end(float(reached)))
+        except Obstacle:
+            return smaller
+        if not tile.holds(reached, following):
+            return smaller
+        self.tiles.append(tile)
+        self.verdict = verdict
+        self.boxes += [tile_box(motif, tile), orbit_entry(motif, self.p, varying, reached, following)]
+        return reached, following
+
+    def _judged(self, tile: Tile) -> tuple[tuple[bool | None, bool | None], Tile]:
+        """Whether all orbits of a tile are real, and stable, with room to spare: another arithmetic must come to the same."""
+        values, balls = tile.values(), tile.balls()
+        here = {**self.p, **self.varying.at(values)}
+        roomy = {**self.p, **self.varying.at(_wider(values))}
+        steady, basis = stable_in_basis(
+            System(self.motif, roomy), [[_wider(v) for v in node] for node in balls]
         )
-    return tile, found, joint
+        return (examine(self.motif, here, balls).real, steady), replace(tile, basis=basis)
+
+
+def _box_of(entry: Entry) -> Box:
+    return Box([[[mid, rad] for mid, _, rad in node] for node in entry["nodes"]], [])
 
 
 def _wider(value: Any) -> Any:
     return value + library().arb(0, value.rad() * ROOM)
-
-
-def _point(
-    motif: Motif, p: Mapping[str, Any], name: str, value: str, guess: Callable[[float], np.ndarray]
-) -> Any:
-    system = System(motif, {**p, name: ball(value)})
-    start = [[ball(float(v)) for v in node] for node in guess(float(value))]
-    return refine(system, start, [], BITS)[0]
-
-
-def _joint(
-    motif: Motif,
-    p: Mapping[str, Any],
-    name: str,
-    before: Tile,
-    tile: Tile,
-    guess: Callable[[float], np.ndarray],
-    place: float,
-) -> tuple[str, Any] | None:
-    """A common value of the parameter and the box of an orbit there that lies in both tiles; None if none is proved."""
-    value = repr(place)
-    at = ball(value)
-    if not (before.values().contains(at) and tile.values().contains(at)):
-        return None
-    try:
-        system = System(motif, {**p, name: at})
-        box = enclose(system, _point(motif, p, name, value, guess), [], BITS)
-    except Obstacle:
-        return None
-    return (value, box.nodes) if joined(before, tile, box.balls()[0], at) else None
 
 
 @dataclass(frozen=True)
@@ -314,7 +363,7 @@ class Pieces:
 
     def certificate(self) -> dict[str, Any]:
         """The certificates of the pieces of which something is proved."""
-        made = [piece.certificate() for piece in self.pieces if piece.tiles]
+        made = [piece.certificate() for piece in self.pieces if piece.count]
         return {"format": FORMAT, "kind": "branch", "pieces": made, "claims": {"existence": self.existence}}
 
     def __str__(self) -> str:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from platform import python_version
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from orbits.proofs.balls import ball, library, precision, texts
+from orbits.proofs.certificates import Entry, certificate, orbit_box, resting_box
 from orbits.proofs.enclosing import Box
 from orbits.proofs.equations import Motif
 from orbits.proofs.obstacles import Obstacle
+from orbits.proofs.varying import Varying
 
-FORMAT = "contvines certificate 1"
+UNCHANGED = ("orbit", "fold", "symmetry-breaking", "period-doubling", "neimark-sacker")
+"""Kinds that a certificate names as they are; all others are borders."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Proof:
         The word, and whether half of a symmetric orbit stands for the whole.
     parameters : dict
         Exact decimals, or (middle, radius); without the parameter that a special point solves for.
-    parameter : str or None
+    varying : Varying or None
         At a special point the parameter that is enclosed.
     box : Box or None
         Holds exactly one solution of the equations; None where existence was not proved.
@@ -39,8 +41,10 @@ class Proof:
         The margin proved negative: name and event.
     obstacles : tuple of Obstacle
         What could not be proved, and what would help.
-    details : dict
-        What defines a special point, as JSON.
+    chain : tuple of dict
+        For a special point's certificate: an orbit, a tile and an orbit about it (`orbits.proofs.crossing`).
+    basis : tuple of sequences of str
+        For an orbit's certificate: rows of a basis that shows its stability plainly.
     bits : int
         Precision of the ball arithmetic.
     """
@@ -48,19 +52,25 @@ class Proof:
     kind: str
     motif: Motif
     parameters: Mapping[str, Any]
-    parameter: str | None = None
+    varying: Varying | None = None
     box: Box | None = None
     real: bool | None = None
     stable: bool | None = None
     broken: tuple[str, int] | None = None
     obstacles: tuple[Obstacle, ...] = ()
-    details: Mapping[str, Any] = field(default_factory=dict)
+    chain: tuple[Entry, ...] = ()
+    basis: tuple[Sequence[str], ...] = ()
     bits: int = 0
 
     @property
     def existence(self) -> bool:
         """Whether exactly one solution is proved to lie in the box."""
         return self.box is not None
+
+    @property
+    def parameter(self) -> str | None:
+        """At a special point the name of the parameter that is enclosed."""
+        return self.varying.name if self.varying else None
 
     @property
     def transversal(self) -> bool | None:
@@ -137,25 +147,15 @@ class Proof:
                 "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
             )
         motif = self.motif
-        return {
-            "format": FORMAT,
-            "kind": self.kind,
-            "machine": motif.machine,
-            "parameters": self.to_dict()["parameters"],
-            "parameter": self.parameter,
-            "events": "".join(motif.events),
-            "modes": list(motif.modes),
-            "periods": motif.periods,
-            "half": motif.half,
-            "frictionless": motif.frictionless,
-            "nodes": self.box.nodes,
-            "extras": self.box.extras,
-            **self.details,
-            "claims": {"existence": True, "real": self.real, "stable": self.stable},
-            "broken": list(self.broken) if self.broken else None,
-            "bits": self.bits,
-            "versions": {"python-flint": library().__version__, "python": python_version()},
-        }
+        claims = {"existence": True, "real": self.real, "stable": self.stable}
+        boxes = self.chain or [
+            orbit_box(motif, self.box, basis=self.basis) if len(motif) else resting_box(motif)
+        ]
+        kind = self.kind if self.kind in UNCHANGED else "border"
+        made = certificate(kind, motif, self.parameters, self.varying, boxes, claims, self.bits)
+        if self.varying is not None:
+            made |= {"point": self.kind, "value": self.value}
+        return made
 
     def __str__(self) -> str:
         from orbits.proofs.wording import sentence

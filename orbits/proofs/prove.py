@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
 from orbits.proofs.admissible import NOTHING, Zero, examine
 from orbits.proofs.balls import Given, ball, decimal, precision
+from orbits.proofs.certificates import condition
+from orbits.proofs.crossing import crossing
 from orbits.proofs.enclosing import enclose, refine
 from orbits.proofs.equations import MIRRORED, Motif, System
 from orbits.proofs.flights import parameter_names
@@ -17,12 +20,16 @@ from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import Obstacle, ProofError, Remedy, Step
 from orbits.proofs.proof import Proof
 from orbits.proofs.resting import AtSlip
-from orbits.proofs.special import AtBorder, AtMultiplier, AtPair, Vanishing
-from orbits.proofs.stability import stable
-from orbits.proofs.starting import chain, eigenpair, eigenvector, touching_phase, vanishing_margin
+from orbits.proofs.special import AtBorder, AtMultiplier, AtPair, Normal, Vanishing
+from orbits.proofs.stability import basis_texts, stable
+from orbits.proofs.starting import chain as maps_of
+from orbits.proofs.starting import eigenpair, eigenvector, touching_phase, vanishing_margin
+from orbits.proofs.varying import Varying
 
 NEAR = 1e-6  # a proved orbit is the computed one when it is nearer than this
 MOST_BITS = 6144
+SIDED = ("restitution", "friction", "distance")
+FLOATING = 64  # bits where floats will do
 MULTIPLIERS = {"fold": 1, "symmetry-breaking": -1, "period-doubling": -1}
 
 
@@ -67,6 +74,7 @@ def prove_orbit(
     motif = motif_of(machine, events, modes, periods, half, frictionless)
     given = {name: decimal(value) for name, value in parameters.items()}
     start = nodes[: len(motif)]
+    check_symmetry(motif, given)
     if half:
         _require_mirror(motif, events, modes, nodes)
     proof = Proof("orbit", motif, given)
@@ -83,7 +91,14 @@ def prove_orbit(
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
         obstacles = (*reality.obstacles(), *([why] if why else []))
         return replace(
-            proof, box=box, real=reality.real, stable=steady, broken=broken, obstacles=obstacles, bits=at
+            proof,
+            box=box,
+            real=reality.real,
+            stable=steady,
+            broken=broken,
+            obstacles=obstacles,
+            basis=tuple(basis_texts(system, balls)),
+            bits=at,
         )
 
     return _with_bits(attempt, proof, bits or 160 + 8 * len(motif), given)
@@ -94,7 +109,7 @@ def prove_special(
     motif: Motif,
     nodes: np.ndarray,
     parameters: Mapping[str, Given],
-    parameter: str,
+    varying: Varying,
     value: float,
     *,
     margin: tuple[str, int] | None = None,
@@ -110,8 +125,8 @@ def prove_special(
     nodes : float array (l, n)
         Nodes of the part that the motif stands for.
     parameters : dict
-        All but `parameter`.
-    parameter, value : str, float
+        All but those that vary.
+    varying, value : Varying, float
         What is solved for, and where it was found.
     margin : (str, int), optional
         For a border the name of the margin that vanishes (`orbits.proofs.special.Vanishing`) and its event.
@@ -119,21 +134,24 @@ def prove_special(
     if kind in ("symmetry-breaking", "period-doubling") and motif.half is not (kind == "symmetry-breaking"):
         part = "half of the word of a symmetric orbit" if kind == "symmetry-breaking" else "the whole word"
         raise ProofError(f"a {kind} is proved on {part}")
-    given = {name: decimal(number) for name, number in parameters.items() if name != parameter}
-    shorter = merged(motif, nodes) if margin else None
-    if shorter is not None:
-        motif, nodes, margin = shorter
-    proof = Proof(kind, motif, given, parameter)
+    given = {name: decimal(number) for name, number in parameters.items() if name not in varying.numbers}
+    check_symmetry(motif, given, varying)
+    if margin is not None and len(motif):
+        with precision(FLOATING):
+            flights = motif.flights({n: ball(v) for n, v in given.items()} | varying.at(ball(value)))
+            room = {side: float(ball(0) + flights.room[side]) for side in (1, -1)}
+        motif, nodes, margin = merged(motif, nodes, margin, room) or (motif, nodes, margin)
+    proof = Proof(kind, motif, given, varying)
 
     def attempt(at: int) -> Proof:
         p = {name: ball(number) for name, number in given.items()}
-        here = p | {parameter: ball(value)}
+        here = p | varying.at(ball(value))
         check_parameters(motif, here)
         if not len(motif):
             return _slip(proof, p, here, value, at)
         x = [[ball(float(v)) for v in node] for node in nodes]
         vanishing = vanishing_margin(motif, here, x, *margin) if margin else None
-        system, z, e, details = _defining(kind, motif, p, here, x, parameter, value, vanishing)
+        system, z, e, turn = _defining(kind, motif, p, here, x, varying, value, vanishing)
         z, e = _refined(system, nodes, e, at, z)
         box = enclose(system, z, e, at)
         balls, extras = box.balls()
@@ -145,15 +163,20 @@ def prove_special(
             zero = Zero(
                 vanishing.name, vanishing.event, extras[1] if vanishing.inside else None, vanishing.side
             )
-        reality = examine(motif, p | {parameter: extras[0]}, inside, zero)
+        reality = examine(motif, p | varying.at(extras[0]), inside, zero)
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
+        chain = crossing(motif, p, varying, z, e[0], at, turn if kind == "fold" else None)
+        chain[1]["kind"] = kind if vanishing is None else "border"
+        if vanishing is not None:
+            chain[1]["condition"] = condition(motif, vanishing)
         return replace(
             proof,
+            kind=vanishing.kind if vanishing else kind,
             box=box,
             real=reality.real,
             broken=broken,
             obstacles=tuple(reality.obstacles()),
-            details=details,
+            chain=tuple(chain),
             bits=at,
         )
 
@@ -167,13 +190,15 @@ def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: fl
     bias = float(ball(0) + flights.bias)
     side = min((1, -1), key=lambda s: float(ball(0) + flights.limit[s]) - s * bias)
     phase = float(np.arctan2(other - bias, one - bias)) + (0.0 if side > 0 else float(np.pi))
-    assert proof.parameter is not None
-    system = AtSlip(proof.motif, p, proof.parameter, side)
+    assert proof.varying is not None
+    system = AtSlip(proof.motif, p, proof.varying, side)
     z, e = refine(system, [[ball(phase)]], [ball(value)], bits)
     if not abs(float(e[0]) - value) < NEAR:
         raise Obstacle(Step.REFINEMENT, Remedy.START)
     box = enclose(system, z, e, bits)
-    return replace(proof, box=box, real=True, details={"border": ["rest", 0, side]}, bits=bits)
+    chain = crossing(proof.motif, p, proof.varying, [], e[0], bits)
+    chain[1] |= {"kind": "border", "condition": ["flight", 0, side]}
+    return replace(proof, box=box, real=True, chain=tuple(chain), bits=bits)
 
 
 def motif_of(
@@ -211,6 +236,25 @@ def _require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], n
         )
 
 
+def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | None = None) -> None:
+    """Refuse half a word where the mirror image of a motion is none: a cavity must be level and its sides exactly alike.
+
+    Raises
+    ------
+    ProofError
+    """
+    told = {**given, **(varying.numbers if varying else {})}
+    alike = motif.machine != "cavity" or (
+        Decimal(str(told["slope"])) == 0
+        and all(told[f"{name}_left"] == told[f"{name}_right"] for name in SIDED)
+        and not any(isinstance(given.get(f"{name}_left"), tuple) for name in SIDED)
+    )
+    if motif.half and (motif.periods % 2 == 0 or not alike):
+        raise ProofError(
+            "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
+        )
+
+
 def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
     """Refuse parameters outside their range, and friction where the word has none.
 
@@ -228,10 +272,6 @@ def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
             good = name == "slope" or value.lower() >= 0
         if not (good and value.is_finite()):
             raise ProofError(f"{name} = {value.str(12)} is out of range for the machine {motif.machine!r}")
-    if motif.half and (motif.machine == "cavity" or motif.periods % 2 == 0):
-        raise ProofError(
-            "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
-        )
     limit = motif.flights(p).limit
     if not (limit[1] >= 0 and limit[-1] >= 0):
         raise ProofError("the slope leaves friction no load: keep it between -pi/2 and pi/2")
@@ -247,30 +287,26 @@ def _defining(
     p: Mapping[str, Any],
     here: Mapping[str, Any],
     x: list[list[Any]],
-    parameter: str,
+    varying: Varying,
     value: float,
     vanishing: Vanishing | None,
-) -> tuple[System, list[list[Any]], list[Any], dict[str, Any]]:
-    """The defining system, where to start, and what a certificate must say of it."""
+) -> tuple[System, list[list[Any]], list[Any], Normal | None]:
+    """The defining system, where to start, and the largest component of the eigenvector."""
     if vanishing is not None:
         extras = [ball(value)]
         if vanishing.inside:
             extras.append(touching_phase(motif, here, x, vanishing))
-        details = {"border": [vanishing.name, vanishing.event, vanishing.side]}
-        return AtBorder(motif, p, parameter, vanishing), x, extras, details
-    factors = chain(motif, here, x)
+        return AtBorder(motif, p, varying, vanishing), x, extras, None
+    factors = maps_of(motif, here, x)
     if kind == "neimark-sacker":
         phi, normal, angle = eigenpair(factors)
-        system: System = AtPair(motif, p, parameter, normal)
+        system: System = AtPair(motif, p, varying, normal)
         extras = [ball(value), ball(angle)]
     else:
         mu = MULTIPLIERS[kind]
         phi, normal = eigenvector(factors, mu)
-        system, extras = AtMultiplier(motif, p, parameter, mu, normal), [ball(value)]
-    details: dict[str, Any] = {"normal": [normal.block, normal.component]}
-    if kind != "neimark-sacker":
-        details["multiplier"] = MULTIPLIERS[kind]
-    return system, [a + b for a, b in zip(x, phi)], extras, details
+        system, extras = AtMultiplier(motif, p, varying, mu, normal), [ball(value)]
+    return system, [a + b for a, b in zip(x, phi)], extras, normal
 
 
 def _refined(

@@ -16,13 +16,14 @@ from orbits.proofs.jets import sqrt
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.proof import Proof
 from orbits.proofs.special import AtParameter
+from orbits.proofs.varying import Varying
 
 
 class AtSlip(AtParameter):
     """Where friction just holds the stuck absorber; unknowns the phase at which the push is largest, and the parameter."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], name: str, side: int) -> None:
-        super().__init__(motif, p, name)
+    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, side: int) -> None:
+        super().__init__(motif, p, varying)
         self.k = self.length = 1
 
         def row(z: Sequence[Any], extras: Sequence[Any]) -> Any:

@@ -21,6 +21,7 @@ from typing import Any
 
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, partial, sin_cos
+from orbits.proofs.varying import Varying
 
 
 @dataclass(frozen=True)
@@ -32,15 +33,15 @@ class Normal:
 
 
 class AtParameter(System):
-    """Base of the systems in which the parameter `name` is an unknown, the first of the further ones."""
+    """Base of the systems in which the parameter that varies is an unknown, the first of the further ones."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], name: str) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying) -> None:
         super().__init__(motif, p)
-        self.name, self.m = name, 1
+        self.varying, self.m = varying, 1
 
     def prepare(self, extras: Sequence[Any]) -> Any:
         """The machine's flights at the unknown parameter."""
-        return self.motif.flights(self.p | {self.name: extras[0]})
+        return self.motif.flights(self.p | self.varying.at(extras[0]))
 
 
 class AtMultiplier(AtParameter):
@@ -48,8 +49,8 @@ class AtMultiplier(AtParameter):
 
     directions = 1
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], name: str, mu: int, normal: Normal) -> None:
-        super().__init__(motif, p, name)
+    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, mu: int, normal: Normal) -> None:
+        super().__init__(motif, p, varying)
         self.mu, self.normal = mu, normal
         self.n = motif.node
         self.k = self.n * (1 + self.directions)
@@ -59,7 +60,7 @@ class AtMultiplier(AtParameter):
     def prepare(self, extras: Sequence[Any]) -> Any:
         """The flights over numbers with one direction; what does not move along it is lifted."""
         lifted = {name: Jet(value, {}) for name, value in self.p.items()}
-        return self.motif.flights(lifted | {self.name: Jet(extras[0], {})})
+        return self.motif.flights(lifted | self.varying.at(Jet(extras[0], {})))
 
     def block(
         self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]
@@ -86,8 +87,8 @@ class AtPair(AtMultiplier):
 
     directions = 2
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], name: str, normal: Normal) -> None:
-        super().__init__(motif, p, name, 1, normal)
+    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, normal: Normal) -> None:
+        super().__init__(motif, p, varying, 1, normal)
         self.m = 2
         imaginary = 2 * self.n + normal.component
         self.borders = (*self.borders, (normal.block, lambda z, e: z[imaginary]))
@@ -106,13 +107,23 @@ class AtPair(AtMultiplier):
 class Vanishing:
     """The margin that vanishes at a border: its name, the event, and on which side.
 
-    Names are those of `orbits.cycles.margins` and "reversal" (a wall met by a flight that reverses freely) and "stop" (a
-    stick that ends where it begins).
+    Names are those of `orbits.cycles.margins` and "reversal" (a wall met by a flight that reverses freely).
     """
 
     name: str
     event: int
     side: int = 1
+
+    @property
+    def kind(self) -> str:
+        """Kind of the border."""
+        grazes = {
+            "flight": "velocity-graze",
+            "wall": "wall-graze",
+            "reversal": "wall-graze",
+            "approach": "wall-graze",
+        }
+        return grazes.get(self.name, "stick")
 
     @property
     def inside(self) -> bool:
@@ -123,8 +134,8 @@ class Vanishing:
 class AtBorder(AtParameter):
     """Orbits at a border; further unknowns p and, for a margin inside a flight, the phase at which it vanishes."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], name: str, vanishing: Vanishing) -> None:
-        super().__init__(motif, p, name)
+    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, vanishing: Vanishing) -> None:
+        super().__init__(motif, p, varying)
         self.vanishing = vanishing
         i = vanishing.event
         if vanishing.inside:
@@ -154,7 +165,7 @@ class AtBorder(AtParameter):
         m = flight(x[0])
         if v.name == "approach":
             return m.w1, None
-        if v.name in ("turn", "stick", "stop"):
+        if v.name in ("turn", "stick"):
             return flights.limit[v.side] - v.side * m.push, None
         if v.name == "slip":
             return m.push1, None

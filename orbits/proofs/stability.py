@@ -1,7 +1,8 @@
 """Stability from an enclosure A of the product of the linearised maps (of half the period for a symmetric orbit).
 
-In any norm and for any power k, |A^k| < 1 proves that every multiplier lies inside the unit circle; and |trace A^k| > n (the size
-of A) proves that one lies outside, the trace being the sum of n powers. Powers are squared up until one of the two holds.
+In any norm and for any power k, |A^k| < 1 proves that every multiplier lies inside the unit circle (in the Euclidean one: 1 - A'A is
+positive definite). A
+negative det(1 - A), det(1 + A) or product of all 1 - mu_i mu_j proves that one lies outside, for each is positive if all lie inside.
 No eigenvalue is computed, so neither multiple nor vanishing multipliers need care.
 
 The matrices of a long word or of a wide parameter ball are multiplied in moving frames: each factor is seen from frames that the
@@ -21,6 +22,7 @@ from orbits.proofs.obstacles import Obstacle, Remedy, Step
 
 SQUARINGS = 26
 LARGE = 1e12
+MIXED = 1e3  # condition from which on eigenvectors are nearly parallel
 
 
 def stable(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None, Obstacle | None]:
@@ -40,16 +42,37 @@ def stable(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None,
     return verdict, None if verdict is not None else Obstacle(Step.STABILITY, Remedy.CIRCLE)
 
 
-def _verdict(product: Any) -> bool | None:
-    """By norm and trace of the powers."""
+def _verdict(product: Any, squarings: int = SQUARINGS) -> bool | None:
+    """By the signs of det(1 - A), det(1 + A) and prod(1 - mu_i mu_j), and by norms of the powers."""
     size = product.nrows()
-    for _ in range(SQUARINGS):
-        if norm(product) < 1:
+    one = library().arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    if any(matrix.det() < 0 for matrix in (one - product, one + product)) or _pairs(product) < 0:
+        return False
+    for _ in range(squarings):
+        if _definite(one - product.transpose() * product):
             return True
-        if abs(product.trace()) > size:
-            return False
         product = product * product
     return None
+
+
+def _definite(matrix: Any) -> bool:
+    """Whether a symmetric matrix is positive definite: all leading minors are positive (Sylvester)."""
+    rows = matrix.tolist()
+    return all(library().arb_mat([row[:k] for row in rows[:k]]).det() > 0 for k in range(1, len(rows) + 1))
+
+
+def _pairs(product: Any) -> Any:
+    """The product of 1 - mu_i mu_j over all pairs of multipliers, which is positive if all lie inside: det(1 - second compound)."""
+    size = product.nrows()
+    pairs = [(i, j) for j in range(size) for i in range(j)]
+    minors = [
+        [
+            int((i, j) == (k, l)) - (product[i, k] * product[j, l] - product[i, l] * product[j, k])
+            for k, l in pairs
+        ]
+        for i, j in pairs
+    ]
+    return library().arb_mat(minors).det() if pairs else library().arb(1)
 
 
 def factor_matrices(system: System, nodes: Sequence[Sequence[Any]]) -> list[Any]:
@@ -78,30 +101,49 @@ def _without_shift(factor: Any, p: Any) -> Any:
 def stable_in_basis(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None, list[list[str]]]:
     """The same for pieces of branches, with the basis (rows of decimals) in which a checker sees it from the plain product.
 
-    The basis is empty where none helps, or where an impact-free motion's trivial multiplier is in the way.
+    The basis is empty where none helps.
     """
     if system.motif.impact_free:
-        return stable(system, nodes)[0], []
+        return stable(system, nodes)[0], basis_texts(system, nodes)
     try:
         factors = factor_matrices(system, nodes)
-        product = factors[0].mid()
-        for factor in factors[1:]:
-            product = (factor.mid() * product).mid()
-        basis = _basis(product)
-        carried = factors[0] if basis is None else factors[0] * basis
-        for factor in factors[1:]:
-            carried = factor * carried
-        verdict = _verdict(carried if basis is None else basis.solve(carried))
     except ZeroDivisionError:
         return None, []
-    return verdict, [] if basis is None else [[repr(float(value)) for value in row] for row in basis.tolist()]
+    for basis in _bases(_middle(factors)):
+        carried = factors[0] * basis
+        for factor in factors[1:]:
+            carried = factor * carried
+        try:
+            verdict = _verdict(basis.solve(carried), 1)
+        except ZeroDivisionError:
+            continue
+        if verdict is not None:
+            return verdict, _written(basis)
+    return None, []
 
 
-def norm(matrix: Any) -> Any:
-    """An upper bound of the largest row sum."""
-    zero = library().arb(0)
-    rows: list[Any] = [sum((abs(value) for value in row), start=zero) for row in matrix.tolist()]
-    return max(row.upper() for row in rows)
+def basis_texts(system: System, nodes: Sequence[Sequence[Any]]) -> list[list[str]]:
+    """That basis alone."""
+    try:
+        bases = _bases(_middle(factor_matrices(system, nodes)))
+    except ZeroDivisionError:
+        return []
+    basis = _written(bases[0]) if bases else []
+    if basis and system.motif.impact_free:  # the direction of the shift, which takes w's place, is left open
+        basis = [[*row[:1], "0", *row[1:]] for row in basis]
+        basis.insert(1, ["0", "1", *("0" for _ in basis[0][2:])])
+    return basis
+
+
+def _middle(factors: Sequence[Any]) -> Any:
+    product = factors[0].mid()
+    for factor in factors[1:]:
+        product = (factor.mid() * product).mid()
+    return product
+
+
+def _written(basis: Any) -> list[list[str]]:
+    return [[repr(float(value)) for value in row] for row in basis.tolist()]
 
 
 def _in_frames(factors: list[Any]) -> Any:
@@ -109,9 +151,10 @@ def _in_frames(factors: list[Any]) -> Any:
     plain = factors[0]
     for factor in factors[1:]:
         plain = factor * plain
-    frame = _basis(plain)
-    if frame is None:
+    bases = _bases(plain)
+    if not bases:
         return plain
+    frame = bases[0]
     first, result = frame, None
     for i, factor in enumerate(factors):
         carried = factor * frame
@@ -124,11 +167,15 @@ def _in_frames(factors: list[Any]) -> Any:
     return result
 
 
-def _basis(product: Any) -> Any:
-    """Exact columns near a basis of eigenvectors (real and imaginary parts of complex ones), None if there is none."""
+def _bases(product: Any) -> list[Any]:
+    """Exact bases that may show stability plainly, the better ones first.
+
+    One of eigenvectors, real and imaginary parts of complex ones, where it is well-conditioned; of a stable matrix A one in which it
+    shortens all vectors, from X = 1 + (A/g)' X (A/g) with g between the spectral radius and 1 (Lyapunov, Stein).
+    """
     numbers = np.array([[float(value.mid()) for value in row] for row in product.tolist()])
     if not np.all(np.isfinite(numbers)) or np.max(np.abs(numbers), initial=0.0) > 1e280:
-        return None
+        return []
     values, vectors = np.linalg.eig(numbers)
     columns = []
     for value, vector in zip(values, vectors.T):
@@ -136,8 +183,18 @@ def _basis(product: Any) -> Any:
             columns.append(vector.real)
         elif value.imag > 0.0:
             columns += [vector.real, vector.imag]
-    basis = np.array(columns).T
-    return _exact(basis)
+    eigen = np.array(columns).T
+    found = [_exact(eigen)]
+    radius, size = float(np.max(np.abs(values))), len(values)
+    if radius < 1.0:
+        scaled = numbers / (0.5 + 0.5 * radius)
+        stein = np.eye(size * size) - np.kron(scaled.T, scaled.T)
+        X = np.linalg.solve(stein, np.eye(size).ravel()).reshape(size, size)
+        sizes, axes = np.linalg.eigh(0.5 * (X + X.T))  # principal axes, so that errors do not mix
+        found.append(_exact(axes / np.sqrt(np.maximum(sizes, 1.0))))
+        if not (eigen.shape == (size, size) and np.linalg.cond(eigen) < MIXED):
+            found.reverse()
+    return [basis for basis in found if basis is not None]
 
 
 def _columns(carried: Any) -> Any:

@@ -14,7 +14,6 @@ from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal, Vanishing
 
 SAMPLES = 400
-SHORT = 1e-5  # a stick this short, in radians of the forcing, ends at once
 
 
 def chain(motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]]) -> list[Any]:
@@ -70,12 +69,8 @@ def vanishing_margin(
     flights = motif.flights(p)
     flight = flights.launch(motif.events[event], motif.modes[event], nodes[event])
     side = 1
-    if name in ("hold", "stick", "duration"):
-        span = float(motif.after(event, nodes)[0] - nodes[event][0])
-        if motif.modes[event] == 0 and not motif.frictionless and abs(span) < SHORT:
-            return Vanishing("stop", event, motif.arrival(event)[1])
-        if name == "duration":
-            raise Obstacle(Step.EXISTENCE, Remedy.OTHER_WORD, event, "a flight of no duration")
+    if name == "duration":
+        raise Obstacle(Step.EXISTENCE, Remedy.OTHER_WORD, event, "a flight of no duration")
     if name in ("hold", "reversal"):
         both = [Vanishing(name, event, side) for side in (1, -1)]
         least = [_least(motif, p, nodes, vanishing) for vanishing in both]

@@ -10,14 +10,15 @@ import numpy as np
 
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.margins import PER_NODE, margin_name
-from orbits.proofs.balls import Given
+from orbits.proofs.balls import Given, decimal
 from orbits.proofs.equations import Motif
 from orbits.proofs.flights import parameter_names
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.pieces import Pieces, prove_piece
 from orbits.proofs.proof import Proof
-from orbits.proofs.prove import MULTIPLIERS, motif_of, prove_orbit, prove_special
+from orbits.proofs.prove import MULTIPLIERS, check_symmetry, motif_of, prove_orbit, prove_special
 from orbits.proofs.resting import prove_stuck
+from orbits.proofs.varying import Varying
 from orbits.words import Word
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
@@ -40,7 +41,7 @@ def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
     ProofError
         If the machine has no flights in closed form, or a parameter is unknown or out of range.
     """
-    given = _parameters(orbit.model.name, orbit.parameters, parameters)
+    given = _parameters(orbit.model.name, _numbers(orbit), parameters)
     if not len(orbit.word):
         return prove_stuck(orbit.model.name, given, bits or 160)
     word = orbit.word
@@ -51,7 +52,7 @@ def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
         orbit.periods,
         orbit.nodes,
         given,
-        half=orbit.symmetric and orbit.model.name != "cavity",
+        half=bool(orbit.symmetric and _mirrored(orbit, given)),
         frictionless=word.frictionless,
         bits=bits,
     )
@@ -76,11 +77,13 @@ def of_point(
     if kind in PLAIN:
         return of_orbit(orbit, bits)
     machine = orbit.model.name
-    name, value = _moved(problem, p)
-    given = _parameters(machine, orbit.parameters, {})
+    varying = _moved(problem)
+    given = _parameters(machine, _numbers(orbit), {})
     if not len(orbit.word):
         motif = Motif(machine, (), (), 1, False, False)
-        return prove_special(kind, motif, np.zeros((0, 1)), given, name, value, margin=("hold", 0), bits=bits)
+        return prove_special(
+            kind, motif, np.zeros((0, 1)), given, varying, float(p), margin=("hold", 0), bits=bits
+        )
     word, periods, nodes, half = orbit.word, orbit.periods, orbit.nodes, problem.symmetric
     if kind in CRITICAL or kind == "branch-point":
         kind, word, periods, nodes, half = _critical(kind, word, periods, nodes, half)
@@ -90,7 +93,9 @@ def of_point(
         if margin is None:
             raise ProofError(f"a {kind} needs the margin that vanishes there")
         vanishing = (_margin(word, margin), margin // PER_NODE)
-    return prove_special(kind, motif, nodes[: len(motif)], given, name, value, margin=vanishing, bits=bits)
+    return prove_special(
+        kind, motif, nodes[: len(motif)], given, varying, float(p), margin=vanishing, bits=bits
+    )
 
 
 def of_branch(
@@ -99,6 +104,7 @@ def of_branch(
     values: np.ndarray,
     marks: Sequence[int] = (),
     within: tuple[float, float] | None = None,
+    special: Mapping[int, Any] | None = None,
 ) -> Pieces:
     """Prove a branch of an `OrbitProblem`, or its part within an interval of the parameter.
 
@@ -108,9 +114,12 @@ def of_branch(
     points, values : float arrays (n, N), (n,)
         The branch in its order.
     marks : sequence of int
-        Places of special points: stretches end there. A hundredth is left out at either end, where verdicts change.
+        Places of special points: stretches end there.
     within : (float, float), optional
         Prove just this interval, on each stretch as far as that reaches.
+    special : dict, optional
+        The special points (with `kind`, `u`, `value` and `margin_index`) at places among `marks`. Stretches go up to those that can
+        be proved with the branch's own word; at other ends a hundredth is left out, where verdicts change.
 
     Raises
     ------
@@ -123,23 +132,36 @@ def of_branch(
         )
     orbit = problem.orbit(points[0], float(values[0]))
     machine, word = orbit.model.name, problem.word
-    name, _ = _moved(problem, float(values[0]))
-    given = _parameters(machine, orbit.parameters, {})
+    varying = _moved(problem)
+    given = _parameters(machine, _numbers(orbit), {})
     motif = motif_of(machine, word.events, word.modes, problem.periods, problem.symmetric, word.frictionless)
-    numbers = np.array([_moved(problem, float(value))[1] for value in values])
-    turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(numbers))))
-    cuts = sorted({0, len(numbers) - 1, *(int(i) for i in turns), *(int(i) for i in marks)})
+    turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
+    cuts = sorted({0, len(values) - 1, *(int(i) for i in turns), *(int(i) for i in marks)})
+    known: dict[int, Proof | None] = {}
+
+    def point(place: int) -> Proof | None:
+        if place not in known:
+            known[place] = _joinable(problem, motif, (special or {}).get(place))
+        return known[place]
+
     pieces = []
     for first, last in pairwise(cuts):
-        order = np.argsort(numbers[first : last + 1])
-        x, u = numbers[first : last + 1][order], points[first : last + 1][order]
+        order = np.argsort(values[first : last + 1])
+        x, u = values[first : last + 1][order], points[first : last + 1][order]
         low, high = float(x[0]), float(x[-1])
+        places = (first, last) if order[0] < order[-1] else (last, first)
+        ends: list[Proof | None] = [None, None]
+        inner = 0.01 * (high - low)
         if within is not None:
             low, high = max(low, within[0]), min(high, within[1])
-        for end, at in ((low, 0), (high, -1)):
-            if end == float(x[at]) and high > low:
-                inner = 0.01 * (high - low)
-                low, high = (low + inner, high) if at == 0 else (low, high - inner)
+        if not high > low:
+            continue
+        if low == float(x[0]):
+            ends[0] = point(places[0])
+            low += 0.0 if ends[0] else inner
+        if high == float(x[-1]):
+            ends[1] = point(places[1])
+            high -= 0.0 if ends[1] else inner
         if not high > low:
             continue
 
@@ -147,10 +169,21 @@ def of_branch(
             columns = [np.interp(p, x, u[:, j]) for j in range(u.shape[1])]
             return np.array(columns).reshape(len(motif), -1)
 
-        pieces.append(prove_piece(motif, guess, given, name, low, high))
+        pieces.append(prove_piece(motif, guess, given, varying, low, high, (ends[0], ends[1])))
     if not pieces:
         raise ProofError("the branch has no stretch between special points in this interval")
     return Pieces(tuple(pieces))
+
+
+def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
+    """A special point proved with the branch's own word, so that a stretch can go up to it; None where that cannot be."""
+    if found is None or found.kind in PLAIN or np.size(found.u) != problem.dimension:
+        return None
+    try:
+        proof = of_point(problem, found.kind, found.u, float(found.value), found.margin_index)
+    except ProofError:
+        return None
+    return proof if proof.chain and proof.motif == motif else None
 
 
 def _critical(
@@ -170,6 +203,24 @@ def _margin(word: Word, index: int) -> str:
     return "reversal" if word.frictionless and index % PER_NODE == 0 else name
 
 
+def _numbers(orbit: Any) -> dict[str, float]:
+    """The machine's own numbers; of a machine in physical units those behind its quantities."""
+    return dict(zip(orbit.model.parameter_names, (float(value) for value in orbit.params)))
+
+
+def _mirrored(orbit: Any, given: Mapping[str, Given]) -> bool:
+    """Whether mirror images are motions of the machine with exactly these parameters."""
+    word = orbit.word
+    try:
+        check_symmetry(
+            motif_of(orbit.model.name, word.events, word.modes, orbit.periods, True, word.frictionless),
+            {name: decimal(value) for name, value in given.items()},
+        )
+    except ProofError:
+        return False
+    return True
+
+
 def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Given]) -> dict[str, Given]:
     names = parameter_names(machine)
     for name in changed:
@@ -178,15 +229,19 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
     return {name: changed.get(name, own[name]) for name in names}
 
 
-def _moved(problem: Any, p: float) -> tuple[str, float]:
-    """The machine's number that the problem's parameter is, and its value."""
+def _moved(problem: Any) -> Varying:
+    """The machine's numbers that follow the problem's parameter."""
     names = parameter_names(problem.model.name)
-    values = dict(zip(problem.model.parameter_names, (float(v) for v in problem.values(p))))
-    powers = zip(problem.model.parameter_names, problem.path[1])
-    moved = [name for name, power in powers if power != 0.0 and name in names]
-    if len(moved) != 1:
+    moved = {
+        name: (repr(float(factor)), int(power) if float(power).is_integer() else float(power))
+        for name, factor, power in zip(problem.model.parameter_names, *problem.path)
+        if power != 0.0 and name in names
+    }
+    if not moved:
         raise ProofError(
-            f"{problem.parameter} moves {', '.join(moved) or 'no number'} of the machine at once; special points are proved "
-            "where one number moves: continue in that one"
+            f"{problem.parameter} moves no number that the motion depends on: a special point against it cannot be proved"
         )
-    return moved[0], values[moved[0]]
+    return Varying(
+        problem.parameter,
+        {name: ("1" if factor == "1.0" else factor, k) for name, (factor, k) in moved.items()},
+    )

@@ -1,11 +1,12 @@
-"""Tiles: boxes about a branch over an interval of the parameter, in each of which the orbits form exactly one curve.
+"""Tiles: boxes about a branch in each of which the orbits form exactly one curve.
 
-For p = p_c + q, |q| <= h, a tile is the set m + s q + [-r, r] with the branch's tangent s. With J any matrix of DF over the whole tile,
+One of the unknowns (nodes x and parameter p together: U) is the coordinate of the curve, the parameter or, where the branch turns, an unknown
+of a node: it is c + q, |q| <= h. A tile is the set m + s q + [-r, r] with the branch's tangent s. With J any matrix of DF over the whole tile,
 
-    J^{-1} F(m + s q, p_c + q)  inside (-r, r)    for all q
+    J^{-1} F(m + s q)  inside (-r, r)    for all q
 
-proves one solution for each p (the interval Newton operator with the moving middle m + s q). F there is enclosed by its value
-at q = 0 and its derivative along (s, 1), which is small since s is tangent: r shrinks like h^2.
+proves one solution for each q (the interval Newton operator with the moving middle m + s q). F there is enclosed by its value
+at q = 0 and its derivative along s, which is small since s is tangent: r shrinks like h^2.
 """
 
 from __future__ import annotations
@@ -16,12 +17,28 @@ from typing import Any
 
 from orbits.proofs.balls import ball, library, texts, upper_text
 from orbits.proofs.elimination import Singular, solve
+from orbits.proofs.enclosing import Box
 from orbits.proofs.equations import Motif
 from orbits.proofs.jets import Jet, partial
 from orbits.proofs.special import AtParameter
+from orbits.proofs.varying import Varying
 
 ROUNDS = 6
 SLACK = 1.3  # so much smaller than the tile is the image, that another arithmetic finds it inside as well
+Place = tuple[int, int]
+"""The unknown that is a tile's coordinate: node and component."""
+
+
+class Along(AtParameter):
+    """A branch along one of its unknowns, the parameter where `place` is None; the coordinate's value is `at`."""
+
+    def __init__(
+        self, motif: Motif, p: Mapping[str, Any], varying: Varying, place: Place | None, at: Any
+    ) -> None:
+        super().__init__(motif, p, varying)
+        self.place, self.at = place, at
+        block, component = place or (0, 0)
+        self.borders = ((block, lambda z, e: (e[0] if place is None else z[component]) - self.at),)
 
 
 @dataclass(frozen=True)
@@ -30,109 +47,131 @@ class Tile:
 
     Attributes
     ----------
-    center, half : str
-        p_c and h.
+    half : str
+        h.
     nodes : list (l) of lists (n) of [middle, slope, radius]
+    parameter : [middle, slope, radius]
+    place : (int, int) or None
+        The coordinate among the nodes, None for the parameter; its radius is 0.
     basis : list (n) of lists (n) of str
         Columns in which the linearised map shows its stability plainly.
     """
 
-    center: str
     half: str
     nodes: list[list[list[str]]]
+    parameter: list[str]
+    place: Place | None
     basis: list[list[str]]
 
     def values(self) -> Any:
         """The ball of the parameter."""
-        return library().arb(self.center, self.half)
+        return _hull(self.parameter, library().arb(0, self.half))
 
     def balls(self) -> list[list[Any]]:
         """The whole tile as balls."""
-        arb = library().arb
-        q = arb(0, self.half)
-        return [[arb(m, r) + arb(s) * q for m, s, r in node] for node in self.nodes]
+        q = library().arb(0, self.half)
+        return [[_hull(triple, q) for triple in node] for node in self.nodes]
 
-    def at(self, p: Any) -> list[list[Any]]:
-        """The part of the tile at one value of the parameter."""
+    def holds(self, value: str, box: Box) -> bool:
+        """Whether a proved orbit at a value of the parameter lies in the tile: then it is on the tile's curve."""
         arb = library().arb
-        q = p - arb(self.center)
-        return [[arb(m, r) + arb(s) * q for m, s, r in node] for node in self.nodes]
+        triples = [*(triple for node in self.nodes for triple in node), self.parameter]
+        point = [*(arb(*pair) for node in box.nodes for pair in node), ball(value)]
+        at = len(triples) - 1 if self.place is None else self.place[0] * len(self.nodes[0]) + self.place[1]
+        q = point[at] - arb(triples[at][0])
+        inside = all(
+            _hull(triple, q).contains_interior(part)
+            for j, (triple, part) in enumerate(zip(triples, point))
+            if j != at
+        )
+        return bool(arb(0, self.half).contains(q)) and inside
+
+    def end(self, value: float) -> list[list[float]]:
+        """Where the curve goes on, by its tangent: nodes near a value of the parameter, which is the coordinate."""
+        q = value - float(self.parameter[0])
+        return [[float(m) + float(s) * q for m, s, _ in node] for node in self.nodes]
 
     @property
     def radius(self) -> float:
-        """The largest radius at one value of the parameter."""
-        return max(float(r) for node in self.nodes for _, _, r in node)
+        """The largest radius at one value of the coordinate."""
+        return max((float(r) for node in self.nodes for _, _, r in node), default=0.0)
 
 
-def lay(
-    motif: Motif, p: Mapping[str, Any], name: str, center: str, half: str, middle: Sequence[Sequence[Any]]
-) -> Tile | None:
-    """The tile about the refined nodes `middle` at parameter value `center`, None if none is proved."""
+def _hull(triple: Sequence[str], q: Any) -> Any:
+    m, s, r = triple
+    return library().arb(m, r) + library().arb(s) * q
+
+
+def lay(along: Along, center: str, half: str, z: Sequence[Sequence[Any]], value: Any) -> Tile | None:
+    """The tile about the refined nodes z and parameter where the coordinate is `center`, None if none is proved."""
     arb = library().arb
-    system = AtParameter(motif, p, name)
-    at, span = ball(center), arb(0, half)
-    mids = [[texts(v.mid(), 30)[0] for v in node] for node in middle]
-    m = [[ball(text) for text in node] for node in mids]
+    span = arb(0, half)
+    mids = [[texts(v.mid(), 40)[0] for v in node] for node in z]
+    first = center if along.place is None else texts(value.mid(), 40)[0]
+    if along.place is not None:
+        mids[along.place[0]][along.place[1]] = center
+    m, p = [[ball(text) for text in node] for node in mids], ball(first)
+    place = None if along.place is None else along.place[0] * along.k + along.place[1]
     try:
-        slopes = [[texts((-v).mid(), 24)[0] for v in node] for node in _tangent(system, m, at)]
-        s = [[ball(text) for text in node] for node in slopes]
-        F = _residual(system, m, s, at, span)
-        radii = [[2 * v.abs_upper() + arb(2) ** (-60) for v in node] for node in _solved(system, m, at, F)]
+        along.at = Jet(ball(center), {0: arb(1)})
+        slopes = [texts((-v).mid(), 30)[0] for v in _flat(_solved(along, m, [p], _tangent(along, m, p)))]
+        slopes[-1 if place is None else place] = "1"
+        s = [ball(text) for text in slopes]
+        F = _residual(along, m, p, s, ball(center), span)
+        least = arb(2) ** (-60) * arb(half).min(arb(1))
+        radii = [2 * v.abs_upper() + least for v in _flat(_solved(along, m, [p], F))]
         for _ in range(ROUNDS):
-            decimals = [[upper_text(r) for r in node] for node in radii]
-            nodes = [[list(triple) for triple in zip(*rows)] for rows in zip(mids, slopes, decimals)]
-            tile = Tile(center, half, nodes, [])
-            step = _solved(system, tile.balls(), tile.values(), F)
-            inside = all(
-                SLACK * v.abs_upper() < arb(r) for part, row in zip(step, decimals) for v, r in zip(part, row)
-            )
-            if inside:
-                return tile
-            radii = [
-                [(1.7 * v.abs_upper()).max(r / 4) + arb(2) ** (-60) for v, r in zip(part, row)]
-                for part, row in zip(step, radii)
+            decimals = [upper_text(r) for r in radii]
+            decimals[-1 if place is None else place] = "0"
+            triples = [
+                list(triple)
+                for triple in zip([*(text for node in mids for text in node), first], slopes, decimals)
             ]
-            if not all(r.is_finite() and r < 1 for row in radii for r in row):
+            nodes = [triples[i : i + along.k] for i in range(0, len(triples) - 1, along.k)]
+            tile = Tile(half, nodes, triples[-1], along.place, [])
+            step = _flat(_solved(along, tile.balls(), [tile.values()], F))
+            fixed = len(step) - 1 if place is None else place
+            if all(
+                SLACK * v.abs_upper() < arb(r) for j, (v, r) in enumerate(zip(step, decimals)) if j != fixed
+            ):
+                return tile
+            radii = [(1.7 * v.abs_upper()).max(r / 4) + least for v, r in zip(step, radii)]
+            if not all(r.is_finite() and r < 1 for r in radii):
                 return None
     except Singular:
         pass
     return None
 
 
-def joined(one: Tile, other: Tile, point: Sequence[Sequence[Any]], p: Any) -> bool:
-    """Whether a proved orbit at `p` lies in both tiles: then their curves are one."""
-    return all(
-        large.contains_interior(small)
-        for tile in (one, other)
-        for node, part in zip(tile.at(p), point)
-        for large, small in zip(node, part)
-    )
+def _flat(solution: tuple[list[list[Any]], list[Any]]) -> list[Any]:
+    return [*(v for node in solution[0] for v in node), *solution[1]]
 
 
-def _tangent(system: AtParameter, m: Any, at: Any) -> list[list[Any]]:
-    """DF^{-1} dF/dp at the middle."""
-    blocks = system.linearise(m, [at])
-    blocks.b = [[row[0] for row in E] for E in blocks.E]
-    return _square(blocks)
+def _tangent(along: Along, m: Any, p: Any) -> tuple[list[list[Any]], list[Any]]:
+    """The right side whose solution is the tangent, with its sign changed: the coordinate grows at the rate 1."""
+    return [[library().arb(0)] * along.k for _ in range(along.length)], [library().arb(-1)]
 
 
-def _solved(system: AtParameter, Z: Any, P: Any, F: Any) -> list[list[Any]]:
-    blocks = system.linearise(Z, [P])
-    blocks.b = F
-    return _square(blocks)
+def _solved(along: Along, Z: Any, E: Any, F: tuple[Any, Any]) -> tuple[list[list[Any]], list[Any]]:
+    at, along.at = along.at, library().arb(0)  # a constant of the equations
+    try:
+        blocks = along.linearise(Z, E)
+    finally:
+        along.at = at
+    blocks.b, blocks.c = F
+    return solve(blocks)
 
 
-def _square(blocks: Any) -> list[list[Any]]:
-    blocks.E = [[[] for _ in E] for E in blocks.E]
-    return solve(blocks)[0]
-
-
-def _residual(system: AtParameter, m: Any, s: Any, at: Any, span: Any) -> list[list[Any]]:
-    """Enclosures of F(m + s q, p_c + q) for all q in the span."""
-    value, _ = system.residuals(m, [at])
+def _residual(along: Along, m: Any, p: Any, s: Any, center: Any, span: Any) -> tuple[Any, Any]:
+    """Enclosures of F(m + s q) for all q in the span."""
+    k = along.k
+    along.at = center
+    value, _ = along.residuals(m, [p])
     moving = [
-        [Jet(mid + slope * span, {0: slope}) for mid, slope in zip(node, row)] for node, row in zip(m, s)
+        [Jet(mid + s[i * k + j] * span, {0: s[i * k + j]}) for j, mid in enumerate(node)]
+        for i, node in enumerate(m)
     ]
-    extras = [Jet(at + span, {0: library().arb(1)})]
-    change, _ = system.residuals(moving, extras)
-    return [[a + partial(b, 0) * span for a, b in zip(x, y)] for x, y in zip(value, change)]
+    along.at = Jet(center + span, {0: library().arb(1)})
+    change, _ = along.residuals(moving, [Jet(p + s[-1] * span, {0: s[-1]})])
+    inner = [[a + partial(b, 0) * span for a, b in zip(x, y)] for x, y in zip(value, change)]
+    return inner, [library().arb(0)]  # the coordinate's own equation holds exactly

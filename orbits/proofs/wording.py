@@ -44,11 +44,14 @@ def piece_sentence(piece: Piece) -> str:
     word = "".join(piece.motif.events) + (" and its mirror image" if piece.motif.half else "")
     lines = []
     if piece.covered:
-        low, high = piece.covered
+        low, high = (
+            f"the {kind} at {float(at):.10g}" if kind else f"{float(at):.10g}"
+            for kind, at in zip(piece.ends, piece.covered)
+        )
         facts = ["exactly one near the branch", SAYS["real"][piece.real], SAYS["stable"][piece.stable]]
         lines.append(
             f"the orbits of {word}: {', '.join(facts)}, for all {piece.parameter} from {low} to {high} "
-            f"({len(piece.tiles)} boxes)"
+            f"({piece.count} boxes)"
         )
     else:
         lines.append(f"the orbits of {word} from {piece.asked[0]:g} to {piece.asked[1]:g}: not proved")

@@ -66,11 +66,21 @@ def simulate(
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
     length = FOREVER if periods is None else periods
-    until = state[TURNS] + state[PSI] / (2.0 * math.pi) + length
+    return follow(model, engine, params, state, length, MOST_EVENTS if events is None else events)
+
+
+def follow(
+    model: Any,
+    engine: Machine,
+    params: np.ndarray,
+    state: np.ndarray,
+    periods: float,
+    events: int = MOST_EVENTS,
+) -> Trajectory:
+    """The motion from a state, which is moved along; `SimulationError` if it leaves the range of numbers."""
+    until = state[TURNS] + state[PSI] / (2.0 * math.pi) + periods
     begin = state.copy()
-    codes, modes, rows, status = collect(
-        engine, state, params, until, MOST_EVENTS if events is None else events
-    )
+    codes, modes, rows, status = collect(engine, state, params, until, events)
     if status == FAILED:
         raise SimulationError(
             f"the motion of {model.name!r} left the range of numbers: give parameters and a start of moderate size"

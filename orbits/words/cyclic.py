@@ -104,8 +104,7 @@ class CyclicWord:
         """The smallest of all rotations of the word, and of its mirror image if that is a motion of the machine, too."""
         if not self.events and not self.modes:
             return self
-        images = (self, self.mirror()) if mirror and self.alphabet.mirror is not None else (self,)
-        return min((w._smallest_rotation() for w in images), key=lambda w: (w.events, w.modes))
+        return _canonical(self, mirror and self.alphabet.mirror is not None, self.alphabet)
 
     def _smallest_rotation(self) -> Self:
         """The smallest rotation by its events, of those with equal events by its modes; no slip begins a word."""
@@ -129,6 +128,12 @@ class CyclicWord:
         if n == 0:
             return bool(self.modes) and self.mirror() == self
         return n % 2 == 0 and self.rotate(n // 2) == self.mirror()
+
+
+@lru_cache(maxsize=1024)
+def _canonical(word: Any, mirror: bool, alphabet: Alphabet) -> Any:
+    images = (word, word.mirror()) if mirror else (word,)
+    return min((w._smallest_rotation() for w in images), key=lambda w: (w.events, w.modes))
 
 
 @lru_cache(maxsize=256)

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -147,12 +147,7 @@ class Word(CyclicWord):
 
         That of `canonical`, without signs where the letters alone mean this motion.
         """
-        canonical = self.canonical(mirror)
-        plain = canonical._written(signed=False)
-        with suppress(WordError):
-            if Word.parse(plain, self.frictionless).canonical(mirror) == canonical:
-                return plain
-        return canonical.text
+        return _spelled(self.canonical(mirror), mirror)
 
     @property
     def impact_free(self) -> bool:
@@ -168,6 +163,15 @@ class Word(CyclicWord):
     def mode_codes(self) -> np.ndarray:
         """Mode after each event, shape (n,), int8."""
         return np.array(self.modes, dtype=np.int8)
+
+
+@lru_cache(maxsize=1024)
+def _spelled(canonical: Word, mirror: bool) -> str:
+    plain = canonical._written(signed=False)
+    with suppress(WordError):
+        if Word.parse(plain, canonical.frictionless).canonical(mirror) == canonical:
+            return plain
+    return canonical.text
 
 
 def _are_chained_maps(tokens: Sequence[str]) -> bool:

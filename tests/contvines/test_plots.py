@@ -80,7 +80,14 @@ def impactless(words, values):
 
     graph = fakes.pitchfork_graph()
     for branch, word, value in zip(graph.branches.values(), words, values, strict=True):
-        branch.problem, branch.description = Problem(value), {**branch.description, "word": word}
+        branch.problem, branch.description = (
+            Problem(value),
+            {
+                **branch.description,
+                "word": word,
+                "impacts": sum(letter in "LR" for letter in word),
+            },
+        )
     return graph
 
 

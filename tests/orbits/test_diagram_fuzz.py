@@ -18,24 +18,24 @@ from orbits.cycles.identity import canonical
 from orbits.starts.find import polish
 
 DRAWN = 400 if os.environ.get("CONTVINES_LARGE") else 60
-SECONDS = 120  # a guard against hanging, far above what any diagram here takes
+SECONDS = 300.0  # of processor time: a guard against hanging, far above what any diagram here takes
 
 
 @pytest.fixture(autouse=True)
 def guard():
     """Stop a diagram that hangs."""
-    if not hasattr(signal, "SIGALRM"):
+    if not hasattr(signal, "SIGVTALRM"):
         yield
         return
 
     def stop(*_):
         raise TimeoutError("the diagram hangs")
 
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.alarm(SECONDS)
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)
     yield
-    signal.alarm(0)
-    signal.signal(signal.SIGALRM, before)
+    signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+    signal.signal(signal.SIGVTALRM, before)
 
 
 def start(seed):

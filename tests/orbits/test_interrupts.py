@@ -45,38 +45,37 @@ def locus():
 def basins():
     cv.basins(machine, over="amplitude", at=0.6, points=20)
 
-work = globals()[sys.argv[1]]
-work()
-print("ready", flush=True)
-try:
-    while True:
-        work()
-except KeyboardInterrupt:
-    print("interrupted", flush=True)
+for work in [multipliers, margins, attractor, swept, traced, locus, basins] * int(sys.argv[1]):
+    work()
+    print("ready", flush=True)
+    try:
+        while True:
+            work()
+    except KeyboardInterrupt:
+        print("interrupted", work.__name__, flush=True)
 """
+WORKS = ["multipliers", "margins", "attractor", "swept", "traced", "locus", "basins"]
 
 
-@pytest.mark.parametrize(
-    "work", ["multipliers", "margins", "attractor", "swept", "traced", "locus", "basins"]
-)
-def test_an_interrupt_at_any_time_ends_the_work(work):
-    """The loop around the work would go on for ever if an interrupt was ignored."""
-    delays = np.random.default_rng(len(work)).uniform(
-        0.0, 0.3, size=int(os.environ.get("CONTVINES_TRIES", "2"))
+def test_an_interrupt_at_any_time_ends_the_work():
+    """The loop around each work would go on for ever if an interrupt was ignored."""
+    tries = int(os.environ.get("CONTVINES_TRIES", "2"))
+    child = subprocess.Popen(
+        [sys.executable, "-c", CHILD, str(tries)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    for delay in delays:
-        child = subprocess.Popen(
-            [sys.executable, "-c", CHILD, work], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
-        assert child.stdout is not None
-        assert child.stdout.readline() == "ready\n"
-        time.sleep(delay)
-        child.send_signal(signal.SIGINT)
-        try:
-            said, complained = child.communicate(timeout=60)
-        finally:
-            child.kill()
-        assert (said, complained) == ("interrupted\n", "")
+    assert child.stdout is not None
+    guard = threading.Timer(300.0, child.kill)
+    guard.start()
+    try:
+        for delay, work in zip(np.random.default_rng(3).uniform(0.0, 0.3, 7 * tries), WORKS * tries):
+            assert child.stdout.readline() == "ready\n", work
+            time.sleep(delay)
+            child.send_signal(signal.SIGINT)
+            assert child.stdout.readline() == f"interrupted {work}\n"
+        assert child.communicate(timeout=60) == ("", "")
+    finally:
+        guard.cancel()
+        child.kill()
 
 
 @ctypes.CFUNCTYPE(None)

@@ -132,8 +132,8 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
     """What the motion of a stepper leads to; `find_attractor` says what the numbers are."""
     machine, params = stepper.machine, stepper.params
     for attempt in range(patience + 1):
-        _skip(stepper, transient * 2**attempt)
-        run = _look(stepper, max_period)
+        skip(stepper, transient * 2**attempt)
+        run = look(stepper, max_period)
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
         if orbit is not None:
             return DeclaredAttractor(machine, params, "periodic", orbit, run)
@@ -145,7 +145,8 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
     return DeclaredAttractor(machine, params, kind, None, run)
 
 
-def _skip(stepper: Stepper, count: int) -> None:
+def skip(stepper: Stepper, count: int) -> None:
+    """Move on by so many forcing periods; of a self-excited machine, by so many events."""
     if stepper.machine.forced:
         until = stepper.base + stepper.clock + TWO_PI * count
         while stepper.advance(until) is not None:
@@ -156,7 +157,8 @@ def _skip(stepper: Stepper, count: int) -> None:
             return
 
 
-def _look(stepper: Stepper, max_period: int) -> Trajectory:
+def look(stepper: Stepper, max_period: int) -> Trajectory:
+    """The run in which a recurrence of up to `max_period` periods is looked for."""
     if stepper.machine.forced:
         return collect(stepper, TWO_PI * (2 * max_period + 1), 50 * max_period + 2000)
     return collect(stepper, 1e4, min(2 * LONGEST_WORD, 50 * max_period))
@@ -164,8 +166,8 @@ def _look(stepper: Stepper, max_period: int) -> Trajectory:
 
 def settle(stepper: Stepper, transient: int, max_period: int) -> DeclaredOrbit | None:
     """The periodic orbit to which a stepper's motion settles after a transient, or None."""
-    _skip(stepper, transient)
-    return returning(_look(stepper, max_period), max_period, RETURNED)
+    skip(stepper, transient)
+    return returning(look(stepper, max_period), max_period, RETURNED)
 
 
 def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | None:

@@ -259,3 +259,29 @@ def check_mirror(
     for i, name in enumerate(e.states):
         compare(f"motion's rate of {name}", here[:, i], -there[:, i])
     return images, frozenset(turned)
+
+
+def check_starts(
+    starts: Mapping[str, tuple[float, float]] | None, states: Sequence[str]
+) -> dict[str, tuple[float, float]]:
+    """Ranges of starts as numbers.
+
+    Raises
+    ------
+    PageError
+        If a state is unknown or a range no interval.
+    """
+    ranges = {}
+    for name, limits in dict(starts or {}).items():
+        if name not in states:
+            raise PageError(f"starts: {name!r} is no state; the machine has {', '.join(states)}")
+        try:
+            low, high = map(float, limits)
+        except (TypeError, ValueError):
+            raise PageError(f"starts: {name} = {limits!r}; give two numbers (low, high)") from None
+        if not (np.isfinite(low) and np.isfinite(high) and low < high):
+            raise PageError(
+                f"starts: {name} = ({low:g}, {high:g}) is no interval; give the lower number first"
+            )
+        ranges[name] = (low, high)
+    return ranges

@@ -39,6 +39,8 @@ class Machine:
     mirror : mapping of str to str, optional
         The machine equals its mirror image: all states change sign, these contacts change places (those not named stay), half a
         forcing period on. ``{}``: no contact changes its place. Checked at random states.
+    starts : mapping of str to (low, high), optional
+        Ranges of the states among which atlases and basins draw their starts; by default twice what the motion from rest reaches.
 
     Raises
     ------
@@ -56,12 +58,14 @@ class Machine:
         contacts: Sequence[Any] = (),
         phase_rate: str | None = None,
         mirror: Mapping[str, str] | None = None,
+        starts: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
         checks.check_names(name, states, parameters, phase_rate, contacts)
         self.name = name
         self.states = tuple(states)
         self.parameters = {key: float(value) for key, value in parameters.items()}
         self.parameter_names = tuple(self.parameters)
+        self.starts = checks.check_starts(starts, self.states)
         self.phase_rate, self.contacts = phase_rate, tuple(contacts)
         self.page: Page = page_of(motion)
         self.equations = Equations(self.states, self.parameter_names, phase_rate, motion, self.contacts)
@@ -210,6 +214,12 @@ class Machine:
         from orbits.machines.declared.attractor import find_attractors
 
         return find_attractors(self, count, seed, size, parameters=parameters)
+
+    def population(self, over: str | None = None, **parameters: float) -> Any:
+        """Many starts and what they settle on; see `orbits.machines.declared.population.DeclaredPopulation`."""
+        from orbits.machines.declared.population import DeclaredPopulation
+
+        return DeclaredPopulation(self, over or self.default_parameter, parameters)
 
     def orbit(
         self,

@@ -28,6 +28,11 @@ def names(machine: Any) -> tuple[str, ...]:
     )
 
 
+def shown_first(machine: Any) -> str:
+    """The measure that a diagram shows when none is asked for: impact speeds, or how far the first state goes."""
+    return "approach_speed" if "approach_speed" in names(machine) else f"max_{machine.states[0]}"
+
+
 def measure(
     machine: Any, word: PageWord, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:

@@ -415,8 +415,9 @@ class DeclaredProblem:
     @property
     def default_measure(self) -> str:
         """The measure that a diagram shows when none is asked for: impact speeds, or how far the first state goes."""
-        named = "approach_speed" in self.measure_names
-        return "approach_speed" if named else f"max_{self.machine.states[0]}"
+        from orbits.machines.declared.measures import shown_first
+
+        return shown_first(self.machine)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.letters import HIT, HOLD, RELEASE
+from orbits.contacts.wall import Wall
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
 
@@ -121,6 +122,25 @@ def first_state(machine: Machine, start: Mapping[str, float] | None) -> tuple[np
     return np.array([float(given.get(s, 0.0)) for s in machine.states]), float(given.get("phase", 0.0))
 
 
+def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
+    """A state moved out of the walls that lie over it, shape (S,)."""
+    machine, state = stepper.machine, np.array(state, dtype=float)
+    stepper.state, stepper.clock = state, clock
+    stepper.modes = machine.rest_mode(stepper.params, state, stepper.clock)
+    for _ in range(20):
+        gaps = stepper.contact_values()
+        deep = [j for j, c in enumerate(machine.contacts) if isinstance(c, Wall) and gaps[j] < 0.0]
+        if not deep:
+            break
+        slopes = machine.compiled.gap_slopes(deep[0])(
+            state[None],
+            np.array([stepper.clock]),
+            machine.compiled.numbers(stepper.params, stepper.modes)[None],
+        )[0]
+        state += (1e-12 - gaps[deep[0]]) * slopes / float(slopes @ slopes)
+    return state
+
+
 def simulate(
     machine: Machine,
     start: Mapping[str, float] | None = None,
@@ -208,5 +228,6 @@ __all__: list[Any] = [
     "collect",
     "first_state",
     "letter_of",
+    "outside",
     "simulate",
 ]

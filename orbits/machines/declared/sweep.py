@@ -11,6 +11,7 @@ from orbits.contacts.letters import HIT
 from orbits.contacts.wall import Wall
 from orbits.machines.declared.attractor import DeclaredAttractor, attracted
 from orbits.machines.declared.machine import Machine
+from orbits.machines.declared.simulation import outside
 from orbits.machines.declared.stepper import TWO_PI, Stepper
 
 SAMPLES = 2000  # of a motion without a period, for its extremes
@@ -88,7 +89,7 @@ def sweep(
     for value in values:
         params = machine.vector({**parameters, over: float(value)})
         stepper = Stepper(machine, params)
-        stepper.start(_outside(stepper, here), float(here[0]))
+        stepper.start(outside(stepper, here[1:], float(here[0])), float(here[0]))
         stepper.state[-1] += NUDGE
         found = attracted(stepper, transient, max_period, 0)
         here = np.concatenate([[stepper.clock], stepper.state])
@@ -97,25 +98,6 @@ def sweep(
         if progress is not None:
             progress(row)
     return rows
-
-
-def _outside(stepper: Stepper, here: np.ndarray) -> np.ndarray:
-    """The state carried on, moved out of walls that the new parameter has pushed over it."""
-    machine, state = stepper.machine, here[1:].copy()
-    stepper.state, stepper.clock = state, float(here[0])
-    stepper.modes = machine.rest_mode(stepper.params, state, stepper.clock)
-    for _ in range(20):
-        gaps = stepper.contact_values()
-        deep = [j for j, c in enumerate(machine.contacts) if isinstance(c, Wall) and gaps[j] < 0.0]
-        if not deep:
-            break
-        slopes = machine.compiled.gap_slopes(deep[0])(
-            state[None],
-            np.array([stepper.clock]),
-            machine.compiled.numbers(stepper.params, stepper.modes)[None],
-        )[0]
-        state += (1e-12 - gaps[deep[0]]) * slopes / float(slopes @ slopes)
-    return state
 
 
 def _row(value: float, found: DeclaredAttractor, state: np.ndarray) -> DeclaredRow:

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Cavity
+from orbits.cycles.identity import is_symmetric
+from orbits.simulation.replay import replay
+from orbits.words import Word
 
 MACHINE = Absorber(restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006)
 H = 0.5 * np.pi * 1.006 * 0.2 * 0.211
@@ -28,3 +31,26 @@ def test_unlike_walls_leave_unlike_room():
     reach = np.sqrt(0.25 - H**2)
     found = sorted(margin.value for margin in orbit.margins if margin.kind == "wall")
     assert found == pytest.approx([0.6 - reach, min(1.4 - reach, 0.6 + reach)], abs=1e-12)
+
+
+@pytest.mark.parametrize(("text", "amplitude"), [("LR", 0.6), ("tt", 0.5)])
+def test_multipliers_are_those_of_the_simulated_period(text, amplitude):
+    """Eigenvalues of the simulated return map; of a motion without impacts the trivial one is left out."""
+    orbit = MACHINE.orbit(text, 1, amplitude=amplitude)
+    simulated = replay(orbit, thorough=True).multipliers
+    if text == "tt":
+        simulated = np.delete(simulated, np.argmin(np.abs(simulated - 1.0)))
+    assert np.sort_complex(orbit.multipliers) == pytest.approx(np.sort_complex(simulated), abs=1e-6)
+    halves = orbit.half_multipliers**2
+    assert np.sort_complex(halves) == pytest.approx(np.sort_complex(orbit.multipliers), abs=1e-10)
+
+
+def test_a_mirror_image_after_whole_forcing_periods_is_no_symmetry():
+    """The mirror turns the forcing round, which half a period on is itself again only if that is an odd number of half turns."""
+    nodes = np.array([[0.3, 1.0], [0.3 + 2.0 * np.pi, -1.0]])
+    word = Word.parse("LR")
+    assert not is_symmetric(word, 2, nodes)
+    nodes[1, 0] = 0.3 + np.pi
+    assert is_symmetric(word, 1, nodes)
+    nodes[1, 0] = 0.3 + 3.0 * np.pi
+    assert is_symmetric(word, 3, nodes)

@@ -1,14 +1,16 @@
-"""Proved orbits with something wrong put into them: no wrong one may be proved, no wrong certificate verified.
+"""Proved orbits, special points and stretches with something wrong put into them: no wrong one may be proved, no wrong certificate verified.
 
 Run by itself for a large count: ``python -m tests.orbits.proofs.tampering 100000``.
 """
 
 import copy
+import functools
 import json
 import sys
 
 import numpy as np
 
+import contvines as cv
 from orbits import Absorber, Coupled
 from orbits.proofs.checker import Refused, check
 from orbits.proofs.obstacles import ProofError
@@ -18,8 +20,10 @@ from orbits.proofs.subjects import of_orbit
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 COUPLED = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, forcing=2.47, damping=1.0)
 LETTERS = "LRtsu"
+FELT = ("friction", "gravity", "restitution")  # numbers that move every motion tampered with
 
 
+@functools.cache
 def orbits():
     """Orbits to tamper with: real and virtual, stable and unstable, of both machines."""
     return [
@@ -88,37 +92,130 @@ def false_proof(wrong, half):
     return proof.existence and proof.real is not False
 
 
+# ------------------------------------------------------------------ special points
+@functools.cache
+def graph():
+    """A graph with a fold, a symmetry breaking and borders."""
+    seed = ABSORBER.symmetric_orbit(amplitude=0.6)
+    return cv.diagram(seed, over="amplitude", within=(0.24, 0.9), depth=1)
+
+
+@functools.cache
+def points():
+    """(problem, kind, u, value, margin) of special points, all of which are proved as they are."""
+    named = [p for p in graph().special.values() if p.kind != "end"]
+    found = [(p.problem, p.kind, p.u, float(p.value), p.margin_index) for p in named]
+    doubling = ABSORBER.orbit("LttR", 1, amplitude=1.06219817632)
+    problem = doubling.problem("amplitude", symmetric=False)
+    found.append((problem, "period-doubling", *doubling.seed(problem), None))
+    neimark = COUPLED.symmetric_orbit(frequency=1.02540971532)
+    problem = neimark.problem("frequency", symmetric=True)
+    found.append((problem, "neimark-sacker", *neimark.seed(problem), None))
+    return found
+
+
+def wrong_point(given, random):
+    """One wrong thing about a special point: its kind, its margin, a node, where it is, a number of its machine."""
+    problem, kind, u, value, margin = given
+    what = random.choice(["kind", "margin", "node", "value", "machine"])
+    if what == "margin" and margin is None:
+        what = "kind"
+    phases = problem.expand(np.array(u))[:, 0]
+    if what == "node" and np.min(np.diff(phases), initial=1.0) < 1e-3:
+        what = "value"  # a flight that has shrunk to nothing is left out, its node is of no account
+    if what == "kind":
+        kinds = ["fold", "symmetry-breaking", "period-doubling", "neimark-sacker"]
+        kind = random.choice([other for other in kinds if other != kind])
+        margin = None
+    elif what == "margin":
+        others = [
+            m for m in range(problem.n_margins) if 1 < abs(m // 4 - margin // 4) < problem.n_margins // 4 - 1
+        ]
+        margin = int(random.choice(others or [(margin + 1) % 4 + 4 * (margin // 4)]))
+        kind = problem.margin_kind(margin)
+    elif what == "node":
+        u = np.array(u)
+        place = random.integers(u.size)
+        u[place] += random.choice([-1, 1]) * 10.0 ** random.uniform(-4.5, -0.3) * (1 + abs(u[place]))
+    elif what == "value":
+        value *= 1 + random.choice([-1, 1]) * 10.0 ** random.uniform(-4.5, -0.5)
+    else:
+        name = random.choice(["friction", "gravity", "restitution"])
+        size = 1 + random.choice([-1, 1]) * 10.0 ** random.uniform(-2.5, -0.7)
+        problem = problem.against(problem.parameter, {name: problem.parameters[name] * size})
+    return what, (problem, kind, u, value, margin)
+
+
+def false_point(wrong):
+    """Whether a wrong special point is proved."""
+    problem, kind, u, value, margin = wrong
+    try:
+        proof = problem.prove(kind, u, value, margin=margin)
+    except ProofError:
+        return False
+    return proof.existence and proof.kind == kind
+
+
+# ------------------------------------------------------------------ certificates
+@functools.cache
 def certificates():
-    """True certificates to tamper with, small ones."""
-    return [
-        json.loads(json.dumps(of_orbit(orbit).certificate())) for orbit in (orbits()[i] for i in (0, 1, 3, 5))
-    ]
+    """True certificates to tamper with, small ones: orbits, special points of every kind, a stretch of a branch."""
+    proofs = [of_orbit(orbit) for orbit in (orbits()[i] for i in (0, 1, 3, 5))]
+    proofs += [problem.prove(kind, u, p, margin=margin) for problem, kind, u, p, margin in points()]
+    (stretch,) = (p for p in graph()["B1"].prove(within=(0.592, 0.6)).pieces if p.stable)
+    return [json.loads(json.dumps(proof.certificate())) for proof in [*proofs, stretch]]
 
 
 def wrong_certificate(given, random):
-    """One wrong thing in a certificate: a claim, a node, a radius, a parameter, the word."""
+    """One wrong thing in a certificate: a claim, a box, a parameter, the word, what kind of point it is."""
     wrong = copy.deepcopy(given)
-    kind = random.choice(
-        ["real", "stable", "node", "radius", "parameter", "letter", "mode", "half", "periods"]
-    )
+    tiles = wrong["boxes"][1::2]
+    kinds = ["real", "node", "radius", "parameter", "letter", "mode", "half", "periods", "frictionless"]
+    kinds += ["stable"] if wrong["claims"]["stable"] is not None else []
+    kinds += ["slope", "width", "missing", "end", "exponent"] if tiles else []
+    kinds += ["kind"] if len(wrong["boxes"]) == 3 else []
+    kinds += ["condition"] if wrong["kind"] == "border" else []
+    kind = str(random.choice(kinds))
+    box = wrong["boxes"][random.integers(len(wrong["boxes"]))]
+    node = box["nodes"][random.integers(len(box["nodes"]))]
+    triple = node[random.integers(len(node))]
     if kind in ("real", "stable"):
         wrong["claims"][kind] = not wrong["claims"][kind]
-        if kind == "real" and not wrong["claims"]["real"]:
-            wrong["broken"] = [random.choice(["approach", "flight", "duration", "wall"]), 0]
-    elif kind in ("node", "radius"):
-        node = wrong["nodes"][random.integers(len(wrong["nodes"]))]
-        pair = node[random.integers(len(node))]
-        if kind == "node":  # by more than the radius
-            pair[0] = str(float(pair[0]) + random.choice([-1, 1]) * 10.0 ** random.uniform(-12, 0))
-        else:
-            pair[1] = random.choice(["0", "-" + pair[1], "1e-60"])  # a larger ball may be true
-    elif kind == "parameter":
-        name = random.choice(list(wrong["parameters"]))
-        if name == "mass_ratio":
-            name = "friction"
-        wrong["parameters"][name] = str(
-            float(wrong["parameters"][name]) * (1 + 10.0 ** random.uniform(-12, -1))
+    elif kind == "node":  # by more than the radius
+        size = 10.0 ** random.uniform(0.5, 5) * (float(triple[2]) + 1e-13)
+        triple[0] = repr(float(triple[0]) + random.choice([-1, 1]) * size)
+    elif kind == "radius":
+        triple[2] = random.choice(["0", "-" + triple[2], "1e-60"]) if triple[2] != "0" else "1e-9"
+    elif kind == "slope":
+        triple = random.choice(tiles)["nodes"][0][-1]
+        triple[1] = repr(
+            float(triple[1]) * (1 + random.choice([-1, 1]) * 10.0 ** random.uniform(-1, 1)) + 1e-3
         )
+    elif kind == "width":
+        tile = random.choice(tiles)
+        tile["half_width"] = repr(float(tile["half_width"]) * random.choice([0.0, 0.5, 30.0]))
+    elif kind == "missing":
+        del wrong["boxes"][random.integers(1, len(wrong["boxes"]) - 1)]
+    elif kind == "end":  # the same orbit on both sides
+        i = 2 * random.integers(len(tiles))
+        wrong["boxes"][i] = copy.deepcopy(wrong["boxes"][i + 2])
+    elif kind == "exponent":
+        (moved,) = (entry for entry in wrong["parameters"].values() if entry[2])
+        moved[2] = int(random.choice([0, -1, 2, 3]))
+    elif kind == "kind":
+        names = ["fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "border", "piece", "orbit"]
+        wrong["kind"] = str(random.choice([name for name in names if name != wrong["kind"]]))
+        if random.integers(2):
+            tiles[0]["kind"] = wrong["kind"]
+    elif kind == "condition":
+        what, i, side = wrong["boxes"][1]["condition"]
+        wrong["boxes"][1]["condition"] = [what, (i + 1) % len(wrong["events"]), side]
+    elif kind == "parameter":
+        name = str(
+            random.choice([n for n, entry in wrong["parameters"].items() if not entry[2] and n in FELT])
+        )
+        size = float(wrong["parameters"][name][0]) * 10.0 ** random.uniform(-9, -1)
+        wrong["parameters"][name][0] = repr(float(wrong["parameters"][name][0]) + size)
     elif kind == "letter":
         i = random.integers(len(wrong["events"]))
         other = random.choice([letter for letter in LETTERS if letter != wrong["events"][i]])
@@ -126,8 +223,8 @@ def wrong_certificate(given, random):
     elif kind == "mode":
         i = random.integers(len(wrong["modes"]))
         wrong["modes"][i] = int(random.choice([m for m in (-1, 0, 1) if m != wrong["modes"][i]]))
-    elif kind == "half":
-        wrong["half"] = not wrong["half"]
+    elif kind in ("half", "frictionless"):
+        wrong[kind] = not wrong[kind]
     else:
         wrong["periods"] += int(random.choice([1, 2, -2]))
     return kind, wrong
@@ -142,27 +239,36 @@ def verified(wrong):
     return True
 
 
-def main(count):
-    """Tamper `count` times, one in a hundred times with a certificate; print how many were proved or verified."""
-    random = np.random.default_rng(7)
-    sound, papers = orbits(), certificates()
+def trial(number, random):
+    """One wrong input, every fiftieth a certificate, every tenth a special point: what was wrong, the input, whether it passed."""
+    if number % 50 == 0:
+        papers = certificates()
+        kind, wrong = wrong_certificate(papers[random.integers(len(papers))], random)
+        return kind, wrong, verified(wrong)
+    if number % 10 == 0:
+        found = points()
+        kind, wrong = wrong_point(found[random.integers(len(found))], random)
+        return kind, wrong, false_point(wrong)
+    sound = orbits()
+    orbit = sound[random.integers(len(sound))]
+    kind, wrong = wrong_input(arguments(orbit), random)
+    return kind, wrong, false_proof(wrong, orbit.symmetric and bool(random.integers(2)))
+
+
+def main(count, seed=7):
+    """Tamper `count` times; print how many were proved or verified."""
+    random = np.random.default_rng(seed)
     found = 0
-    for trial in range(count):
-        if trial % 100 == 0:
-            kind, wrong = wrong_certificate(papers[random.integers(len(papers))], random)
-            bad = verified(wrong)
-        else:
-            orbit = sound[random.integers(len(sound))]
-            kind, wrong = wrong_input(arguments(orbit), random)
-            bad = false_proof(wrong, orbit.symmetric and bool(random.integers(2)))
+    for number in range(count):
+        kind, wrong, bad = trial(number, random)
         if bad:
             found += 1
-            print(trial, kind, {k: v for k, v in wrong.items() if k != "nodes"}, flush=True)
-        if trial % 5000 == 0:
-            print(f"{trial} tried, {found} false", flush=True)
+            print(number, kind, wrong, flush=True)
+        if number % 5000 == 0:
+            print(f"{number} tried, {found} false", flush=True)
     print(f"{count} wrong inputs, {found} false proofs")
     return found
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]))
+    sys.exit(main(*(int(word) for word in sys.argv[1:])) > 0)

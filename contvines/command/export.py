@@ -1,0 +1,63 @@
+"""`contvines export`: a stored graph for other programs."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from contvines.command.options import FileArgument, TrustOption
+from contvines.command.stored import say_unfinished, say_what_lacks
+
+
+class Format(StrEnum):
+    """What `export` writes."""
+
+    csv = "csv"
+    json = "json"
+    graphml = "graphml"
+    mat = "mat"
+
+
+def export(
+    file: FileArgument,
+    to: Annotated[Format, typer.Option("--to", help="The format.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
+    ] = None,
+    trust: TrustOption = False,
+) -> None:
+    """Write a result for other programs: csv, json, graphml or mat.
+
+    csv has a row per point of every branch: the unknowns u0, u1 ..., then
+    multipliers, word, periods and all measures (empty where not defined).
+    mat has the same, a struct per branch; json and graphml are summaries.
+
+    The unknowns follow the events in the word's order: at an impact the
+    forcing's phase (radians) and the absorber's velocity after it (times
+    1 + mass ratio, as B_post); at a turn, a stick and its slip the phase and
+    the displacement w. In the coupled machine v and v_rate follow each pair.
+    A symmetric branch has those of the first half of its word; the other half
+    is their mirror image. The stuck absorber has no events: its u are the
+    oscillator's sine and cosine (0 in the reduced machine).
+    """
+    from contvines.command.compose import beside
+    from contvines.export import check_target
+    from contvines.export import export as write
+    from contvines.store import load
+
+    target = output or beside(file, f".{to.value}")
+    check_target(target, to.value)
+    measures = to in (Format.csv, Format.mat)
+    graph = load(file, problems=measures, trust=trust)
+    if hasattr(graph, "loci"):
+        from contvines.export.charts import export_chart
+
+        typer.echo(str(export_chart(graph, to.value, target)))
+        return
+    if measures:
+        say_what_lacks(graph)
+    if not graph.finished:
+        say_unfinished(file)
+    typer.echo(str(write(graph, to.value, target)))

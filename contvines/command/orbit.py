@@ -1,0 +1,149 @@
+"""`contvines orbit`: one orbit of a stored graph, or the start of a study."""
+
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from contvines.command.options import JsonOption, TrustOption
+from contvines.graph.table import with_unit
+
+
+def orbit(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE.vines|STUDY.toml", help="A result, or a study to try its start.")
+    ],
+    label: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[LABEL]", help="With FILE.vines: a special point (SB1), or a point of a branch (B1:12)."
+        ),
+    ] = None,
+    json: JsonOption = False,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw phase portrait and history.")
+    ] = None,
+    trust: TrustOption = False,
+) -> None:
+    """One orbit: its events, multipliers and margins."""
+    if plot is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(plot)
+    found = _orbit(file, label, trust)
+    if json:
+        from contvines.export import json_text
+
+        typer.echo(json_text(_plain(found)))
+    else:
+        typer.echo(_describe(found))
+    if plot is not None:
+        from contvines.command.compose import say
+        from contvines.plots.figures import save_figure
+        from contvines.plots.portrait import plot_portrait
+
+        save_figure(plot_portrait(found), plot)
+        say(f"drawn in {plot}")
+
+
+def _orbit(file: Path, label: str | None, trust: bool) -> Any:
+    from contvines.command.study import is_database
+
+    if not is_database(file) and file.suffix == ".toml":
+        from contvines.command.compose import checked_study, first_orbit
+
+        if label is not None:
+            raise ValueError(
+                f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
+            )
+        return first_orbit(checked_study(file))
+    from contvines.problems.registry import without_problem
+    from contvines.store import load
+
+    graph = load(file, trust=trust)
+    if label is None:
+        raise ValueError(
+            f"which orbit of {file}? Give one of the labels {', '.join([*graph.special, *graph.branches])}."
+        )
+    name, _, place = label.partition(":")
+    thing = graph[name]
+    if hasattr(thing, "kind") and not place:
+        if thing.problem is None:
+            raise ValueError(without_problem(name, graph.branches[thing.branch].description))
+        return thing.orbit
+    if hasattr(thing, "kind"):
+        raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
+    last = len(thing) - 1
+    if place and not (place.isdigit() and int(place) <= last):
+        raise ValueError(
+            f"{label}: the points of {name} are numbered from 0 to {last}; {name}:{last // 2} would do."
+        )
+    return thing.orbit(int(place or 0))
+
+
+def _plain(found: Any) -> dict[str, Any]:
+    if hasattr(found, "to_dict"):
+        return found.to_dict()
+    names = [n for n in ("parameter", "value", "u", "points") if hasattr(found, n)]
+    return {n: getattr(found, n) for n in names}
+
+
+# which measure's unit an event's number has
+EVENTS = {
+    "B_pre": "B_pre",
+    "B_post": "B_post",
+    "w": "max_abs_w",
+    "w_rate": "B",
+    "v": "max_abs_w",
+    "v_rate": "B",
+}
+
+
+def _describe(found: Any) -> str:
+    """An orbit as a readable text, from the same object that --json prints."""
+    about = _plain(found)
+    lines = []
+    if "word" in about:
+        nature = "real" if about["real"] else "virtual: no machine follows it"
+        lines.append(f"{about['word'] or about.get('rest', 'stuck')}  k = {about['periods']}  ({nature})")
+    parameters = about.get("parameters", {})
+    if parameters:
+        units = about.get("units", {})
+        lines.append(
+            "  " + "  ".join(f"{k} = {v:.10g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+        )
+    nodes = about.get("nodes", [])
+    if nodes:
+        names = list(nodes[0])
+        table = [
+            [
+                with_unit(name, EVENTS.get(name) and about.get("units", {}).get(EVENTS[name]))
+                for name in names
+            ],
+            *[[_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
+        ]
+        widths = [max(len(row[i]) for row in table) for i in range(len(names))]
+        lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths)) for row in table]
+    if "multipliers" in about:
+        pairs = about["multipliers"]
+        text = ", ".join(
+            _number(re) if _number(im) == "0" else f"{_number(re)}{im:+.10g}i" for re, im in pairs
+        )
+        if any(math.isnan(part) for pair in pairs for part in pair):
+            text = "not defined at a graze"
+        lines.append(f"  multipliers: {text or 'none'}")
+    if about.get("margins"):
+        smallest = min(about["margins"], key=lambda m: m["value"])
+        lines.append(
+            f"  smallest margin: {smallest['value']:.6g} ({smallest['kind']}, segment {smallest['segment']}) "
+            f"of {len(about['margins'])}"
+        )
+    if not lines:
+        lines = [f"{k}: {v}" for k, v in about.items()]
+    return "\n".join(lines)
+
+
+def _number(value: float) -> str:
+    """Ten digits; what is only rounding is 0."""
+    return "0" if abs(value) < 1e-15 else f"{value:.10g}"

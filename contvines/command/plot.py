@@ -1,0 +1,163 @@
+"""`contvines plot`: pictures of a stored graph."""
+
+import math
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from contvines.command.compare import CompareOption, check_compared, compared
+from contvines.command.options import FileArgument, TrustOption
+from contvines.command.stored import say_unfinished, say_what_lacks
+
+
+class Picture(StrEnum):
+    """What `plot` draws."""
+
+    diagram = "diagram"
+    multipliers = "multipliers"
+    network = "network"
+
+
+class Colors(StrEnum):
+    """What a colour of a diagram stands for."""
+
+    branch = "branch"
+    word = "word"
+    stability = "stability"
+
+
+def plot(
+    file: FileArgument,
+    x: Annotated[
+        str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")
+    ] = None,
+    y: Annotated[
+        str | None,
+        typer.Option(
+            "-y",
+            help="Measure on the y axis; by default what the machine is judged by: B (velocity at the first impact) "
+            "of the absorber, max_abs_q1 of the coupled machine, the first measure of other problems.",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
+    ] = None,
+    kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
+    compare: CompareOption = None,
+    branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
+    xlim: Annotated[
+        tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
+    ] = None,
+    ylim: Annotated[
+        tuple[float, float] | None, typer.Option("--ylim", metavar="LOW HIGH", help="Limits of the y axis.")
+    ] = None,
+    size: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--size", metavar="WIDTH HEIGHT", help="Inches; 3.4 2.4 is a column of a journal."),
+    ] = None,
+    color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
+    words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
+    legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,
+    style: Annotated[
+        str | None, typer.Option("--style", help="A style or style sheet of matplotlib's, before ours.")
+    ] = None,
+    trust: TrustOption = False,
+) -> None:
+    """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
+    from contvines.command.compose import beside
+    from contvines.plots.figures import check_picture, check_style, save_figure
+    from contvines.store import load
+
+    asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
+    asked |= {"--compare": compare[0] if compare else None}
+    check_compared(compare, True)
+    asked |= {"--no-legend": None if legend else "", "--branch": branch}
+    _refuse_ignored(kind, asked)
+    target = output or beside(file, ".png")
+    check_picture(target)
+    check_style(style)
+    for name, pair in (("--xlim", xlim), ("--ylim", ylim)):
+        if pair is not None and not (math.isfinite(sum(pair)) and pair[0] < pair[1]):
+            raise ValueError(
+                f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
+            )
+    if size is not None and not all(1.0 <= side <= 60.0 for side in size):
+        raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
+    graph = load(file, trust=trust)
+    if hasattr(graph, "loci"):
+        from contvines.plots.chart import plot_chart
+
+        _refuse_of_chart(file, kind, asked)
+        save_figure(plot_chart(graph, figsize=size, style=style), target)
+        typer.echo(str(target))
+        return
+    say_what_lacks(graph)
+    if not graph.finished:
+        say_unfinished(file)
+    if not graph.branches:
+        raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
+    if kind is Picture.diagram:
+        figure = compared(
+            graph,
+            compare,
+            x,
+            y,
+            words=words,
+            color=(color or Colors.branch).value,
+            legend=legend,
+            xlim=xlim,
+            ylim=ylim,
+            figsize=size,
+            style=style,
+        )
+    elif kind is Picture.network:
+        from contvines.plots.network import plot_network
+
+        figure = plot_network(graph, figsize=size, style=style)
+    else:
+        from contvines.plots.multipliers import plot_multipliers
+
+        label = branch or next(iter(graph.branches))
+        if label not in graph.branches:
+            raise ValueError(
+                f"--branch {label}: there is no such branch in {file}; it has {', '.join(graph.branches)}."
+            )
+        figure = plot_multipliers(graph.branches[label], figsize=size, style=style)
+    save_figure(figure, target)
+    typer.echo(str(target))
+
+
+def _refuse_of_chart(file: Path, kind: Picture, options: dict[str, Any]) -> None:
+    """Options that the picture of a chart would ignore are refused."""
+    for name, value in {**options, "--kind": None if kind is Picture.diagram else kind.value}.items():
+        if value is not None:
+            raise ValueError(
+                f"{name}{_given(value)}: {file} holds a chart, whose picture has no use for it; leave {name} out."
+            )
+
+
+def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
+    """Options that this kind of picture would ignore are refused."""
+    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend", "--compare")
+    takes = {
+        Picture.diagram: (of_diagrams, "draws all branches"),
+        Picture.multipliers: (("--branch",), "draws over the parameter"),
+        Picture.network: ((), "draws boxes and arrows"),
+    }
+    known, why = takes[kind]
+    for name, value in options.items():
+        if value is not None and name not in known:
+            other = Picture.multipliers if name == "--branch" else Picture.diagram
+            raise ValueError(
+                f"{name}{_given(value)}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
+                f"or choose --kind {other.value}."
+            )
+
+
+def _given(value: Any) -> str:
+    """An option's value as it was typed; nothing for a switch."""
+    if isinstance(value, bool) or value == "":
+        return ""
+    return " " + (" ".join(f"{v:g}" for v in value) if isinstance(value, tuple) else str(value))

@@ -1,0 +1,49 @@
+"""Graphs, branches and special points as HTML, for notebooks."""
+
+from __future__ import annotations
+
+from ..branches.branch import Branch
+from ..branches.special_point import SpecialPoint
+from .graph import Graph
+from .table import Table, branches_table, describe, ends, number, special_table, title
+
+
+def graph_page(graph: Graph) -> str:
+    """Both tables of a graph."""
+    parts = [f"<p>{title(graph)}</p>", branches_table(graph).html()]
+    return "".join([*parts, special_table(graph).html()] if graph.special else parts)
+
+
+def branch_page(branch: Branch) -> str:
+    """What a branch is, line by line."""
+    intervals = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in branch.stable_intervals()) or "-"
+    low, high = branch.range
+    rows = [
+        ("what", describe(branch)),
+        (branch.parameter, f"{number(low, 10)}..{number(high, 10)}"),
+        ("stable", intervals),
+        ("points", str(len(branch))),
+        ("from .. to", ends(branch)),
+        ("special points", ", ".join(label for _, label in branch.marks) or "-"),
+    ]
+    return Table((branch.label, "branch"), rows).html()
+
+
+def point_page(point: SpecialPoint) -> str:
+    """What a special point is, line by line."""
+    sizes = ", ".join(
+        number(m.real, 8) + (f" {'+' if m.imag > 0 else '-'} {number(abs(m.imag), 8)}i" if m.imag else "")
+        for m in point.multipliers[:8]
+    )
+    rows = [
+        (
+            "kind",
+            " ".join(filter(None, (point.criticality or "", point.kind, "" if point.real else "(virtual)"))),
+        ),
+        ("on", point.branch),
+        (point.parameter, number(point.value, 14)),
+        ("located to", number(point.location_error, 2)),
+        ("multipliers", sizes or "-"),
+        *([("note", point.note)] if point.note else []),
+    ]
+    return Table((point.label, "special point"), rows).html()

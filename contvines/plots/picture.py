@@ -1,0 +1,209 @@
+"""One graph on some axes: its curves, marks and labels, which are laid out again when the limits change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..events.kinds import KINDS
+from ..graph.measures import measure_at, measured, undrawn
+from ..graph.shortening import short_word
+from .curves import Curve
+from .figures import scale
+from .labels import Label, grouped, place_labels
+from .legends import Key, hold_legend
+from .style import LINES, MARKS, PLAIN, STATE_COLORS, STATES, WIDTHS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..graph.graph import Graph
+
+TEXT = 0.85  # size of labels in units of font.size
+
+
+class Picture:
+    """One graph on some axes: its curves, marks and labels, which are laid out again when the limits change."""
+
+    def __init__(self, axes: Axes, graph: Graph, x: str, y: str, color: str, name: str | None) -> None:
+        import matplotlib as mpl
+
+        self.axes, self.graph, self.x, self.y, self.color = axes, graph, x, y, color
+        known = [p for p in getattr(axes, "contvines_pictures", []) if p.axes is axes]
+        axes.contvines_pictures = [*known, self]  # type: ignore[attr-defined]
+        self.before, self.after = (f"{name} ", "") if name else ("", "′" * len(known))
+        self.first_color = sum(len(p.graph.branches) for p in known)
+        self.rc = mpl.rcParams.copy()
+        self.key = Key()
+        self.curves: list[Curve] = []
+        self.tint: dict[str, str] = {}
+        self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
+        self.written: list[Any] = []
+        self.options: tuple[Any, bool, Any] = (True, False, [])
+        if (remark := undrawn(graph, x, y)) != "":
+            self.key.remarks.append(remark)
+
+    def draw_branches(self) -> None:
+        import matplotlib as mpl
+
+        width = mpl.rcParams["lines.linewidth"]
+        colors = [entry.get("color", "black") for entry in mpl.rcParams["axes.prop_cycle"]]
+        words: dict[str, str] = {}
+        for i, branch in enumerate(self.graph.branches.values()):
+            tint = colors[(self.first_color + i) % len(colors)]
+            if self.color == "word":
+                word = str(branch.description.get("word") or branch.description.get("name", ""))
+                tint = words.setdefault(short_word(word, 24), colors[len(words) % len(colors)])
+            self.tint[branch.label] = tint
+            (
+                measured(branch, self.x),
+                measured(branch, self.y),
+            )  # refused in a sentence before anything is drawn
+            for first, last, stable in branch.pieces():
+                state = ("stable" if stable else "unstable") if branch.real else "virtual"
+                self.key.states.setdefault(state, None)
+                shade = STATE_COLORS[state] if self.color == "stability" else tint
+                if self.color == "stability":
+                    self.key.colors[STATES[state]] = shade
+                curve = Curve(branch, self.x, self.y, first, last)
+                curve.draw(
+                    self.axes,
+                    linestyle=LINES[state],
+                    color=shade,
+                    linewidth=WIDTHS[state] * width,
+                    zorder=3 if state == "stable" else 2.5,
+                )
+                self.curves.append(curve)
+        if self.color == "word":
+            self.key.colors |= words
+
+    def draw_points(self, ends: bool) -> None:
+        import matplotlib as mpl
+
+        size = mpl.rcParams["lines.markersize"]
+        for point in self.graph.special.values():
+            branch = self.graph.branches.get(point.branch)
+            if branch is None or (point.kind == "end" and not ends):
+                continue
+            px, py = measure_at(branch, point, self.x), measure_at(branch, point, self.y)
+            if not (np.isfinite(px) and np.isfinite(py)):
+                continue  # such as B of a motion without impacts
+            mark = MARKS.get(point.kind, PLAIN)
+            tint = "0.15" if self.color == "stability" else self.tint[branch.label]
+            self.axes.plot(
+                [px],
+                [py],
+                linestyle="none",
+                marker=mark.marker,
+                color=tint,
+                markersize=size,
+                markerfacecolor=tint if mark.filled else "white",
+                markeredgecolor="black" if mark.filled else tint,
+                markeredgewidth=(0.5 if mark.filled else 1.3) * size / 6.0,
+                zorder=6,
+            )
+            self.spots.append((point.label, point.kind, px, py))
+
+    def key_of_marks(self) -> None:
+        """Say in the legend what the marks mean that can be seen."""
+        for _, kind, px, py in self.spots:
+            if self._inside(px, py):
+                mark = MARKS.get(kind, PLAIN)
+                self.key.marks.setdefault(mark.name, mark)
+
+    def refine(self) -> None:
+        for curve in self.curves:
+            curve.refine(self.axes)
+
+    def obstacles(self) -> np.ndarray:
+        """Points close together along all curves on these axes, so that a label cannot slip between two of them."""
+        found = [np.empty((0, 2))]
+        for line in self.axes.lines:
+            xy = np.asarray(line.get_xydata(), dtype=float)
+            if len(xy) > 1 and line.get_transform().contains_branch(self.axes.transData):
+                page = self.axes.transData.transform(xy)
+                steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T))
+                total = np.concatenate([[0.0], np.cumsum(steps)])
+                at = np.linspace(0.0, total[-1], int(np.clip(total[-1] / 1.5, 2, 20000)))
+                found.append(np.column_stack([np.interp(at, total, v) for v in xy.T]))
+        return np.vstack(found)
+
+    def write_labels(self, labels: bool | Sequence[str], words: bool, taken: list[Any]) -> None:
+        """Lay labels out for the limits that the axes have now."""
+        self.options = (labels, words, taken)
+        for artist in self.written:
+            artist.remove()
+        chosen = None if isinstance(labels, bool) else list(labels)
+        figure = self.axes.get_figure(root=True)
+        assert figure is not None
+        size = TEXT * self.rc["font.size"] * (1.0 if self.rc["font.size"] < 9.0 else scale(figure))
+        places = {kind: i for i, kind in enumerate(KINDS)}  # whose labels are named first
+        wanted = [
+            Label(self._named(label), px, py, "black", places.get(kind, len(places)), chosen is not None)
+            for label, kind, px, py in self.spots
+            if chosen is None or label in chosen
+        ]
+        wanted = [entry for entry in wanted if self._inside(entry.x, entry.y)]
+        wanted = wanted if chosen is not None else grouped(self.axes, wanted)
+        others = [p for p in getattr(self.axes, "contvines_pictures", []) if p is not self]
+        boxes = [a.get_window_extent() for p in others for a in p.written]
+        taken = [*taken, *((b.x0, b.y0, b.x1, b.y1) for b in boxes)]
+        wanted += self._middles(words, chosen)
+        self.written, left_out = place_labels(self.axes, wanted, self.obstacles(), size=size, taken=taken)
+        self.left_out = left_out
+
+    def follow_zoom(self) -> None:
+        """Lay out again when the limits of the axes change."""
+
+        def again(_: Any) -> None:
+            import matplotlib as mpl
+
+            labels, words, _ = self.options
+            with mpl.rc_context(self.rc):
+                self.refine()
+                self.write_labels(labels, words, hold_legend(self.axes))
+
+        for change in ("xlim_changed", "ylim_changed"):
+            self.axes.callbacks.connect(change, again)
+
+    def _named(self, label: str) -> str:
+        return f"{self.before}{label}{self.after}"
+
+    def _inside(self, x: float, y: float) -> bool:
+        (x0, x1), (y0, y1) = sorted(self.axes.get_xlim()), sorted(self.axes.get_ylim())
+        return x0 <= x <= x1 and y0 <= y <= y1
+
+    def _middles(self, words: bool, chosen: list[str] | None) -> list[Label]:
+        """A point halfway along what is seen of each branch, for its name."""
+        if len(self.graph.branches) < 2 and not words and chosen is None:
+            return []
+        found: dict[str, Label] = {}
+        lengths: dict[str, float] = {}
+        for curve in self.curves:
+            label = curve.branch.label
+            if not curve.lines or (chosen is not None and label not in chosen):
+                continue
+            xy = np.asarray(curve.lines[0].get_xydata(), dtype=float)
+            page = self.axes.transData.transform(xy)
+            box = self.axes.bbox
+            inside = (
+                (box.x0 <= page[:, 0])
+                & (page[:, 0] <= box.x1)
+                & (box.y0 <= page[:, 1])
+                & (page[:, 1] <= box.y1)
+            )
+            steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T)) * (inside[1:] & inside[:-1])
+            total = np.concatenate([[0.0], np.cumsum(steps)])
+            if total[-1] < 12 or total[-1] <= lengths.get(label, 0.0):
+                continue
+            lengths[label] = total[-1]
+            i = int(np.searchsorted(total, 0.5 * total[-1]))  # never at a gap: nothing is added there
+            text = self._named(label)
+            if words:
+                text = short_word(str(curve.branch.description.get("word") or "stuck"), 24)
+            found[label] = Label(
+                text, float(xy[i, 0]), float(xy[i, 1]), self.tint[label], 0, chosen is not None, True
+            )
+        return list(found.values())

@@ -1,0 +1,37 @@
+"""What some starts settle on, as atlases and basins are told of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One attractor as `contvines` is told of it.
+
+    Attributes
+    ----------
+    kind : str
+        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow``, ``escaped``, or
+        ``impossible`` (the start lies inside a wall).
+    word : str
+    periods : int
+    problem, u : Problem and float array, or None
+        The motion as a solution, where it has a word.
+    exponent, error : float
+        Largest Lyapunov exponent per forcing period and its standard error; nan for motions that recur.
+    state : float array (S,)
+        From which a simulation goes on.
+    """
+
+    kind: str
+    word: str = ""
+    periods: int = 0
+    problem: Any = field(default=None, repr=False)
+    u: np.ndarray | None = field(default=None, repr=False)
+    exponent: float = float("nan")
+    error: float = float("nan")
+    state: np.ndarray | None = field(default=None, repr=False)

@@ -1,0 +1,118 @@
+"""What happens at a special point, shown by two orbits on both sides of it and a tile that joins them.
+
+The defining system (`orbits.proofs.special`) encloses the point to thirty digits. Its certificate says the same so that less mathematics is
+needed to check it: one orbit where the multiplier or the margin has one sign, one where it has the other, both on one curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from decimal import Decimal, localcontext
+from typing import Any
+
+from orbits.proofs.balls import ball, texts
+from orbits.proofs.certificates import Entry, orbit_box, resting_box, tile_box
+from orbits.proofs.enclosing import Box, enclose, refine
+from orbits.proofs.equations import Motif, System
+from orbits.proofs.obstacles import Obstacle, Remedy, Step
+from orbits.proofs.special import Normal
+from orbits.proofs.stability import basis_texts
+from orbits.proofs.tiles import Along, Tile, lay
+from orbits.proofs.varying import Varying
+
+APART = "2e-11"  # of either orbit from the special point
+TURN = "4e-6"  # the same in the unknown that goes on where the parameter turns
+WIDTH = 1.25  # of the tile
+
+
+def crossing(
+    motif: Motif,
+    p: Mapping[str, Any],
+    varying: Varying,
+    z: Sequence[Sequence[Any]],
+    value: Any,
+    bits: int,
+    turn: Normal | None = None,
+) -> list[Entry]:
+    """The chain orbit, tile, orbit about a special point.
+
+    Parameters
+    ----------
+    z, value : the point's nodes (with an eigenvector where there is one), and the parameter there.
+    turn : Normal, optional
+        At a fold the unknown along which the branch goes on.
+
+    Raises
+    ------
+    Obstacle
+        If one of the three is not proved, or the orbits do not lie in the tile.
+    """
+    n = motif.node
+    nodes = [list(node[:n]) for node in z]
+    center = texts(value.mid(), 40)[0]
+    if turn is None:
+        ends = [_shifted(center, sign, APART) for sign in (-1, 1)]
+        if not len(motif):
+            half = f"{float(APART) * WIDTH:.3g}"
+            return [
+                resting_box(motif, ends[0]),
+                resting_box(motif, center, half),
+                resting_box(motif, ends[1]),
+            ]
+        along, half, starts = Along(motif, p, varying, None, ball(center)), APART, [nodes, nodes]
+    else:
+        place = turn.block, turn.component
+        center, half = texts(nodes[place[0]][place[1]].mid(), 40)[0], TURN
+        along = Along(motif, p, varying, place, ball(_shifted(center, 1, TURN)))
+        sides = [
+            [[a + b * ball(TURN) * sign for a, b in zip(node[:n], node[n:])] for node in z]
+            for sign in (-1, 1)
+        ]
+        _, (there,) = refine(along, sides[1], [value], bits)
+        ends, starts = [texts(there.mid(), 40)[0]] * 2, sides
+        along.at = ball(center)
+    tile = lay(along, center, f"{float(half) * WIDTH:.3g}", nodes, value)
+    if tile is None:
+        raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
+    boxes = [orbit_at(motif, p, varying, end, start, bits) for end, start in zip(ends, starts)]
+    if not all(tile.holds(end, box) for end, box in zip(ends, boxes)):
+        raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
+    one, other = (orbit_entry(motif, p, varying, end, box) for end, box in zip(ends, boxes))
+    return [one, tile_box(motif, _with_basis(motif, p, varying, tile)), other]
+
+
+def orbit_at(
+    motif: Motif,
+    p: Mapping[str, Any],
+    varying: Varying,
+    value: str,
+    start: Sequence[Sequence[Any]],
+    bits: int,
+) -> Box:
+    """The orbit near `start` at a value of the parameter.
+
+    Raises
+    ------
+    Obstacle
+    """
+    system = System(motif, {**p, **varying.at(ball(value))})
+    z, _ = refine(system, start, [], bits)
+    return enclose(system, z, [], bits)
+
+
+def orbit_entry(motif: Motif, p: Mapping[str, Any], varying: Varying, value: str, box: Box) -> Entry:
+    """The orbit for a certificate, with a basis that shows its multipliers plainly."""
+    system = System(motif, {**p, **varying.at(ball(value))})
+    return orbit_box(motif, box, value, basis_texts(system, box.balls()[0]))
+
+
+def _with_basis(motif: Motif, p: Mapping[str, Any], varying: Varying, tile: Tile) -> Tile:
+    system = System(motif, {**p, **varying.at(tile.values())})
+    return replace(tile, basis=basis_texts(system, tile.balls()))
+
+
+def _shifted(center: str, sign: int, distance: str) -> str:
+    with localcontext() as context:
+        context.prec = 80
+        return str(Decimal(center) + sign * Decimal(distance)).lower()

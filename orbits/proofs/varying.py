@@ -1,0 +1,38 @@
+"""The parameter that varies, and the machine's numbers that move with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from orbits.proofs.balls import ball
+from orbits.proofs.jets import power
+
+
+@dataclass(frozen=True)
+class Varying:
+    """A parameter, and what follows it: number j is ``factor * parameter**exponent``.
+
+    Attributes
+    ----------
+    name : str
+        As people call it; for a machine in physical units a quantity, counted in its unit.
+    numbers : dict of str to (str, int or float)
+        By the machine's number: the factor, an exact decimal, and the exponent.
+    """
+
+    name: str
+    numbers: Mapping[str, tuple[str, int | float]]
+
+    @classmethod
+    def single(cls, name: str) -> Varying:
+        """A parameter that is one of the machine's numbers itself."""
+        return cls(name, {name: ("1", 1)})
+
+    def at(self, value: Any) -> dict[str, Any]:
+        """The numbers that move, at a value of the parameter (a ball or a jet)."""
+        return {
+            number: power(value, exponent) if factor == "1" else ball(factor) * power(value, exponent)
+            for number, (factor, exponent) in self.numbers.items()
+        }

@@ -1,0 +1,94 @@
+"""Sparse problems against a straight script with scipy.sparse: two-dimensional Bratu on n by n inner points.
+
+    python -m tests.benchmarks.large [n]
+
+The script does what a point takes: two factorisations of Newton's method in a bordered system by block elimination, no
+location of anything, no stability. Printed are processor seconds a point, their ratios, and the largest memory.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+import contvines as cv
+
+
+def bratu(n: int) -> tuple[Any, Any, Any]:
+    """F, F_u, F_p of Laplace u + p exp(u) = 0 on the unit square."""
+    line = (
+        sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]) * (n + 1) ** 2
+    )
+    laplace = (sp.kron(line, sp.identity(n)) + sp.kron(sp.identity(n), line)).tocsc()
+
+    def F(u: np.ndarray, p: float) -> np.ndarray:
+        return laplace @ u + p * np.exp(u)
+
+    def jacobian(u: np.ndarray, p: float) -> Any:
+        return (laplace + sp.diags_array(p * np.exp(u))).tocsc()
+
+    return F, jacobian, lambda u, p: np.exp(u)
+
+
+def script(n: int, points: int, step: float = 0.05) -> float:
+    """Seconds a point of forty lines that anybody would write."""
+    F, jacobian, derivative = bratu(n)
+    N = n * n
+    u, p = np.zeros(N), 0.0
+    du, dp = np.zeros(N), 1.0
+    began = time.process_time()
+    for _ in range(points):
+        u1, p1 = u + step * du, p + step * dp
+        for _ in range(2):
+            factors = splu(jacobian(u1, p1), permc_spec="MMD_AT_PLUS_A")
+            a, b = factors.solve(np.column_stack([F(u1, p1), derivative(u1, p1)])).T
+            gap = du @ (u1 - u) / N + dp * (p1 - p) - step
+            shift = (gap - du @ a / N) / (dp - du @ b / N)
+            u1, p1 = u1 - a + b * shift, p1 - shift
+        tangent = -b
+        size = np.sqrt(tangent @ tangent / N + 1.0) * np.sign(du @ tangent / N + dp)
+        u, p, du, dp = u1, p1, tangent / size, 1.0 / size
+    return (time.process_time() - began) / points
+
+
+def package(n: int, points: int, spectrum: str = "none") -> tuple[float, int]:
+    """Seconds a point of ours, and how many there were."""
+    F, jacobian, derivative = bratu(n)
+    problem = cv.AlgebraicProblem(
+        F, np.zeros(n * n), 0.0, jacobian=jacobian, derivative=derivative, spectrum=spectrum, scale=1.0
+    )
+    began, count = time.process_time(), 0
+    for _ in cv.trace(problem, within=(0.0, 8.0), settings={"max_points": points}):
+        count += 1
+    return (time.process_time() - began) / count, count
+
+
+def fold(n: int, spectrum: str = "none") -> Any:
+    """The fold of the diagram."""
+    F, jacobian, derivative = bratu(n)
+    problem = cv.AlgebraicProblem(
+        F, np.zeros(n * n), 0.0, jacobian=jacobian, derivative=derivative, spectrum=spectrum
+    )
+    graph = cv.diagram(problem, within=(0.0, 8.0), bounds={"u0": (None, 0.2)})
+    return graph.of_kind("fold")[0]
+
+
+def main(n: int) -> None:
+    """Print the comparison."""
+    points = 40
+    plain = script(n, points)
+    ours, count = package(n, points)
+    stable, _ = package(n, points, "flow")
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"N = {n * n}: script {plain:.4f} s a point; ours {ours:.4f} ({ours / plain:.2f}), {count} points;")
+    print(f"with ten leading eigenvalues {stable:.4f} ({stable / plain:.2f}); largest memory {memory:.0f} MB")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100)

@@ -1,0 +1,117 @@
+"""Branches that end where the user says so; what special points tell of their eigenvalues."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import contvines as cv
+
+
+def parabola(u, p):
+    return p - u**2
+
+
+def test_a_function_stops_a_branch_at_its_zero():
+    problem = cv.AlgebraicProblem(parabola, [1.0], 1.0, outputs={"square": lambda u, p: u[0] ** 2})
+    graph = cv.diagram(problem, within=(-1.0, 4.0), stop={"half": lambda u, p: u[0] - 0.5})
+    (branch,) = graph
+    assert branch.points.min() == pytest.approx(0.5, abs=1e-14) and branch.range == pytest.approx((0.25, 4.0))
+    assert not graph.of_kind("fold")
+    assert "stops at US1 (half), p = 0.25" in branch.ended
+    graph = cv.diagram(problem, within=(-1.0, 4.0), stop={"measured": ("square", 2.25)})
+    assert graph["B1"].points.max() == pytest.approx(1.5, abs=1e-14)
+
+
+def test_bounds_of_measures():
+    problem = cv.AlgebraicProblem(parabola, [1.0], 1.0)
+    graph = cv.diagram(problem, within=(-1.0, 9.0), bounds={"u0": (-1.0, 2.0)})
+    assert (graph["B1"].points.min(), graph["B1"].points.max()) == pytest.approx((-1.0, 2.0), abs=1e-14)
+    assert graph.of_kind("fold")[0].value == pytest.approx(0.0, abs=1e-15)
+    assert len(cv.diagram(problem, within=(-1.0, 9.0), bounds={"u0": (None, 2.0)}).of_kind("user")) == 1
+    with pytest.raises(ValueError, match=r"at the start u0 = 1 is outside of its bounds \[2, 3\]"):
+        cv.diagram(problem, within=(-1.0, 9.0), bounds={"u0": (2.0, 3.0)})
+    with pytest.raises(ValueError, match="no measure 'u7'"):
+        cv.diagram(problem, within=(-1.0, 9.0), bounds={"u7": (2.0, 3.0)})
+    with pytest.raises(ValueError, match="two numbers"):
+        cv.diagram(problem, within=(-1.0, 9.0), bounds={"u0": 3.0})
+    with pytest.raises(ValueError, match="the smaller one"):
+        cv.diagram(problem, within=(-1.0, 9.0), bounds={"u0": (3.0, 2.0)})
+
+
+def test_a_branch_that_leaves_stays_within_the_bounds():
+    problem = cv.AlgebraicProblem(lambda u, p: p * u - u**3, [0.0], -0.5)
+    graph = cv.diagram(problem, within=(-1.0, 4.0), bounds={"u0": (-1.0, 1.5)})
+    assert graph["B2"].range == pytest.approx((0.0, 2.25), abs=1e-12)
+    assert sorted((graph["B2"].points[0, 0], graph["B2"].points[-1, 0])) == pytest.approx([-1.0, 1.5])
+
+
+def brusselator(u, b):
+    return np.array([2.0 - (b + 1.0) * u[0] + u[0] ** 2 * u[1], b * u[0] - u[0] ** 2 * u[1]])
+
+
+def test_frequency_and_eigenvectors_at_a_hopf_point():
+    """The Brusselator with A = 2 has its Hopf point at B = 1 + A^2 with omega = A."""
+    graph = cv.diagram(cv.AlgebraicProblem(brusselator, [2.0, 0.5], 1.0, spectrum="flow"), within=(0.5, 8.0))
+    (point,) = graph.of_kind("hopf")
+    assert point.value == pytest.approx(5.0, rel=1e-13) and point.frequency == pytest.approx(2.0, rel=1e-12)
+    matrix = np.array([[4.0, 4.0], [-5.0, -4.0]])
+    np.testing.assert_allclose(matrix @ point.eigenvectors, point.eigenvectors * point.multipliers, atol=1e-9)
+    assert graph.of_kind("end")[0].frequency is None
+
+
+def test_angle_and_eigenvectors_of_a_cycle():
+    """The delayed logistic map: a Neimark-Sacker point at r = 2 with multipliers exp(+-i pi/3)."""
+    problem = cv.MapProblem(lambda x, r: np.array([r * x[0] * (1.0 - x[1]), x[0]]), [0.3, 0.3], 1.5)
+    (point,) = cv.diagram(problem, within=(1.2, 2.4)).of_kind("neimark-sacker")
+    assert point.frequency == pytest.approx(np.pi / 3.0, rel=1e-10)
+    matrix = np.array([[1.0, -1.0], [1.0, 0.0]])
+    np.testing.assert_allclose(matrix @ point.eigenvectors, point.eigenvectors * point.multipliers, atol=1e-9)
+
+
+def test_eigenvectors_of_a_sparse_jacobian():
+    n = 30
+    second = sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]).tocsc()
+    problem = cv.AlgebraicProblem(
+        lambda u, p: second @ u + p,
+        np.zeros(n),
+        0.0,
+        jacobian=lambda u, p: second,
+        derivative=lambda u, p: np.ones(n),
+        spectrum="flow",
+        leading=3,
+    )
+    point = cv.diagram(problem, within=(0.0, 1.0)).of_kind("end")[0]
+    np.testing.assert_allclose(second @ point.eigenvectors, point.eigenvectors * point.multipliers, atol=1e-7)
+
+
+@pytest.mark.parametrize("spectrum", ["none", "flow"])
+def test_a_small_circle_through_two_branch_points_of_one_step(spectrum):
+    """u (u^2 + (p - 0.3)^2 - 1e-6): both branch points lie between neighbouring points of the line u = 0."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u * (u**2 + (p - 0.3) ** 2 - 1e-6), [0.0], -0.5, spectrum=spectrum
+    )
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert [s.value for s in graph.of_kind("branch-point")] == pytest.approx([0.299, 0.301], rel=1e-10)
+    assert len(graph) == 2 and graph["B2"].closed and len(graph["B2"]) < 200
+
+
+def test_the_table_marks_transcritical_points_and_points_at_the_end():
+    graph = cv.diagram(cv.AlgebraicProblem(lambda u, p: p * u - u**2, [0.0], -0.5), within=(-1.0, 1.0))
+    assert "transcritical" in str(graph)
+    graph = cv.diagram(cv.AlgebraicProblem(parabola, [1.0], 1.0), within=(0.0, 1.0))
+    assert "at the end" in str(graph) or not graph.of_kind("fold")
+
+
+def test_where_one_eigenvalue_leaves_as_another_enters():
+    """The symmetry of a triangle: x' = p z + conj(z)^2 has three branches through 0 along which eigenvalues change places."""
+
+    def triangle(u, p):
+        x, y = u
+        return [p * x + x * x - y * y, p * y - 2.0 * x * y]
+
+    # start on one of the branches, x = -p: no count of eigenvalues changes at p = 0
+    graph = cv.diagram(
+        cv.AlgebraicProblem(triangle, [0.5, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=1
+    )
+    assert [s.value for s in graph.of_kind("branch-point")] == pytest.approx([0.0], abs=1e-10)
+    assert len(graph) == 4

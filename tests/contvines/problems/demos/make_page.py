@@ -1,0 +1,61 @@
+"""Writes docs/demos.md from the table.
+
+python -m tests.contvines.problems.demos.make_page
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from contvines.events.kinds import KINDS
+
+from . import listed, maps
+from .make_table import TABLE
+
+PAGE = Path(__file__).parents[4] / "docs" / "demos.md"
+HEAD = """# Demos of other packages
+
+{demos} problems of equilibria and maps that come with AUTO-07p, MatCont, MatContM, BifurcationKit, PyDSTool, COCO and XPPAUT, or stand in
+textbooks, with the equations and starts of their sources, unscaled, and with plain settings: `cv.diagram(problem, within=...)`. All
+{points} special points are found, and no others.
+
+The values are not this package's: each is a solution, in thirty digits, of its defining equations (F = 0 with a singular Jacobian, a
+vanishing Hurwitz determinant, a multiplier -1, a product of multipliers 1). The package agrees with each to 1e-10 or better, most to
+1e-15; a test says so. That there are no more was asked by Newton's method for the same equations from 150 random starts for each kind
+(cycles of length one, up to six unknowns). Cycles are followed to twice or four times their length only.
+
+LP fold, BP branch point, SB symmetry breaking, HB Hopf, PD period doubling, NS Neimark-Sacker; ^2 a cycle of length two.
+"""
+
+
+def render() -> str:
+    """The page."""
+    table = json.loads(TABLE.read_text(encoding="utf-8"))
+    demos = [*listed.DEMOS, *maps.DEMOS]
+    lines = [HEAD.format(demos=len(demos), points=sum(len(rows) for rows in table.values()))]
+    for title, kind in (("Equilibria", "flow"), ("Maps", "map")):
+        lines += [
+            f"## {title}",
+            "",
+            "| demo | comes with | parameter | special points | printed |",
+            "|---|---|---|---|---|",
+        ]
+        for demo in demos:
+            if demo.kind != kind:
+                continue
+            found: dict[str, list[str]] = {}
+            for row in table[demo.name]:
+                label = KINDS[row["kind"]].label + (f"^{row['cycle']}" if row["cycle"] > 1 else "")
+                value = 0.0 if abs(row["value"]) < 1e-14 else row["value"]
+                found.setdefault(label, []).append(f"{value:.11g}")
+            points = "; ".join(f"{label} {', '.join(values)}" for label, values in found.items()) or "none"
+            low, high = demo.within
+            cells = (demo.name, demo.source, f"{demo.parameter} in {low:g} to {high:g}", points, demo.printed)
+            lines.append("| " + " | ".join(cells) + " |")
+        lines.append("")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(render(), encoding="utf-8")

@@ -1,0 +1,81 @@
+"""Units do not matter: the same graph for unknowns, parameter and rows in units from 1e-9 to 1e9, each unknown in its own."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from tests.contvines.problems.demos import equilibria as eq
+from tests.contvines.problems.demos import maps
+from tests.contvines.problems.demos.demo import NUMBERS
+
+CASES = {
+    "bazykin": (eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2)),
+    "pp2": (eq.pp2, [0.0, 0.0], 0.0, (0.1, 1.0)),
+    "ab": (eq.ab, [0.0, 0.0], 0.0, (0.0, 0.15)),
+    "oxidation": (eq.oxidation, [0.0014673, 0.826167, 0.123119], 1.92373, (0.5, 1.95)),
+    "cusp": (eq.cusp, [1.0], 0.0, (-1.0, 1.0)),
+}
+UNITS = [
+    (1e-9, 1.0, 1.0),
+    (1e9, 1e-9, 1e9),
+    (1e-9, 1e9, 1e-9),
+    ([1e9, 1e-9, 1e4], 1.0, 1.0),
+    ([1e-9, 1e9, 1.0], 1e9, [1e9, 1e-9, 1.0]),
+]
+
+
+def points(f, u, p, within, units, unit, rows):
+    """Kind, value and unknowns of the special points, in the units of the source."""
+    n = len(u)
+    units, rows = (np.resize(np.asarray(part, dtype=float), n) for part in (units, rows))
+    problem = cv.AlgebraicProblem(
+        lambda v, q: rows * np.array(f(v / units, q / unit, NUMBERS)), units * u, unit * max(p, within[0])
+    )
+    graph = cv.diagram(problem, within=(within[0] * unit, within[1] * unit), depth=2)
+    return sorted((s.kind, s.value / unit, *(s.u / units)) for s in graph.special.values())
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return {name: points(*case, 1.0, 1.0, 1.0) for name, case in CASES.items()}
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("units", UNITS, ids=str)
+def test_special_points_do_not_depend_on_units(plain, name, units):
+    found, expected = points(*CASES[name], *units), plain[name]
+    assert [row[0] for row in found] == [row[0] for row in expected]
+    width = CASES[name][3][1]
+    for one, other in zip(found, expected):
+        assert one[1] == pytest.approx(other[1], rel=1e-10, abs=1e-12 * width)
+
+
+def test_eigenvalues_and_coefficients_in_other_units():
+    """u' = F: Hopf points, their frequency, and l1 per square of the unit."""
+
+    def of(unit):
+        problem = cv.AlgebraicProblem(
+            lambda v, q: unit * np.array(eq.ab(v / unit, q, NUMBERS)), [0.0, 0.0], 0.0, spectrum="flow"
+        )
+        return cv.diagram(problem, within=(0.0, 0.15)).of_kind("hopf")[0]
+
+    one, large = of(1.0), of(1e7)
+    assert large.value == pytest.approx(one.value, rel=1e-12)
+    assert large.frequency == pytest.approx(one.frequency, rel=1e-9)
+    assert large.coefficient * 1e14 == pytest.approx(one.coefficient, rel=1e-5)
+
+
+@pytest.mark.parametrize(("unit", "value"), [(1e-9, 1e9), (1e9, 1e-9)])
+def test_cycles_of_maps(unit, value):
+    problem = cv.MapProblem(
+        lambda x, r: unit * np.array(maps.logistic(x / unit, r / value, NUMBERS)), [0.5 * unit], 2.5 * value
+    )
+    graph = cv.diagram(problem, within=(2.0 * value, 3.5 * value), depth=2)
+    flips = [s.value / value for s in graph.of_kind("period-doubling")]
+    assert flips == pytest.approx([3.0, 1.0 + np.sqrt(6.0)], rel=1e-12)
+
+
+def test_rounding_is_no_bend():
+    """sin(1 + u) - sin(1) makes stairs of u below 1e-16; u and the parameter have the scale 1."""
+    problem = cv.AlgebraicProblem(lambda u, p: np.sin(1.0 + u) - np.sin(1.0) - p, [0.0], 0.0)
+    assert 0.01 < problem.functions.lengths[0] < 100.0

@@ -1,0 +1,40 @@
+"""What each margin watches, and the name of the border at which it vanishes."""
+
+import pytest
+
+from orbits.cycles.margins import border_kind, margin_name
+from orbits.words import Word
+
+FLIGHT, EVENT, WALL, DURATION = range(4)
+# word, event, column -> what is watched, border
+TABLE = [
+    ("LR", 0, FLIGHT, "flight", "velocity-graze"),
+    ("LR", 0, EVENT, "approach", "wall-graze"),
+    ("LRtt", 2, EVENT, "turn", "stick"),
+    ("LRtt", 2, WALL, "wall", "wall-graze"),
+    ("LRtt", 2, DURATION, "duration", "velocity-graze"),
+    ("Rs-", 1, FLIGHT, "hold", "stick"),
+    ("Rs-", 1, EVENT, "stick", "stick"),
+    ("Rs-", 1, WALL, "wall", "wall-graze"),
+    ("Rs-", 1, DURATION, "duration", "stick"),
+    ("Rs-", 2, EVENT, "slip", "stick"),
+    ("Rs-", 2, FLIGHT, "flight", "velocity-graze"),
+    ("Rts+L", 1, DURATION, "duration", "stick"),
+    ("ss", 1, DURATION, "duration", "stick"),
+    ("", 0, FLIGHT, "stick", "stick"),
+]
+
+
+@pytest.mark.parametrize(("text", "place", "column", "name", "kind"), TABLE)
+def test_names_of_margins_and_borders(text, place, column, name, kind):
+    word = Word.parse(text)
+    assert margin_name(word, 4 * place + column) == name
+    assert border_kind(word, 4 * place + column) == kind
+
+
+def test_without_friction_flights_have_walls():
+    word = Word.parse("LLR", frictionless=True)
+    assert margin_name(word, 4 * 2 + FLIGHT) == "wall" and border_kind(word, 4 * 2 + FLIGHT) == "wall-graze"
+    assert (
+        border_kind(word, 4 * 0 + EVENT) == "wall-graze" and border_kind(word, 4 * 0 + DURATION) == "chatter"
+    )
