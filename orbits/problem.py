@@ -378,7 +378,7 @@ class OrbitProblem:
             "params": [float(value) for value in self.params],
             **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
-            "counted_in": list(self.units),
+            **({"counted_in": list(self.units)} if self.units != (1.0, 1.0) else {}),
         }
 
 

@@ -27,7 +27,7 @@ def dead_end(problem: CycleProblem, point: Any) -> str:
     orbit = problem.orbit(u, p)
     if not len(problem.word):
         return CREEPS if _gives_way_one_way(orbit) else ""
-    margins = orbit.margins  # dimensionless
+    margins = orbit.relative_margins
     speeds = [m.value for m in margins if m.kind == "approach" and VANISHING < m.value < SLOW]
     turns = [k for k, letter in enumerate(orbit.word.events) if letter == "t"]
     gaps = [
@@ -40,7 +40,7 @@ def dead_end(problem: CycleProblem, point: Any) -> str:
 
 def piled_up(orbit: Solution) -> bool:
     """Whether a border orbit has an impact that is too slow to see what the next ones do."""
-    return any(m.kind == "approach" and VANISHING < m.value < UNRESOLVED for m in orbit.margins)
+    return any(m.kind == "approach" and VANISHING < m.value < UNRESOLVED for m in orbit.relative_margins)
 
 
 def _gives_way_one_way(orbit: Solution) -> bool:

@@ -38,7 +38,7 @@ def replay_error(orbit: Solution) -> float:
         return _from_rest(orbit)
     length, rate = orbit.model.natural_units(orbit.params)
     error = float(replay(orbit).error) / max(1.0, length, length * rate)
-    margins = np.array([margin.value for margin in orbit.margins])
+    margins = np.array([margin.value for margin in orbit.relative_margins])
     delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(orbit.multipliers) > WILD)
     if error < AGREED or not (delicate or np.isfinite(error)):
         return error

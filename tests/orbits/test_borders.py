@@ -333,11 +333,14 @@ def test_an_impact_and_the_flight_after_it_vanish_together():
     for switch in switches(graph, soft):
         target = graph[switch.target]
         end = int(np.argmin(np.abs(target.values - soft.value)))
-        assert target.orbit(end).word.events.count("L") == 1
+        near = target.orbit(end)
+        assert near.word.events.count("L") == 2 * near.periods - 1
+        if near.periods > 1:
+            continue  # in every other round only; the border orbit itself is compared below
         grid = np.linspace(0.0, 2.0 * np.pi, 500)
         one, other = (
             np.interp((grid - path["phase"][0]) % (2 * np.pi), path["phase"] - path["phase"][0], path["w"])
-            for path in (orbit.sample(20000) for orbit in (soft.orbit, target.orbit(end)))
+            for path in (orbit.sample(20000) for orbit in (soft.orbit, near))
         )
         assert np.abs(one - other).max() < 1e-6
         assert replay(target.orbit(len(target) // 2)).error < 1e-6
