@@ -11,7 +11,7 @@ from ..graph.graph import Graph
 from ..interrupts import listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
-from .locus import locus
+from .following import locus
 
 
 @listening()

@@ -19,11 +19,11 @@ from .chart import Chart
 from .codimension_two import find
 from .coefficients_at import coefficients
 from .departures import Candidate, leaving
-from .kernels import MARGIN
-from .kinds import PREFIXES
-from .locus import Locus, checked_ends, trace_locus
+from .following import checked_ends, trace_locus
+from .kinds import PREFIXES, condition
+from .layout import MARGIN
+from .locus import Locus
 from .plane_point import PlanePoint
-from .problem import condition
 from .regions import divide
 from .starts import begin
 

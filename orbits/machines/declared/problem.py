@@ -13,7 +13,8 @@ import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
-from orbits.machines.declared import flights
+from orbits.doors import above
+from orbits.machines.declared import flights, loci
 from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical, is_symmetric
 from orbits.machines.declared.identity import root as shortest
@@ -28,13 +29,18 @@ STROBED = Letter("", -1, STROBE)
 
 
 class Kernels(NamedTuple):
-    """The three functions that a continuation loop calls; plain Python."""
+    """The functions that a continuation calls; plain Python."""
 
     linearise: Any
     bordered: Any
     inspect: Any
     compiled: bool = False
     digest: str = "declared"
+    assign: Any = loci.assign
+    flip: Any = loci.flip
+    transpose: Any = loci.transpose
+    column: int = 3
+    matrix: Any = loci.matrix
 
 
 def inspect(data: DeclaredProblem, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
@@ -434,9 +440,17 @@ class DeclaredProblem:
 
         return DeclaredOrbit(self.machine, self.word, self.periods, self.expand(u), self.values(p))
 
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        return float(np.linalg.norm(direction[: self.size + 1]))
+
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle."""
         return Section(self.machine, self.values(p), self.word, self.periods)
+
+    def witness(self, p: float, starts: int = 4) -> list[dict[str, Any]]:
+        """What the machine settles on at a parameter value, simulated from random starts: "word", "periods" and "kind" of each motion."""
+        return above("witness_of_page")(self.machine, self.values(p), starts)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""
