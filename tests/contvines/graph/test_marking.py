@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 
 
-def test_the_tangent_at_a_border_is_that_of_the_branch():
+def test_a_circle_cut_in_two():
     """On the circle u^2 + p^2 = 1 at p = 0.3."""
     circle = cv.AlgebraicProblem(
         lambda u, p, sign: u**2 + p**2 - 1.0, [1.0], 0.0, switches={"s": lambda u, p: p - 0.3}, scale=1.0
@@ -21,3 +21,5 @@ def test_the_tangent_at_a_border_is_that_of_the_branch():
         u, t = point.u[0], point.tangent
         assert abs(t[0] * u + t[1] * 0.3) < 1e-6 * np.linalg.norm(t)
         assert 0.0 <= point.location_error < 1e-8
+    assert len(graph.branches) == 2 and {s.point for s in graph.switches} == {p.label for p in points}
+    assert {s.note for s in graph.switches} <= {"persistence", ""} and graph.switches[0].note == "persistence"
