@@ -18,6 +18,7 @@ from ..continuation.starts import check_interval
 from ..continuation.status import Status
 from ..events.located import Located, Role
 from ..events.watch import Watch
+from ..interrupts import listening
 from ..journal import NullJournal
 from .layout import BRANCH, MARGIN
 from .locus import Locus, Turn
@@ -28,6 +29,7 @@ from .starts import begin, first_point
 UNFOLDED = 1e-7  # an unfolding beyond this (relative to the largest unknown) says that a branch point does not persist
 
 
+@listening()
 def locus(
     point: SpecialPoint,
     over: str,
