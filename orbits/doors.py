@@ -20,6 +20,7 @@ PLACES = {
     "portrait": "orbits.plots.portrait:portrait",
     "portrait_of_page": "orbits.plots.declared:portrait",
     "scene": "orbits.plots.scene:scene",
+    "scene_of_page": "orbits.plots.declared:scene",
     "witness_of_page": "orbits.machines.declared.attractor:witness",
 }
 
