@@ -21,15 +21,14 @@ from orbits.cycles.margins import DURATION, FLIGHT, border_kind, margin_name
 from orbits.doors import above
 from orbits.machines.base import Model
 from orbits.machines.building import build
-from orbits.machines.catalogue import stepper
 from orbits.machines.path import along
+from orbits.motions import Simulated
 from orbits.orbit import Orbit
 from orbits.protocol import Embedding, Symmetry
-from orbits.simulation.section import Section
 from orbits.words import Word
 
 
-class OrbitProblem:
+class OrbitProblem(Simulated):
     """Periodic orbits with a given word, against one parameter of their machine.
 
     Parameters
@@ -283,40 +282,9 @@ class OrbitProblem:
         """The solution as an `orbits.orbit.Orbit`."""
         return Orbit(self.model, self.word, self.periods, self.expand(u), self.values(p))
 
-    def witness(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
-        """What the machine settles on at a parameter value, simulated from rest and from random starts.
-
-        Returns
-        -------
-        list of dict
-            "word" (None where there is none), "periods" and "kind" of each motion, sorted.
-        """
-        from orbits.attractors import find_attractor
-
-        params, generator = self.values(p), np.random.default_rng(7)
-        named = dict(zip(self.model.parameter_names, map(float, params)))
-        found: dict[tuple[str, int, str], dict[str, Any]] = {}
-        for i in range(starts):
-            start = None if i == 0 else self.model.random_start(params, generator)
-            motion = find_attractor(self.model, start, max_period=12, patience=1, **named)
-            word = motion.word
-            text = None if word is None else word.canonical().text
-            key = (text or "", int(motion.periods), motion.kind)
-            found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
-        return [found[key] for key in sorted(found)]
-
-    def section(self, p: float) -> Section:
-        """Its motions by simulation, once per period of the cycle.
-
-        Raises
-        ------
-        ValueError
-            For the empty word, which has no event to begin with.
-        """
-        if not len(self.word):
-            raise ValueError("the absorber that never slides has no section")
-        code, mode = int(self.word.codes[0]), int(self.word.mode_codes[0])
-        return Section(stepper(self.model.name), self.values(p), code, mode, self.periods)
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        return float(np.linalg.norm(direction[: self.dimension // max(self.length, 1)]))
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""

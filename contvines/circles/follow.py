@@ -10,7 +10,8 @@ import numpy as np
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..forms.coefficients import Forms, strong_resonance
+from ..forms.coefficients import Forms
+from ..forms.criticality import strong_resonance
 from .averages import rotation_number
 from .circle import Circle, Circles
 from .invariance import Curve, Frame, first_harmonic, solve

@@ -52,7 +52,7 @@ def told(graph: Graph, command: str) -> str:
             best[key] = about
     names = []
     for about in sorted(best.values(), key=lambda a: -a.share)[:3]:
-        word = about.word or about.kind
+        word = about.name
         names.append(f"{word} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})")
     more = f" and {len(best) - 3} more" if len(best) > 3 else ""
     return f"simulation also finds {', '.join(names)}{more}, on no branch here: {command}"

@@ -50,7 +50,7 @@ def basins(
         typer.echo(f"{found.index.size} starts in the plane {across}, {up} at {found.parameter} = {at:.10g}")
         for k, about in enumerate(found.attractors):
             low, high = found.interval(k)
-            word = about.word or about.kind
+            word = about.name
             images = f", {about.mirror_share:.1%} of them the mirror image" if about.mirror_share else ""
             typer.echo(f"  {word}  k={about.periods}  {about.share:.2%} ({low:.2%} to {high:.2%}{images})")
         try:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, ValidationError
 
-from contvines.command.schema import ChartSection, ContinueSection, Section, SweepSection
+from contvines.command.schema import AtlasSection, ChartSection, ContinueSection, Section, SweepSection
 from contvines.command.sentences import did_you_mean, sentence_of, together
 
 
@@ -34,6 +34,7 @@ class PageStudyFile(Section):
     start: PageStart = PageStart()
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
+    atlas: AtlasSection = AtlasSection()
     chart: ChartSection | None = None
 
 
@@ -93,6 +94,11 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
                 f"[start] {go.parameter} = {first!r} lies outside [continue] within = [{low!r}, {high!r}]; "
                 "start inside the interval, or widen it."
             )
+    if file.chart is not None and file.chart.parameter not in machine.parameters:
+        wrong.append(
+            f"[chart] parameter = {file.chart.parameter!r}: the machine {machine.name!r} has no such parameter"
+            f"{did_you_mean(file.chart.parameter, machine.parameters)}; it has {', '.join(machine.parameters)}."
+        )
     for key in file.start.state or {}:
         if key not in (*machine.states, "phase"):
             wrong.append(f"[start] state has {key!r}; it may have {', '.join((*machine.states, 'phase'))}.")
@@ -119,6 +125,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         "sweep": file.sweep,
+        "atlas": file.atlas,
         "chart": file.chart,
         "machine": machine,
         "loose": {**machine.parameters, **given},

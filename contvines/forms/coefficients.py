@@ -11,12 +11,14 @@ flow), B and C the second and third derivatives of the equations, whose argument
                                  J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);      d = Re(c / m)
     Hopf          the same with J - i omega;                                        l1 = Re c / omega
 
-The critical vectors have unit length (of a cycle: over all its unknowns), as in the textbook. Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7; Kuznetsov and Meijer,
-SIAM J. Sci. Comput. 26 (2005) 1932, for maps; the form for cycles follows from the same expansion of the block-cyclic system.
+The critical vectors have unit length over the unknowns, of a cycle over its first point, as the textbook has them for the return map.
+Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7; Kuznetsov and Meijer, SIAM J. Sci. Comput. 26 (2005)
+1932, for maps; the form for cycles follows from the same expansion of the block-cyclic system.
 """
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -146,12 +148,49 @@ class Forms:
 
     # ------------------------------------------------------------------ one real critical direction
     def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
-        """Unit right and left null vector of J closed by a multiplier; found with unknowns and rows in units of their scales."""
+        """Right null vector of J closed by a multiplier, of length one as normal forms measure it, and the left one.
+
+        They are found with unknowns and rows in units of their scales.
+        """
         scales = getattr(self.problem, "scales", None)
         units, rows = (1.0, 1.0) if scales is None else (scales.unknowns, scales.rows)
         left, _, right = np.linalg.svd(self.closed_by(factor) * units / np.reshape(rows, (-1, 1)))
         v, w = right[-1].conj() * units, left[:, -1].conj() / rows
-        return v / np.linalg.norm(v), w / np.linalg.norm(w)
+        return self.unit(v), w / np.linalg.norm(w)
+
+    def unit(self, vector: np.ndarray) -> np.ndarray:
+        """A direction with length one over the unknowns, of a cycle over its first point."""
+        own = getattr(self.problem, "amplitude", np.linalg.norm)
+        return vector / (float(own(vector)) or np.nan)
+
+    def chain(self, factor: float) -> np.ndarray:
+        """The null vector and the next one of a double multiplier's Jordan chain, shape (N, 2)."""
+        first = np.real(self.null(factor)[0])
+        if first[np.argmax(np.abs(first))] < 0.0:  # quadratic coefficients change their signs with it
+            first = -first
+        second = self._solve(self.closed_by(factor), -(self.K @ first))
+        return np.column_stack([first, second - (first @ second) / (first @ first) * first])
+
+    def rest(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+        """The equations of one period at a displacement whose next period begins with another one; F for a flow.
+
+        NaN where they cannot be evaluated.
+        """
+        moved = self.whole + (here if following is None else np.append(here, self._carrier @ following))
+        if hasattr(self.open, "residuals"):  # no derivatives are asked for
+            with np.errstate(all="ignore"):
+                try:
+                    return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n]
+                except (ValueError, ArithmeticError):
+                    return np.full(self.n, np.nan)
+        kernels, work = self.open.kernels, self.open_work
+        if not kernels.linearise(self.open.data, np.ascontiguousarray(moved), self.p, work) < 1e300:
+            return np.full(self.n, np.nan)
+        return np.array(work[0].reshape(-1)[: self.n])
+
+    @cached_property
+    def _carrier(self) -> np.ndarray:
+        return np.column_stack([self._continued(unit) for unit in np.eye(self.n)])
 
     def quadratic(self, along: np.ndarray | None = None) -> Coefficient:
         """a at a fold: z + a z^2, or z' = a z^2; its sign is that along a direction, if one is given."""
@@ -182,7 +221,11 @@ class Forms:
         line, weight = self.line(v, closure), float(w @ self.K @ v) or np.nan
         x = self.extended(v, closure)
         regular = self.closed_by(0.0 if self.flow else 1.0)
-        h = self._solve(regular, -(line.second @ x))
+        if factor == (0.0 if self.flow else 1.0):  # singular itself
+            bordered = np.block([[regular, w[:, None]], [v[None, :], np.zeros((1, 1))]])
+            h = np.linalg.solve(bordered, np.append(-(line.second @ x), 0.0))[:-1]
+        else:
+            h = self._solve(regular, -(line.second @ x))
         total = w @ (line.third @ x) + 3.0 * w @ (line.second @ self.extended(h, 1.0))
         error = abs(self.n * (line.third_error + 3.0 * line.second_error) / (6.0 * weight))
         return Coefficient(-float(total) / (6.0 * weight), error)
@@ -191,23 +234,6 @@ class Forms:
     def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
         """A solution, of least length where the matrix is singular."""
         return np.linalg.lstsq(matrix, side, rcond=1e-10)[0]
-
-    def bogdanov_takens(self) -> tuple[float, float]:
-        """(a, b) at a double zero of a flow: z1' = z2, z2' = a z1^2 + b z1 z2.
-
-        Source: Kuznetsov, section 8.4, with q0, q1 and p1, p0 the right and left chains of the double zero.
-        """
-        q0, p1 = (np.real(x) for x in self.null(0.0))
-        if q0[np.argmax(np.abs(q0))] < 0.0:  # a and b change their signs with q0
-            q0 = -q0
-        q1, p0 = self._solve(self.J, q0), self._solve(self.J.T, p1)
-        q1 = q1 - (q0 @ q1) * q0
-        scale = p1 @ q1
-        p1 = p1 / scale
-        p0 = p0 / scale
-        p0 = p0 - (p0 @ q1) * p1
-        along_q0 = self.line(q0, 1.0).second
-        return 0.5 * float(p1 @ along_q0 @ q0), float(p0 @ along_q0 @ q0 + p1 @ along_q0 @ q1)
 
     # ------------------------------------------------------------------ a pair
     def lyapunov(self, multiplier: complex) -> tuple[Coefficient, complex]:
@@ -233,20 +259,6 @@ class Forms:
             return Coefficient(c.real / omega, error / omega), c
         return Coefficient(float((c / multiplier).real), error), c
 
-    def fourth_order(self, multiplier: complex) -> dict[str, float]:
-        """A = -i c / abs(d) at a resonance 1:4, where z -> i z + c z^2 z* + d z*^3."""
-        multiplier = multiplier / abs(multiplier)
-        _, c = self.lyapunov(multiplier)
-        pair = self._pair(multiplier)
-        a, b = pair.a, pair.b
-        x, y = pair.vector.real, pair.vector.imag
-        total = a.third @ x - 3.0 * b.third @ x - 1j * (3.0 * a.third @ y - b.third @ y)
-        h02 = self.extended(pair.h20.conj(), multiplier.conjugate() ** 2)
-        total = total + 3.0 * (a.second - 1j * b.second) @ h02
-        d = complex(-(pair.left @ total) / (6.0 * pair.weight))
-        A = -1j * c / abs(d)
-        return {"A_re": A.real, "A_im": A.imag}
-
     def _pair(self, multiplier: complex) -> Pair:
         q, w = self.null(multiplier)
         # the phase in which real and imaginary parts are orthogonal
@@ -257,92 +269,3 @@ class Forms:
         twice = 2.0 * multiplier if self.flow else multiplier**2
         h20 = np.linalg.solve(self.closed_by(twice), -((a.second + 1j * b.second) @ one))
         return Pair(one, w, a, b, h20, complex(w @ self.K @ q))
-
-
-class Pitch(NamedTuple):
-    """What a pair on the stability boundary does: first Lyapunov coefficient, and how it is to be read.
-
-    Attributes
-    ----------
-    coefficient : float or None
-        d of a cycle, l1 of an equilibrium; None where it cannot be had.
-    criticality : {"supercritical", "subcritical"} or None
-        Supercritical: a stable circle (cycle) is born where the motion has lost its stability.
-    note : str
-        A nearby strong resonance, or that the error is as large as the coefficient.
-    """
-
-    coefficient: float | None
-    criticality: str | None
-    note: str
-
-
-RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coefficient no longer decides
-STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
-
-
-def strong_resonance(multiplier: complex) -> str:
-    """The strong resonance at which a multiplier of the full period is, "1:3" for example; "" for none."""
-    angle = abs(float(np.angle(multiplier)))
-    return next((n for n, place in STRONG.items() if abs(angle - place) < RESONANT), "")
-
-
-def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
-    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
-
-    Parameters
-    ----------
-    problem : Problem
-    u, p
-        The point.
-    spectrum : ndarray of complex
-        Raw multipliers there (of a flow they are computed here).
-    """
-    flow = problem.spectrum == "flow"
-    if getattr(problem.kernels, "matrix", None) is None:
-        return Pitch(None, None, "")
-    try:
-        forms = Forms(problem, u, p)
-        values: Any = np.linalg.eigvals(forms.J) if flow else np.asarray(spectrum, dtype=complex)
-        upper = values[values.imag > 0.0]
-        if not len(upper):
-            return Pitch(None, None, "")
-        critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
-        found, _ = forms.lyapunov(critical)
-    except (ValueError, IndexError, np.linalg.LinAlgError):
-        return Pitch(None, None, "")
-    value = float(found.value)
-    if not np.isfinite(value):
-        return Pitch(None, None, "")
-    note = ""
-    if not flow:
-        resonance = strong_resonance(complex(np.asarray(problem.to_multipliers(np.array([critical])))[0]))
-        note = f"near the strong resonance {resonance}" if resonance else ""
-    if found.error > 0.5 * abs(value):
-        return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
-    return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
-
-
-def cubic_form(problem: Any, u: np.ndarray, p: float, flip: bool) -> float | None:
-    """The cubic coefficient at a flip or pitchfork of a problem that says how long critical vectors are; else None.
-
-    Parameters
-    ----------
-    problem : Problem
-        With ``amplitude``: the length of a direction that is to be one.
-    u, p
-        The point.
-    flip : bool
-        Critical multiplier -1.
-    """
-    amplitude = getattr(problem, "amplitude", None)
-    if amplitude is None or problem.spectrum == "none" or getattr(problem.kernels, "matrix", None) is None:
-        return None
-    factor = -1.0 if flip else (0.0 if problem.spectrum == "flow" else 1.0)
-    try:
-        forms = Forms(problem, u, p)
-        found, length = forms.cubic(factor), amplitude(np.real(forms.null(factor)[0]))
-    except (ValueError, IndexError, np.linalg.LinAlgError):
-        return None
-    value = found.value / length**2
-    return float(value) if np.isfinite(value) and found.error < 1e-3 * abs(found.value) else None

@@ -16,7 +16,8 @@ class Attractor:
     word : str
     periods : int
     kind : str
-        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow`` or ``escaped``.
+        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow``, ``escaped`` or
+        ``impossible`` (the start lies inside a wall).
     branch : str or None
         Label of the branch on which it lies.
     share : float
@@ -39,6 +40,11 @@ class Attractor:
     starts: int = 0
     exponent: float = float("nan")
     error: float = float("nan")
+
+    @property
+    def name(self) -> str:
+        """How people are told of it: its word, or what kind of motion has none."""
+        return self.word or ("no events" if self.kind == "periodic" else self.kind)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry in the JSON of a graph."""

@@ -12,7 +12,7 @@ from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..events.kinds import BORDERS
 from ..events.located import Role
-from ..forms.coefficients import cubic_form
+from ..forms.criticality import cubic_form
 from ..interrupts import OPEN
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures

@@ -16,7 +16,7 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
-from ..forms.coefficients import pair_form
+from ..forms.criticality import pair_form
 from ..interrupts import OPEN
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .graph import Graph
 
+STABLE = {True: ", stable", False: ", unstable", None: ""}
+
 
 def subject(graph: Graph, label: str) -> Any:
     """What a label names: a special point, a branch, or with a colon one solution of a branch (``B1:12``).
@@ -61,14 +63,48 @@ def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str,
 
 def kept(proof: Any) -> dict[str, Any]:
     """What is kept of a proof: its claims, and the certificate where there is one."""
+    parts = getattr(proof, "pieces", ())
     return {
         "existence": bool(proof.existence),
         "real": proof.real,
         "stable": proof.stable,
         "radius": proof.radius,
         "obstacles": [str(obstacle) for obstacle in proof.obstacles],
-        "certificate": proof.certificate() if proof.existence else None,
+        "certificate": proof.certificate() if proof.existence or parts else None,
+        **({"stretches": [_stretch(*part) for part in zip(parts, proof.places)]} if parts else {}),
     }
+
+
+def _stretch(piece: Any, places: tuple[int, int]) -> dict[str, Any]:
+    """What is proved of a stretch of a branch, between two of its points."""
+    return {
+        "between": list(places),
+        "covered": [float(value) for value in piece.covered] if piece.covered else None,
+        "ends": list(piece.ends),
+        "real": piece.real,
+        "stable": piece.stable,
+    }
+
+
+def stretches(graph: Graph, label: str) -> list[tuple[list[int], dict[str, Any]]]:
+    """The proved stretches of a branch: the numbers of its points on each, and what is proved of them."""
+    branch, found = graph.branches[label], []
+    for stretch in graph.proofs.get(label, {}).get("stretches", ()):
+        if stretch["covered"] is not None and stretch["real"] is not None:
+            first, last = stretch["between"]
+            low, high = (value * (1 + side * 1e-9) for side, value in zip((-1, 1), stretch["covered"]))
+            points = [i for i in range(first, last + 1) if low <= branch.values[i] <= high]
+            found.append((points, stretch))
+    return found
+
+
+def told(graph: Graph, label: str) -> str:
+    """The proved stretches of a branch in words."""
+    return ", ".join(
+        f"{low:.6g}..{high:.6g} {'real' if about['real'] else 'virtual'}{STABLE[about['stable']]}"
+        for _, about in stretches(graph, label)
+        for low, high in [about["covered"]]
+    )
 
 
 def mark(graph: Graph, label: str) -> str:

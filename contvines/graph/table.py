@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..branches.special_point import TRANSCRITICAL
-from .proving import mark
+from .proving import mark, told
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
@@ -122,8 +122,18 @@ def branches_table(graph: Graph) -> Table:
         low, high = branch.range
         stable = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in branch.stable_intervals()) or "-"
         where = f"{number(low, 6)}..{number(high, 6)}"
-        rows.append((branch.label, describe(branch), where, stable, str(len(branch)), ends(branch)))
-    return Table(("branch", "what", name, "stable", "points", "from .. to"), rows, ("points", "from .. to"))
+        proved = told(graph, branch.label)
+        rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
+    head = (
+        "branch",
+        "what",
+        name,
+        "stable",
+        "proved" if any(row[4] for row in rows) else "",
+        "points",
+        "from .. to",
+    )
+    return Table(head, rows, ("points", "from .. to"))
 
 
 def special_table(graph: Graph) -> Table:

@@ -234,7 +234,7 @@ def locus(
 
 def checked_ends(problem: Any, over: str, within: tuple[float, float]) -> None:
     """Refuse an interval whose ends are no sensible values of the parameter, where the problem can tell."""
-    check = getattr(problem, "check", None)
+    check = getattr(problem, "check_value", None)
     if check is not None:
         for value in within:
             check(over, value)

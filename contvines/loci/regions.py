@@ -37,7 +37,11 @@ class Region:
     @property
     def words(self) -> list[str]:
         """The words of the motions that are stable there; "chaotic", "modulated" and the like where there is no word."""
-        return [name_of(found) for found in self.attractors]
+        names = [name_of(found) for found in self.attractors]
+        return [
+            name if names.count(name) == 1 else f"{names.count(name)} x {name}"
+            for name in dict.fromkeys(names)
+        ]
 
     def to_dict(self, parameters: tuple[str, str]) -> dict[str, Any]:
         """The entry of this region in the JSON of a chart."""
@@ -56,7 +60,7 @@ def name_of(found: dict[str, Any]) -> str:
         return "stuck"
     if not word:
         return str(found.get("kind") or "?")
-    return word if periods <= 1 else f"{word} k={periods}"
+    return word if periods <= 1 or found.get("kind") == "cycle" else f"{word} k={periods}"
 
 
 def divide(

@@ -64,9 +64,9 @@ def draw_shares(axes: Axes, graph: Graph) -> None:
     values = np.array(sorted({a.value for a in graph.attractors}))
     low, high = graph.within
     edges = np.concatenate([[low], 0.5 * (values[1:] + values[:-1]), [high]])
-    names: dict[tuple[str, int, str], float] = {}
+    names: dict[tuple[str, int], float] = {}
     for about in graph.attractors:
-        key = (about.word, about.periods, "" if about.word else about.kind)
+        key = (about.name, about.periods)
         names[key] = names.get(key, 0.0) + about.share
     shown = sorted(names, key=lambda key: -names[key])[:MOST]
     order = [key for key in names if key in shown]
@@ -74,12 +74,14 @@ def draw_shares(axes: Axes, graph: Graph) -> None:
     for k, key in enumerate([*order, None]):
         heights = np.zeros(len(values))
         for about in graph.attractors:
-            own = (about.word, about.periods, "" if about.word else about.kind)
+            own = (about.name, about.periods)
             if own == key or (key is None and own not in shown):
                 heights[np.searchsorted(values, about.value)] += about.share
         if not heights.any():
             continue
-        name = "others" if key is None else short_word(key[0], 14) or key[2]
+        name = "others" if key is None else short_word(key[0], 14)
+        if key is not None and sum(key[0] == other for other, _ in order) > 1:
+            name = f"{name}, k={key[1]}"
         color = "0.8" if key is None else COLORS[k % len(COLORS)]
         axes.bar(
             edges[:-1], heights, np.diff(edges), bottoms, align="edge", color=color, label=name, linewidth=0

@@ -52,6 +52,9 @@ def plot_basins(
 
     count = len(basins.attractors)
     base = np.array([to_rgb(COLORS[k % len(COLORS)]) for k in range(max(count, 1))])
+    base[[k for k, about in enumerate(basins.attractors) if about.kind == "impossible"]] = (
+        0.9  # no start at all
+    )
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
     with styled(style):
@@ -68,7 +71,7 @@ def plot_basins(
         if legend:
             entries = []
             for k, about in enumerate(basins.attractors):
-                name = short_word(about.word, 20) if about.word else about.kind
+                name = short_word(about.name, 20)
                 cycles = f", k={about.periods}" if about.periods > 1 else ""
                 entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}"))
                 if 0.0 < about.mirror_share < about.share:

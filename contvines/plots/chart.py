@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .figures import new_axes, styled
-from .style import MARKS, PLAIN
+from .figures import freeze, new_axes, scale, settle, styled
+from .labels import Label, grouped, place_labels
+from .style import MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,6 +35,8 @@ BORDER_COLORS = {
 BORDER_COLOR = "#6b6b6b"  # of any other border
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
 HATCH_LENGTH = 0.012  # of the axes
+FITS = 0.9  # share of a name that must lie within its region
+LOW = 2.6  # inches: lower axes have the symbol of a parameter alone at their side
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
 
 
@@ -64,6 +67,7 @@ def plot_chart(
     -------
     matplotlib Figure
     """
+    own = axes is None
     with styled(style):
         figure, axes = new_axes(axes, **options)
         p, q = chart.parameters
@@ -86,29 +90,51 @@ def plot_chart(
                 markersize=4,
                 zorder=5,
             )
+        axes.set_xlabel(axis_label(q, unit=chart.units.get(q)))
+        axes.set_ylabel(axis_label(p, unit=chart.units.get(p)))
+        _legend(figure, axes, own, list(handles.values()))
+        settle(figure)
+        if own and axes.get_window_extent().height < LOW * figure.dpi:
+            axes.set_ylabel(axis_label(p, short=True, unit=chart.units.get(p)))
+            settle(figure)
+        settle(figure)  # the labels of the axes have their size by now
+        if own:
+            freeze(figure)
+        boxes = _name(axes, chart) if names else []
         if labels:
-            _label(axes, chart)
-        if names:
-            _name(axes, chart)
-        unit = chart.units
-        axes.set_xlabel(q + (f" [{unit[q]}]" if unit.get(q) else ""))
-        axes.set_ylabel(p + (f" [{unit[p]}]" if unit.get(p) else ""))
-        axes.legend(
-            handles=list(handles.values()),
-            loc="upper center",
-            bbox_to_anchor=(0.5, -0.13),
-            ncol=3,
-            fontsize="small",
-        )
-        figure.set_layout_engine("constrained")
+            _label(axes, chart, boxes)
     return figure
 
 
+def _legend(figure: Figure, axes: Any, own: bool, handles: list[Any]) -> None:
+    """Below the axes of a figure of ours, in as many columns as fit; inside the axes of others."""
+    if not handles:
+        return
+    if not own:
+        axes.legend(handles=handles, loc="best", fontsize="small")
+        return
+    columns = max(1, min(len(handles), int(figure.get_size_inches()[0] / (1.55 * scale(figure)))))
+    options: dict[str, Any] = {"loc": "outside lower center"}  # a place that the stubs do not know
+    figure.legend(
+        handles=handles,
+        ncols=columns,
+        frameon=False,
+        handlelength=1.6,
+        columnspacing=1.0,
+        labelspacing=0.25,
+        borderpad=0.0,
+        **options,
+    )
+
+
 def _look(locus: Locus) -> dict[str, Any]:
+    import matplotlib as mpl
+
     border = locus.kind not in COLORS
+    width = mpl.rcParams["lines.linewidth"]
     return {
         "color": BORDER_COLORS.get(locus.kind, BORDER_COLOR) if border else COLORS[locus.kind],
-        "linewidth": 1.1 if border else 1.6,
+        "linewidth": width * (0.65 if border else 0.95),
     }
 
 
@@ -153,23 +179,25 @@ def _hatch(axes: Any, locus: Locus) -> None:
         )
 
 
-def _label(axes: Any, chart: Chart) -> None:
-    """Labels of the points, those at one place together."""
-    places: dict[tuple[float, float], list[str]] = {}
-    for point in chart.points.values():
-        place = (float(f"{point.value[1]:.6g}"), float(f"{point.value[0]:.6g}"))
-        places.setdefault(place, []).append(point.label)
-    for i, (place, names) in enumerate(sorted(places.items())):
-        above = i % 2 == 0  # neighbours on one curve get out of each other's way
-        axes.annotate(
-            ", ".join(names),
-            place,
-            textcoords="offset points",
-            xytext=(-2, 7) if above else (2, -11),
-            ha="center",
-            fontsize="x-small",
-            zorder=6,
-        )
+def _label(axes: Any, chart: Chart, taken: list[Any]) -> None:
+    """Labels of the points, those at one place together, clear of the loci and of the regions' names."""
+    import matplotlib as mpl
+
+    wanted = [
+        Label(point.label, point.value[1], point.value[0], rank=not point.real)
+        for point in chart.points.values()
+    ]
+    lines = [_dense(axes, locus.values[:, ::-1]) for locus in chart.loci.values()]
+    size = 0.8 * mpl.rcParams["font.size"]
+    place_labels(axes, grouped(axes, wanted), np.vstack([np.empty((0, 2)), *lines]), size=size, taken=taken)
+
+
+def _dense(axes: Any, xy: np.ndarray) -> np.ndarray:
+    """Points close together on the page along a line."""
+    steps = np.hypot(*np.diff(axes.transData.transform(xy), axis=0).T)
+    total = np.concatenate([[0.0], np.cumsum(steps)])
+    at = np.linspace(0.0, total[-1], int(np.clip(total[-1] / 1.5, 2, 20000)))
+    return np.column_stack([np.interp(at, total, v) for v in xy.T])
 
 
 def _tint(axes: Any, chart: Chart) -> None:
@@ -195,18 +223,42 @@ def _tint(axes: Any, chart: Chart) -> None:
         )
 
 
-def _name(axes: Any, chart: Chart) -> None:
+def _name(axes: Any, chart: Chart) -> list[tuple[float, float, float, float]]:
+    """Write into regions what is stable there, where the text has room; the boxes of the texts on the page."""
+    boxes = []
     for region in chart.regions:
         if region.share < LEAST_SHARE or not region.words:
             continue
-        text = "\n".join(word if len(word) <= 16 else f"{word[:13]}..." for word in region.words[:4])
-        axes.text(
-            region.at[1],
-            region.at[0],
-            text,
-            ha="center",
-            va="center",
-            fontsize="x-small",
-            color="0.25",
-            zorder=4,
-        )
+        for count in (4, 2, 1):  # fewer words where there is little room
+            names = [word if len(word) <= 16 else f"{word[:13]}..." for word in region.words[:count]]
+            more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
+            text = axes.text(
+                region.at[1],
+                region.at[0],
+                "\n".join([*names, *more]),
+                ha="center",
+                va="center",
+                fontsize="x-small",
+                color="0.25",
+                zorder=4,
+            )
+            box = text.get_window_extent()
+            if _has_room(axes, chart, region, box):
+                boxes.append((box.x0, box.y0, box.x1, box.y1))
+                break
+            text.remove()
+    return boxes
+
+
+def _has_room(axes: Any, chart: Chart, region: Any, box: Any) -> bool:
+    """Whether a box on the page lies within a region, but for its corners."""
+    if not region.cells.size:
+        return True
+    xs, ys = np.linspace(box.x0, box.x1, 9), np.linspace(box.y0, box.y1, 5)
+    places = axes.transData.inverted().transform([(x, y) for x in xs for y in ys])
+    (plo, phi), (qlo, qhi) = chart.within
+    rows, columns = region.cells.shape
+    i = np.floor((places[:, 1] - plo) / (phi - plo) * rows).astype(int)
+    j = np.floor((places[:, 0] - qlo) / (qhi - qlo) * columns).astype(int)
+    inside = (i >= 0) & (i < rows) & (j >= 0) & (j < columns)
+    return bool(np.all(inside) and region.cells[i, j].mean() > FITS)

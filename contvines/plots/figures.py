@@ -53,8 +53,18 @@ def new_axes(axes: Axes | None, **options: Any) -> tuple[Figure, Axes]:
     """The figure and axes to draw on: the given ones, or new ones."""
     if axes is not None:
         return axes.get_figure(root=True), axes  # type: ignore[return-value]
+    from matplotlib import rcParams
+    from matplotlib.font_manager import FontProperties
+
     made = new_figure(**options)
-    return made, made.add_subplot()
+    axes = made.add_subplot()
+    for axis in (
+        "x",
+        "y",
+    ):  # in points: how many ticks there are must not change when a figure is drawn again elsewhere
+        size = FontProperties(size=rcParams[f"{axis}tick.labelsize"]).get_size_in_points()
+        axes.tick_params(axis=axis, labelsize=size)  # type: ignore[arg-type]
+    return made, axes
 
 
 def new_figure(figsize: tuple[float, float] | None = None, **options: Any) -> Figure:

@@ -81,6 +81,7 @@ def place_labels(
         ):
             continue
         width, height = (0.6 * size * len(label.text) + 2) * unit, 1.2 * size * unit
+        others = np.delete(anchors, i, axis=0)
         best: tuple[float, float, float, Box, int] | None = None
         for radius in RADII[:2] if label.near else RADII:
             for dx, dy in DIRECTIONS:
@@ -90,7 +91,7 @@ def place_labels(
                 far = radius >= LEADER
                 line = (ax, ay, cx, cy) if far else None
                 cost = _cost(box, line, frame, ground, boxes, leaders, marks[:i] + marks[i + 1 :], unit)
-                cost += 0.3 * radius
+                cost += 0.3 * radius + (30.0 if _nearer(box, (ax, ay), others) else 0.0)
                 if best is None or cost < best[0]:
                     best = (cost, cx, cy, box, radius)
             if best is not None and best[0] < RADII[0]:
@@ -204,6 +205,17 @@ def _write(
         bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.75},
         zorder=8,
     )
+
+
+def _nearer(box: Box, own: tuple[float, float], others: np.ndarray) -> bool:
+    """Whether a text stands nearer to something else than to what it names."""
+
+    def gap(points: np.ndarray) -> np.ndarray:
+        across = np.maximum(np.maximum(box[0] - points[:, 0], points[:, 0] - box[2]), 0.0)
+        up = np.maximum(np.maximum(box[1] - points[:, 1], points[:, 1] - box[3]), 0.0)
+        return np.hypot(across, up)
+
+    return bool(len(others)) and float(gap(others).min()) < float(gap(np.array([own]))[0]) - 1.0
 
 
 def _overlap(a: Box, b: Box) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .figures import settle
-from .style import LINES, STATES, WIDTHS, Mark
+from .style import LINES, PROVED, STATES, WIDTHS, Mark
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,12 +20,13 @@ PLACES = ("inside", "beside", "below")
 
 @dataclass
 class Key:
-    """What a picture has used: states of branches, colours with a meaning, marks, and remarks in words."""
+    """What a picture has used: states of branches, colours with a meaning, marks, bands of proofs, and remarks in words."""
 
     states: dict[str, None] = field(default_factory=dict)
     colors: dict[str, str] = field(default_factory=dict)
     marks: dict[str, Mark] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
+    proved: bool = False
 
     def handles(self) -> list[Any]:
         """Artists for the entries, in order."""
@@ -50,6 +51,8 @@ class Key:
                 "label": mark.name,
             }
             found.append(Line2D([], [], linestyle="none", color="0.2", **look))
+        if self.proved:
+            found.append(Line2D([], [], linewidth=5.0 * width, label="proved", **PROVED))
         found += [Line2D([], [], linestyle="none", label=text) for text in self.remarks]
         return found
 

@@ -9,16 +9,19 @@ import numpy as np
 
 from ..events.kinds import KINDS
 from ..graph.measures import measure_at, measured, undrawn
+from ..graph.proving import mark as proof_of
+from ..graph.proving import stretches
 from ..graph.shortening import short_word
 from .curves import Curve
 from .figures import scale
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
-from .style import LINES, MARKS, PLAIN, STATE_COLORS, STATES, WIDTHS
+from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATES, WIDTHS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ..branches.branch import Branch
     from ..graph.graph import Graph
 
 TEXT = 0.85  # size of labels in units of font.size
@@ -76,8 +79,17 @@ class Picture:
                     zorder=3 if state == "stable" else 2.5,
                 )
                 self.curves.append(curve)
+            self._draw_proved(branch, width)
         if self.color == "word":
             self.key.colors |= words
+
+    def _draw_proved(self, branch: Branch, width: float) -> None:
+        """A pale band beneath the stretches of a branch that are proved."""
+        px, py = measured(branch, self.x), measured(branch, self.y)
+        for points, _ in stretches(self.graph, branch.label):
+            style = {"linewidth": 5.0 * width, "solid_capstyle": "butt", "zorder": 1.5}
+            self.axes.plot(px[points], py[points], **PROVED, **style)
+            self.key.proved = True
 
     def draw_points(self, ends: bool) -> None:
         import matplotlib as mpl
@@ -104,6 +116,10 @@ class Picture:
                 markeredgewidth=(0.5 if mark.filled else 1.3) * size / 6.0,
                 zorder=6,
             )
+            if proof_of(self.graph, point.label):
+                look = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0, "zorder": 5.5}
+                self.axes.plot([px], [py], markersize=2.2 * size, **PROVED, **look)
+                self.key.proved = True
             self.spots.append((point.label, point.kind, px, py))
 
     def key_of_marks(self) -> None:

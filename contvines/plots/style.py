@@ -10,6 +10,7 @@ from ..events.kinds import KINDS
 LINES: dict[str, Any] = {"stable": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
 WIDTHS = {"stable": 1.25, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
 STATE_COLORS = {"stable": "#0b3c6f", "unstable": "#d9484b", "virtual": "#8a8a8a"}
+PROVED = {"color": "#7fc97f", "alpha": 0.45}  # beneath what is proved
 STATES = {"stable": "stable", "unstable": "unstable", "virtual": "virtual (beyond a border)"}
 
 

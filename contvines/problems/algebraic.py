@@ -18,10 +18,11 @@ from .pieces import Pieces
 from .protocol import Seed, Symmetry
 from .registry import addresses, find_callables
 from .scales import given_scale
+from .simulated import SimulatedFlow
 from .spectra import WATCHED, reference_of, vectors_of, watched, without_roundoff
 
 
-class AlgebraicProblem(CallableProblem):
+class AlgebraicProblem(SimulatedFlow, CallableProblem):
     """Solutions of F(u, p) = 0, or equilibria of u' = F(u, p).
 
     Parameters

@@ -260,12 +260,17 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     def _shortest(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The points of the shortest cycle of which u is a repetition, and the differences at which points are one."""
         nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
+        signs = self.pieces.signs.reshape(n, -1)
         own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
         scale = SAME * (own + np.abs(nodes).max(axis=0))
         root = next(
             r
             for r in range(1, n + 1)
-            if n % r == 0 and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
+            if n % r == 0
+            and (np.abs(nodes - np.roll(nodes, r, axis=0)) <= scale).all()
+            and np.array_equal(
+                signs, np.roll(signs, r, axis=0)
+            )  # at a switch points meet that part beyond it
         )
         return nodes[:root], scale
 

@@ -21,6 +21,8 @@ from .functions import NotEvaluable, UserFunction
 from .parameters import ParameterSet
 from .protocol import Seed
 
+NOTHING = 1e-3  # margins below this part of their change over a small step vanish
+
 
 class Pieces:
     """Switches and the signs that select a piece.
@@ -141,7 +143,7 @@ class Pieces:
 
 
 def _inward(problem: Any, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
-    """The tangent of a problem's branch through a border point, along which margin j grows; None if there is none."""
+    """The tangent at a border point along which margin j grows, and all that vanish with it; None if there is none."""
     n = problem.dimension
     work, step, tangent = problem.workspace(), np.zeros(n + 1), np.zeros(n + 1)
     u = np.ascontiguousarray(u, dtype=float)
@@ -152,9 +154,12 @@ def _inward(problem: Any, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
     if not np.isfinite(tangent).all() or not tangent.any():
         return None
     size = float(np.abs(tangent).max())
-    h = 1e-5 * float(np.abs(np.append(u, p)).max() or 1.0) / size
+    unit = 1.0 if problem.scales is None else float(problem.scales.unknowns.max())
+    h = 1e-5 * max(unit, float(np.abs(np.append(u, p)).max())) / size
     ahead, back = (problem.margins(u + s * h * tangent[:-1], p + s * h * tangent[-1]) for s in (1.0, -1.0))
-    growth = ahead[j] - back[j]
-    if not abs(growth) > 0.0:
+    growth = ahead - back
+    if not abs(growth[j]) > 0.0:
         return None
-    return tangent if growth > 0.0 else -tangent
+    side = np.sign(growth[j])
+    vanishing = np.abs(ahead + back) <= NOTHING * np.abs(growth)  # of a doubled cycle one in either half
+    return side * tangent if (side * growth[vanishing] > 0.0).all() else None

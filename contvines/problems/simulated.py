@@ -54,6 +54,86 @@ class MapSection:
 class SimulatedMap:
     """What a MapProblem says of its motions."""
 
+    population: Any
+
     def section(self, p: float) -> MapSection:
         """Its motions, once per period of the cycle."""
         return MapSection(self, p)
+
+    def witness(self, p: float, starts: int = 24) -> list[dict[str, Any]]:
+        """What starts round the cycle settle on at a parameter value: "word", "periods" and "kind" of each motion."""
+        population = self.population()
+        motions, _, _ = population.settle(population.starts(starts, 7, p), p)
+        found = {(m.word, m.periods, "cycle" if m.word else m.kind) for m in motions}
+        return [
+            {"word": word or None, "periods": periods, "kind": kind} for word, periods, kind in sorted(found)
+        ]
+
+
+class SimulatedFlow:
+    """What an AlgebraicProblem says of the motions of u' = F(u, p)."""
+
+    spectrum: str
+    node: int
+    u0: np.ndarray
+    residuals: Any
+
+    def witness(self, p: float, starts: int = 12) -> list[dict[str, Any]]:
+        """What starts round u0 settle on: equilibria, each once, oscillations, or nothing within reach; none without a flow.
+
+        "word" and "kind" are "equilibrium", "oscillation" or "escapes"; an equilibrium has its place, "u".
+        """
+        if self.spectrum != "flow" or self.node > LARGEST or self.node != len(self.u0):
+            return []
+        middle = np.asarray(self.u0, dtype=float)
+        scales = getattr(self, "scales", None)
+        size = np.maximum(np.abs(middle), 1.0 if scales is None else scales.unknowns)
+        generator = np.random.default_rng(7)
+        found: list[dict[str, Any]] = []
+        for i in range(starts):
+            spread = np.zeros(self.node) if i == 0 else generator.uniform(-SPREAD, SPREAD, self.node)
+            kind, u = self._settled(middle + spread * size, p, size)
+            new = {"word": kind, "periods": 0, "kind": kind}
+            if kind == "equilibrium":
+                new["u"] = [float(x) for x in u]
+            if not any(_one(new, other, size) for other in found):
+                found.append(new)
+        return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
+
+    def _settled(self, u: np.ndarray, p: float, size: np.ndarray) -> tuple[str, np.ndarray]:
+        from scipy.integrate import LSODA
+
+        def rate(t: float, x: np.ndarray) -> np.ndarray:
+            try:
+                return np.asarray(self.residuals(x, p), dtype=float)
+            except (ArithmeticError, ValueError):
+                return np.full(len(x), np.nan)
+
+        with np.errstate(all="ignore"):
+            speed = float((np.abs(rate(0.0, u)) / size).max())
+            span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
+            solver = LSODA(rate, 0.0, u, np.inf, rtol=1e-8, atol=1e-10 * size)
+            rest, since = u, 0.0  # where the motion was, and when
+            for _ in range(PATIENCE):
+                solver.step()
+                x = solver.y
+                if solver.status == "failed" or not float((np.abs(x) / size).max()) < FAR:
+                    return "escapes", u
+                if float((np.abs(x - rest) / size).max()) > STILL:
+                    rest, since = x.copy(), solver.t
+                elif solver.t - since > span:
+                    return "equilibrium", x.copy()
+        return "oscillation", u
+
+
+PATIENCE = 4000  # steps of the integration of one start
+SPREAD = 2.0  # of the starts, in sizes of the unknowns
+LARGEST = 60  # unknowns of equations that are integrated
+FAR = 1e4  # times its size: escaped
+STILL = 1e-5  # distance, relative to the size, that counts as rest
+
+
+def _one(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> bool:
+    if a["kind"] != b["kind"]:
+        return False
+    return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < 1e-3 * size).all())

@@ -21,6 +21,7 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 
 from .functions import NotEvaluable
 from .protocol import Kernels
+from .sparse_loci import assign, flip, matrix, transpose
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
 ENOUGH = 1e-9  # ... at which it will do
@@ -314,4 +315,14 @@ def inspect(data: Any, u: np.ndarray, p: float, work: SparseWork, row: np.ndarra
         row[m:] = data.margins(u, p)
 
 
-KERNELS = Kernels(linearise, bordered, inspect, compiled=False)
+KERNELS = Kernels(
+    linearise,
+    bordered,
+    inspect,
+    compiled=False,
+    assign=assign,
+    flip=flip,
+    transpose=transpose,
+    column=1,
+    matrix=matrix,
+)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..graph.measures import default_measure
-from ..graph.proving import mark
+from ..graph.proving import mark, told
 from ..graph.shortening import short_word
 from ..plots.style import MARKS, PLAIN, axis_label
 from .numbers import plain_label, rounded, shortened
@@ -84,6 +84,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
         "stable_points": branch.stable.astype(int).tolist(),
         "measures": measures,
         "marks": [[int(i), label] for i, label in branch.marks],
+        "proof": told(graph, branch.label),
         "multipliers": [_pairs(row[:8]) for row in branch.multipliers],
         "margin": shortened(branch.margin),
     }
@@ -100,7 +101,7 @@ def _point(point: SpecialPoint, proof: str) -> dict[str, Any]:
 
 
 def _attractor(about: Attractor) -> dict[str, Any]:
-    name = short_word(about.word) if about.word else about.kind
+    name = short_word(about.name)
     return {
         "value": float(about.value),
         "name": name if about.periods <= 1 else f"{name} k={about.periods}",

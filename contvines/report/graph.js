@@ -116,10 +116,10 @@ table("special", ["point", "kind", "on", data.parameter, "", "leads to"], data.s
     [p.criticality, p.proof || (p.real ? "" : "virtual")].filter(Boolean).join(" "), leads]);
   return p.index >= 0 && branches[p.branch] ? clickable(row, () => jump(p.branch, p.index, p.label)) : row;
 });
-table("branches", ["branch", "what", data.parameter, "stable", "points"], data.branches, (b) => {
+table("branches", ["branch", "what", data.parameter, "stable", "proved", "points"], data.branches, (b) => {
   const row = cells(element("tr", undefined, { id: `row-${b.label}` }), [b.label,
     [b.what, b.periods === null ? "" : `k=${b.periods}`, b.symmetric ? "symmetric" : "", b.real ? "" : "virtual"].filter(Boolean).join(" "),
-    `${number(b.range[0], 7)} … ${number(b.range[1], 7)}`, b.stable.map(([a, z]) => `${number(a, 7)} … ${number(z, 7)}`).join(", ") || "–", String(b.points)]);
+    `${number(b.range[0], 7)} … ${number(b.range[1], 7)}`, b.stable.map(([a, z]) => `${number(a, 7)} … ${number(z, 7)}`).join(", ") || "–", b.proof || "", String(b.points)]);
   if (!b.real) row.className = "virtual";
   return clickable(row, () => jump(b.label, Math.floor(b.points / 2)));
 });

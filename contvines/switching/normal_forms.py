@@ -3,8 +3,8 @@
 At a period doubling or symmetry breaking with critical multiplier m(p) the bifurcating branch is p = p0 + p2 s^2 with s the
 amplitude along the critical vector: the Lyapunov-Schmidt reduction, carried out numerically by solving at fixed small
 amplitudes and extrapolating to zero (:mod:`contvines.switching.departures`). Comparing with the normal forms
-(Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 4.5 and 7.4). The critical vector q has q.q = 1, over
-the unknowns of an algebraic problem, over the first point of a map's cycle; orbits of machines have unit rms over theirs:
+(Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 4.5 and 7.4). The critical vector q has q.q = 1 over
+the unknowns of an algebraic problem, over the first point of a cycle, of maps and of machines alike; the form is that of the return map:
 
     flip        xi -> m xi + c xi^3,  m near -1:   c = p2 d|m|/dp     supercritical for c > 0
     pitchfork   xi -> m xi + a xi^3,  m near +1:   a = -p2 dm/dp      supercritical for a < 0

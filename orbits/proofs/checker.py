@@ -196,8 +196,8 @@ def unfolded(c, box):
     p, fits = machine(c, jet(box["hull"][-1])), [len(node) == c["n"] for node in box["nodes"]]
     need(all(fits) and len(fits) == len(c["events"]) and all(r >= 0 for *_, r in flat), "nodes do not fit the word")
     need(all(p[name].get(VALUE, 0) >= 0 for name in c["parameters"] if name != "slope") and p["frequency"][VALUE] > 0, "out of range")
-    need(all(p[f"bounce{s}"][VALUE] > 0 and p[f"bounce{s}"][VALUE] <= 1 for s in SIDES), "a restitution is out of range")
-    need(all((p[f"limit{s}"][VALUE] == 0 if c["frictionless"] else p[f"limit{s}"][VALUE] > 0) for s in SIDES), "friction does not fit the word")
+    for limit, r in ((p[f"limit{s}"][VALUE], p[f"bounce{s}"][VALUE]) for s in SIDES):
+        need((limit == 0 if c["frictionless"] else limit > 0) and r > 0 and r <= 1, "friction or restitution is out of range")
     exists(c, box)
     return box
 
@@ -229,8 +229,7 @@ def verify(c):
             q = (orbit["hull"][at] - box["flat"][at][0]) / box["flat"][at][1]
             within = [abs(x - m - s * q) < r for x, (m, s, r) in zip(orbit["hull"], box["flat"]) if r != 0]
             need(all(within) and abs(q) <= box["q"].b, "an orbit lies outside its tile")
-        if kind:
-            need(i in (1, len(boxes) - 2) and changed(c, box, *boxes[i - 1:i + 2:2]), "nothing special happens in a tile")
+        need(not kind or (i in (1, len(boxes) - 2) and changed(c, box, *boxes[i - 1:i + 2:2])), "nothing special happens in a tile")
         if i % 2 or len(boxes) == 1:
             border = box.get("condition") if kind == "border" else None
             found = conditions(c, box, lambda key, border=border: key != border).values()

@@ -21,8 +21,12 @@ from orbits.proofs.stability import basis_texts
 from orbits.proofs.tiles import Along, Tile, lay
 from orbits.proofs.varying import Varying
 
-APART = "2e-11"  # of either orbit from the special point
-TURN = "4e-6"  # the same in the unknown that goes on where the parameter turns
+APART = (
+    "2e-11",
+    "2e-14",
+    "2e-17",
+)  # of either orbit from the special point; nearer where the branch bends sharply
+TURN = ("4e-6", "1e-7", "4e-9")  # the same in the unknown that goes on where the parameter turns
 WIDTH = 1.25  # of the tile
 
 
@@ -48,31 +52,48 @@ def crossing(
     Obstacle
         If one of the three is not proved, or the orbits do not lie in the tile.
     """
+    if not len(motif):
+        center, half = texts(value.mid(), 40)[0], f"{float(APART[0]) * WIDTH:.3g}"
+        low, high = (_shifted(center, sign, APART[0]) for sign in (-1, 1))
+        return [resting_box(motif, low), resting_box(motif, center, half), resting_box(motif, high)]
+    for apart in APART if turn is None else TURN:
+        try:
+            return _chain(motif, p, varying, z, value, bits, turn, apart)
+        except Obstacle as obstacle:
+            if apart in (APART[-1], TURN[-1]):
+                raise obstacle from None
+    raise AssertionError("no distance to try")
+
+
+def _chain(
+    motif: Motif,
+    p: Mapping[str, Any],
+    varying: Varying,
+    z: Sequence[Sequence[Any]],
+    value: Any,
+    bits: int,
+    turn: Normal | None,
+    apart: str,
+) -> list[Entry]:
+    """`crossing` with orbits this far from the point."""
     n = motif.node
     nodes = [list(node[:n]) for node in z]
     center = texts(value.mid(), 40)[0]
     if turn is None:
-        ends = [_shifted(center, sign, APART) for sign in (-1, 1)]
-        if not len(motif):
-            half = f"{float(APART) * WIDTH:.3g}"
-            return [
-                resting_box(motif, ends[0]),
-                resting_box(motif, center, half),
-                resting_box(motif, ends[1]),
-            ]
-        along, half, starts = Along(motif, p, varying, None, ball(center)), APART, [nodes, nodes]
+        ends = [_shifted(center, sign, apart) for sign in (-1, 1)]
+        along, starts = Along(motif, p, varying, None, ball(center)), [nodes, nodes]
     else:
         place = turn.block, turn.component
-        center, half = texts(nodes[place[0]][place[1]].mid(), 40)[0], TURN
-        along = Along(motif, p, varying, place, ball(_shifted(center, 1, TURN)))
-        sides = [
-            [[a + b * ball(TURN) * sign for a, b in zip(node[:n], node[n:])] for node in z]
+        center = texts(nodes[place[0]][place[1]].mid(), 40)[0]
+        along = Along(motif, p, varying, place, ball(_shifted(center, 1, apart)))
+        starts = [
+            [[a + b * ball(apart) * sign for a, b in zip(node[:n], node[n:])] for node in z]
             for sign in (-1, 1)
         ]
-        _, (there,) = refine(along, sides[1], [value], bits)
-        ends, starts = [texts(there.mid(), 40)[0]] * 2, sides
+        _, (there,) = refine(along, starts[1], [value], bits)
+        ends = [texts(there.mid(), 40)[0]] * 2
         along.at = ball(center)
-    tile = lay(along, center, f"{float(half) * WIDTH:.3g}", nodes, value)
+    tile = lay(along, center, f"{float(apart) * WIDTH:.3g}", nodes, value)
     if tile is None:
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
     boxes = [orbit_at(motif, p, varying, end, start, bits) for end, start in zip(ends, starts)]

@@ -319,9 +319,12 @@ class Pieces:
     Attributes
     ----------
     pieces : tuple of Piece
+    places : tuple of (int, int)
+        The points of the branch between which each of them lies.
     """
 
     pieces: tuple[Piece, ...]
+    places: tuple[tuple[int, int], ...] = ()
     kind: str = field(default="branch", init=False)
 
     @property

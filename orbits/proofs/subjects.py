@@ -22,6 +22,7 @@ from orbits.proofs.varying import Varying
 from orbits.words import Word
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
+NARROW = 1e-12  # half a tile about a special point, from which floats can go on
 PLAIN = ("end", "user")  # kinds of special points where nothing happens
 
 
@@ -144,7 +145,7 @@ def of_branch(
             known[place] = _joinable(problem, motif, (special or {}).get(place))
         return known[place]
 
-    pieces = []
+    pieces, between = [], []
     for first, last in pairwise(cuts):
         order = np.argsort(values[first : last + 1])
         x, u = values[first : last + 1][order], points[first : last + 1][order]
@@ -169,10 +170,11 @@ def of_branch(
             columns = [np.interp(p, x, u[:, j]) for j in range(u.shape[1])]
             return np.array(columns).reshape(len(motif), -1)
 
+        between.append((first, last))
         pieces.append(prove_piece(motif, guess, given, varying, low, high, (ends[0], ends[1])))
     if not pieces:
         raise ProofError("the branch has no stretch between special points in this interval")
-    return Pieces(tuple(pieces))
+    return Pieces(tuple(pieces), tuple(between))
 
 
 def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
@@ -183,7 +185,8 @@ def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
         proof = of_point(problem, found.kind, found.u, float(found.value), found.margin_index)
     except ProofError:
         return None
-    return proof if proof.chain and proof.motif == motif else None
+    wide = bool(proof.chain) and float(proof.chain[1]["half_width"]) > NARROW
+    return proof if wide and proof.motif == motif else None
 
 
 def _critical(

@@ -3,6 +3,7 @@
 import numpy as np
 
 import contvines as cv
+from contvines.command.compose import checked_study, first_orbit, run_diagram
 from contvines.continuation import march as source
 from contvines.continuation.binding import bind
 from orbits import Absorber
@@ -17,9 +18,17 @@ MACHINE = Absorber(
 )
 
 
+class AsWritten(OrbitProblem):
+    """Orbits followed with all their events, though they repeat a shorter one."""
+
+    def root(self, u, p):
+        """None: the word is kept."""
+        return None
+
+
 def problem(l):
     """The full word written l/2 times, not reduced by its symmetry."""
-    found = OrbitProblem(MACHINE, Word.parse("LR").repeat(l // 2), l // 2, "amplitude", case.PARAMS)
+    found = AsWritten(MACHINE, Word.parse("LR").repeat(l // 2), l // 2, "amplitude", case.PARAMS)
     found.u0, found.p0, _ = case.start(l)
     return found
 
@@ -71,4 +80,17 @@ class PublicAPI:
     def run(self):
         """Returns the number of points on the branch."""
         self.graph = cv.diagram(self.problem, within=case.INTERVAL, depth=0, settings=self.settings)
+        return sum(len(branch) for branch in self.graph)
+
+
+class Diagram:
+    """The whole automatic diagram of a study in a warm process: all branches, borders crossed, special points replayed."""
+
+    def __init__(self, path):
+        self.study = checked_study(path)
+        self.seed = first_orbit(self.study)
+
+    def run(self):
+        """Returns the number of points on all branches."""
+        self.graph = run_diagram(self.study, self.seed)
         return sum(len(branch) for branch in self.graph)

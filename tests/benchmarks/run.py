@@ -23,7 +23,7 @@ from . import case, scripts
 from .auto import Auto
 from .flights import MODELS, Flights
 from .floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
-from .ours import Core, PublicAPI
+from .ours import Core, Diagram, PublicAPI
 
 ROOT = Path(__file__).parents[2]
 LENGTHS = (2, 8, 32, 128, 512)
@@ -145,6 +145,12 @@ def growth(rounds, lengths=GROWTH):
     return dict(zip(lengths, seconds)), slopes
 
 
+def whole_diagram(rounds, study="friction.toml"):
+    """Seconds per point of an example's whole diagram and of the compiled loop alone: {name: seconds}."""
+    diagram, core = Diagram(ROOT / "examples" / study), Core(2)
+    return interleaved({"whole diagram": diagram.run, "compiled loop": core.run}, rounds)
+
+
 def simulation(rounds, count=20000):
     """Nanoseconds per impact: {model: {name: seconds}}."""
     table = {}
@@ -235,6 +241,12 @@ def main(arguments=None):
     print(
         "exponent: "
         + ", ".join(f"{slope:.2f} {what}" for slope, what in zip(slopes, ("overall", "from l=32")))
+    )
+
+    times = whole_diagram(rounds)
+    show("microseconds per point", list(times), ["friction"], lambda name, _: number(times[name], 1e6))
+    print(
+        f"the whole diagram takes {times['whole diagram'] / times['compiled loop']:.0f} times the compiled loop"
     )
 
     flights = simulation(rounds, 2000 if options.quick else 20000)

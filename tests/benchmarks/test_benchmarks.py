@@ -53,6 +53,13 @@ def test_public_api_follows_both_directions():
     np.testing.assert_allclose(branch.values, exact_amplitude(branch.points), atol=1e-10)
 
 
+def test_whole_diagram_has_what_the_example_says():
+    times = run.whole_diagram(1)
+    assert (
+        list(times) == ["whole diagram", "compiled loop"] and times["whole diagram"] > times["compiled loop"]
+    )
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_simulations_agree(name):
     flights = Flights(name)

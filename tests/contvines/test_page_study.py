@@ -1,5 +1,7 @@
 """Studies whose machine is a page of Python."""
 
+import json
+
 import pytest
 from typer.testing import CliRunner
 
@@ -86,3 +88,24 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     assert cv.load("stop.vines", trust=True)["B1"].problem is not None
     (study.parent / "stop.py").write_text(PAGE + "# another\n")
     assert "the page has changed since this file was made" in run("show", "stop.vines").output
+
+
+def test_an_atlas_and_basins_of_a_page(study):
+    study.write_text(study.read_text() + "[atlas]\nvalues = [2.3]\nstarts = 6\n")
+    done = run("atlas", study, "-q", "-o", "a.vines")
+    assert done.exit_code == 0, done.output
+    met = cv.load("a.vines").attractors
+    assert [(a.word, a.kind, a.share) for a in met] == [("R", "periodic", 1.0)]
+    done = run("basins", study, "--at", "2.3", "--points", "4", "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["plane"] == ["x", "v"] and {a["kind"] for a in found["attractors"]} == {
+        "periodic",
+        "impossible",
+    }
+
+
+def test_sections_of_a_page_study_are_checked(study):
+    study.write_text(study.read_text() + '[chart]\nparameter = "gab"\nwithin = [0.0, 1.0]\n')
+    with pytest.raises(StudyError, match="gab.*did you mean 'gap'"):
+        read_study(study)

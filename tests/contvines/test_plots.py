@@ -394,3 +394,13 @@ def test_a_branch_that_runs_away_does_not_set_the_scale(graph):
     graph.special.pop("EP1")
     low, high = plot_diagram(graph, y="u0").axes[0].get_ylim()
     assert high < 10
+
+
+def test_ticks_stay_when_a_figure_is_drawn_again_outside_the_style(graph):
+    """The number of ticks follows the size of their labels, which must not be taken from the settings of the moment."""
+    figure = plot_diagram(graph, figsize=(3.4, 2.4))
+    axes = figure.axes[0]
+    before = [label.get_text() for label in axes.get_yticklabels()], axes.yaxis.label.get_window_extent().x0
+    with mpl.rc_context({"font.size": 20}):
+        figure.draw_without_rendering()
+    assert ([t.get_text() for t in axes.get_yticklabels()], axes.yaxis.label.get_window_extent().x0) == before

@@ -307,6 +307,17 @@ def find_attractors(
     return found
 
 
+def witness(machine: Machine, params: np.ndarray, starts: int) -> list[dict[str, Any]]:
+    """Word, periods and kind of what random starts lead to, sorted; empty where nothing can be simulated."""
+    parameters = dict(zip(machine.parameter_names, map(float, params)))
+    try:
+        found = find_attractors(machine, starts, 7, parameters=parameters)
+    except SimulationError:
+        return []
+    named = {(a.word.canonical().text if a.word is not None else "", a.periods, a.kind): a for a in found}
+    return [{"word": word or None, "periods": periods, "kind": kind} for word, periods, kind in sorted(named)]
+
+
 def _same(one: Any, other: Any) -> bool:
     if one[0] != other[0] or (one[1] is None) != (other[1] is None):
         return False

@@ -38,6 +38,7 @@ class Work(NamedTuple):
     numbers: np.ndarray
     drift: np.ndarray
     still: np.ndarray
+    turned: np.ndarray  # 1 where F_u stands for its transpose
 
 
 def workspace(length: int, states: int, numbers: int) -> Work:
@@ -56,6 +57,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
         np.zeros((L, numbers)),
         np.zeros(n),
         np.zeros((n, d)),
+        np.zeros(1),
     )
 
 
@@ -65,6 +67,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
     nodes = np.asarray(u).reshape(length, n + 1)
     if not (np.all(np.isfinite(nodes)) and math.isfinite(p)) or not data.allowed(p):
         return math.inf
+    work.turned[0] = 0.0
     numbers = work.numbers
     numbers[:] = data.base_numbers
     numbers[:, data.index] = p
@@ -187,8 +190,10 @@ def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
     matrix[rows, :d] += last_following
     for j in data.pinned:
         row = (length - 1) * d + 1 + j
-        matrix[row] = 0.0
+        matrix[row, : length * d] = 0.0
         matrix[row, 1 + j : length * d : d] = 1.0 / length
+    if work.turned[0]:
+        matrix[: length * d, : length * d] = matrix[: length * d, : length * d].T.copy()
 
 
 def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
@@ -213,6 +218,9 @@ def _sparse(
     entries = np.concatenate([*blocks, work.derivative.ravel(), border])
     if not np.all(np.isfinite(entries)):
         return 0.0
+    if work.turned[0]:
+        inner = len(entries) - 2 * size - 1
+        rows, columns = (np.append(a[:inner], b[inner:]) for a, b in ((columns, rows), (rows, columns)))
     matrix = csc_matrix((entries, (rows, columns)), shape=(size + 1, size + 1))
     try:
         factors = splu(matrix)

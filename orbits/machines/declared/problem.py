@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from orbits.machines.declared import measures as measuring
+from orbits.machines.declared.attractor import witness
 from orbits.machines.declared.crossing import SAME, cross, distance
 from orbits.machines.declared.identity import is_symmetric
 from orbits.machines.declared.identity import root as shortest
@@ -173,6 +174,10 @@ class DeclaredProblem(DeclaredSystem):
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle."""
         return Section(self.machine, self.values(p), self.word, self.periods)
+
+    def witness(self, p: float, starts: int = 4) -> list[dict[str, Any]]:
+        """What the machine settles on at a parameter value, simulated from random starts: "word", "periods" and "kind" of each motion."""
+        return witness(self.machine, self.values(p), starts)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest deviation of the event-driven simulation from the orbit over its period."""

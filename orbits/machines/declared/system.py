@@ -10,7 +10,7 @@ import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
-from orbits.machines.declared import flights
+from orbits.machines.declared import flights, loci
 from orbits.machines.declared.engine import variables_of
 from orbits.machines.declared.identity import canonical
 from orbits.machines.declared.machine import Machine
@@ -22,13 +22,18 @@ STROBED = Letter("", -1, STROBE)
 
 
 class Kernels(NamedTuple):
-    """The three functions that a continuation loop calls; plain Python."""
+    """The functions that a continuation calls; plain Python."""
 
     linearise: Any
     bordered: Any
     inspect: Any
     compiled: bool = False
     digest: str = "declared"
+    assign: Any = loci.assign
+    flip: Any = loci.flip
+    transpose: Any = loci.transpose
+    column: int = 3
+    matrix: Any = loci.matrix
 
 
 def inspect(data: DeclaredSystem, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
@@ -256,6 +261,10 @@ class DeclaredSystem:
         image = -nodes
         image[:, 0] = nodes[:, 0]
         return np.concatenate([nodes, image])
+
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        return float(np.linalg.norm(direction[: self.size + 1]))
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""

@@ -68,3 +68,5 @@ def test_a_bad_second_parameter_is_refused_in_a_sentence(graph):
         cv.locus(graph["LP1"], over="viscosity", within=(0.1, 0.9))
     with pytest.raises(ValueError, match="was made at friction = 0.5, outside of within"):
         cv.locus(graph["LP1"], over="friction", within=(0.6, 0.9))
+    with pytest.raises(ValueError, match="friction = -0.1 is out of range"):
+        cv.locus(graph["LP1"], over="friction", within=(-0.1, 0.9))

@@ -29,6 +29,7 @@ def test_two_folds_of_one_curve_are_one_locus(graph, chart):
     assert len(graph.of_kind("fold")) == 2
     assert [locus.kind for locus in chart.loci.values()] == ["fold"]
     assert [point.kind for point in chart.points.values()] == ["cusp"]
+    assert chart.points["CP1"].coefficients["c"] == pytest.approx(-1.0, abs=1e-9)  # u' = a + b u - u^3
     assert chart.points["CP1"].on == [next(iter(chart.loci))]
     assert chart.finished and chart.parameters == ("a", "b")
 
@@ -40,6 +41,7 @@ def test_the_wedge_of_the_cusp_is_a_region_of_its_own(chart):
     shares = sorted(region.share for region in chart.regions)
     assert len(shares) == 2
     assert shares[0] == pytest.approx(area, abs=0.01)
+    assert sorted(region.words for region in chart.regions) == [["2 x equilibrium"], ["equilibrium"]]
 
 
 def test_json_is_the_documented_one(chart):

@@ -166,6 +166,7 @@ def test_lorenz_84_zero_hopf():
 
 def test_first_lyapunov_coefficients_against_closed_forms():
     from contvines.forms.coefficients import Forms
+    from contvines.forms.critical import normal_form
 
     # delayed logistic map at r = 2: Kuznetsov's textbook example 4.? has theta0 = pi/3 and a negative coefficient;
     # the value follows from the same formula with B((x, y), (u, v)) = (-2 (x v + y u), 0), C = 0, in exact arithmetic
@@ -199,4 +200,5 @@ def test_first_lyapunov_coefficients_against_closed_forms():
     planar = cv.AlgebraicProblem(
         lambda u, p: np.array([u[1], p + a * u[0] ** 2 + b * u[0] * u[1]]), [0.0, 0.0], 0.0, spectrum="flow"
     )
-    assert Forms(planar, np.zeros(2), 0.0).bogdanov_takens() == pytest.approx((a, b), abs=1e-11)
+    found = normal_form("bogdanov-takens", Forms(planar, np.zeros(2), 0.0), [])
+    assert found == pytest.approx({"a": a, "b": b}, abs=1e-11)

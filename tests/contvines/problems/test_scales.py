@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.problems.scales import in_fields
 from tests.contvines.problems.demos import equilibria as eq
 from tests.contvines.problems.demos import maps
 from tests.contvines.problems.demos.demo import NUMBERS
@@ -79,3 +80,11 @@ def test_rounding_is_no_bend():
     """sin(1 + u) - sin(1) makes stairs of u below 1e-16; u and the parameter have the scale 1."""
     problem = cv.AlgebraicProblem(lambda u, p: np.sin(1.0 + u) - np.sin(1.0) - p, [0.0], 0.0)
     assert 0.01 < problem.functions.lengths[0] < 100.0
+
+
+def test_fields_of_unlike_sizes_keep_their_sizes():
+    small, large = np.linspace(1.0, 9.0, 15), np.linspace(1e4, 9e4, 15)
+    mixed = np.ravel(np.column_stack([small, large]))
+    found = in_fields(mixed)
+    assert found[::2] == pytest.approx(np.full(15, np.sqrt((small**2).mean())))
+    assert found[1::2] == pytest.approx(np.full(15, np.sqrt((large**2).mean())))

@@ -8,6 +8,7 @@ from orbits.borders.rewriting import FIRST, edits_at
 from orbits.borders.rewriting import rewritten as applied
 from orbits.contacts.changes import Grows
 from orbits.orbit import Orbit
+from orbits.problem import OrbitProblem
 from orbits.words import Word
 
 MACHINE = Absorber(restitution=0.7, friction=0.4, gravity=0.3, mass_ratio=0.02)
@@ -142,3 +143,17 @@ def test_edits_at_several_places_keep_their_places():
         word, nodes, first = applied(border.word, border.nodes, order)
         assert word.events == ("L", "s", "u", "R", "L", "s", "u", "R") and first == 1
         assert np.all(np.diff(nodes[:, 0]) >= 0.0)
+
+
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_a_change_some_rounds_later_is_that_of_the_repeated_orbit(symmetric):
+    """The rounds of a cycle are alike, and every other half of a symmetric one is the mirror image of the first."""
+    border = orbit("tt", [[0.3, -1.0], [0.3 + np.pi, 1.0]])
+    problem = OrbitProblem(MACHINE, border.word, 1, "amplitude", border.params, symmetric)
+    (first,) = edits_at(border, WALL, problem.length)
+    whole = border.repeat(4)
+    for rounds in range(4):
+        moved = first.later(rounds, problem)
+        (wanted,) = edits_at(whole, 4 * problem.length * rounds + WALL)
+        assert moved.change == wanted.change
+        np.testing.assert_allclose(moved.nodes, wanted.nodes, atol=1e-13)

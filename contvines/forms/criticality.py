@@ -1,0 +1,99 @@
+"""Criticality of Neimark-Sacker and Hopf points, and the strong resonances next to them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .coefficients import Forms
+
+
+class Pitch(NamedTuple):
+    """What a pair on the stability boundary does: first Lyapunov coefficient, and how it is to be read.
+
+    Attributes
+    ----------
+    coefficient : float or None
+        d of a cycle, l1 of an equilibrium; None where it cannot be had.
+    criticality : {"supercritical", "subcritical"} or None
+        Supercritical: a stable circle (cycle) is born where the motion has lost its stability.
+    note : str
+        A nearby strong resonance, or that the error is as large as the coefficient.
+    """
+
+    coefficient: float | None
+    criticality: str | None
+    note: str
+
+
+RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coefficient no longer decides
+STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
+
+
+def strong_resonance(multiplier: complex) -> str:
+    """The strong resonance at which a multiplier of the full period is, "1:3" for example; "" for none."""
+    angle = abs(float(np.angle(multiplier)))
+    return next((n for n, place in STRONG.items() if abs(angle - place) < RESONANT), "")
+
+
+def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
+    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
+
+    Parameters
+    ----------
+    problem : Problem
+    u, p
+        The point.
+    spectrum : ndarray of complex
+        Raw multipliers there (of a flow they are computed here).
+    """
+    flow = problem.spectrum == "flow"
+    if getattr(problem.kernels, "matrix", None) is None:
+        return Pitch(None, None, "")
+    try:
+        forms = Forms(problem, u, p)
+        values: Any = np.linalg.eigvals(forms.J) if flow else np.asarray(spectrum, dtype=complex)
+        upper = values[values.imag > 0.0]
+        if not len(upper):
+            return Pitch(None, None, "")
+        critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
+        found, _ = forms.lyapunov(critical)
+    except (ValueError, IndexError, np.linalg.LinAlgError):
+        return Pitch(None, None, "")
+    value = float(found.value)
+    if not np.isfinite(value):
+        return Pitch(None, None, "")
+    note = ""
+    if not flow:
+        resonance = strong_resonance(complex(np.asarray(problem.to_multipliers(np.array([critical])))[0]))
+        note = f"near the strong resonance {resonance}" if resonance else ""
+    if found.error > 0.5 * abs(value):
+        return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
+    return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
+
+
+def cubic_form(problem: Any, u: np.ndarray, p: float, flip: bool) -> float | None:
+    """The cubic coefficient at a flip or pitchfork of a problem that says how long critical vectors are; else None.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ``amplitude``: the length of a direction that is to be one.
+    u, p
+        The point.
+    flip : bool
+        Critical multiplier -1.
+    """
+    if (
+        not hasattr(problem, "amplitude")
+        or problem.spectrum == "none"
+        or getattr(problem.kernels, "matrix", None) is None
+    ):
+        return None
+    factor = -1.0 if flip else (0.0 if problem.spectrum == "flow" else 1.0)
+    try:
+        found = Forms(problem, u, p).cubic(factor)
+    except (ValueError, IndexError, np.linalg.LinAlgError):
+        return None
+    return float(found.value) if np.isfinite(found.value) and found.error < 1e-3 * abs(found.value) else None

@@ -1,0 +1,246 @@
+"""Reduction to the critical directions: Taylor coefficients of a centre manifold and of the normal form on it, to any order.
+
+Coordinates w (m of them, complex in conjugate pairs) on the critical directions; H(w) = V w + ... is the manifold, N(w) = L w + ...
+the normal form. With R(u, v) the equations of one period, whose next period begins with v, or F for a flow,
+
+    maps    R(H(w), H(N(w))) = 0,        flows    F(H(w)) = DH(w) N(w),
+
+are solved degree by degree: what the lower degrees leave over is sampled along lines through the origin, where its Taylor
+coefficients are those of a fit, and balanced by new terms of H and, for the monomials that are allowed to stay, of N. Where a term may
+stand in either, it is in N, and H has no part along the critical vector (w.K h = 0). Source of the method: Kuznetsov, SIAM
+J. Numer. Anal. 36 (1999) 1104, with the multilinear forms replaced by sampling.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from itertools import combinations_with_replacement, product
+from typing import Any
+
+import numpy as np
+
+NODES = 16  # samples along a line
+SPREAD = 1.3  # directions per monomial
+RADII = tuple(0.6 * 0.55**i for i in range(9))  # relative to the scale of the unknowns
+ENOUGH = 1e-10  # relative change of the coefficients from one radius to the next that asks for no other
+CUTOFF = 1e-9  # singular values below this are zeros
+
+Monomial = tuple[int, ...]
+Series = dict[Monomial, np.ndarray]
+
+
+def monomials(m: int, degree: int) -> list[Monomial]:
+    """Exponents of the monomials of a degree in m coordinates."""
+    return [
+        tuple(sum(place == i for place in chosen) for i in range(m))
+        for chosen in combinations_with_replacement(range(m), degree)
+    ]
+
+
+def powers(w: np.ndarray, exponents: Sequence[Monomial]) -> np.ndarray:
+    """Values of monomials, shape (len(w), number), at points w of shape (n, m)."""
+    return np.stack([np.prod(w ** np.array(a), axis=1) for a in exponents], axis=1)
+
+
+def values_of(series: Mapping[Monomial, np.ndarray], w: np.ndarray) -> np.ndarray:
+    """Values of a polynomial, shape (n, ...), at points w of shape (n, m)."""
+    return powers(w, list(series)) @ np.array(list(series.values()))
+
+
+def substitution(linear: np.ndarray, degree: int, flow: bool) -> np.ndarray:
+    """T with (L w)^a = sum_b T[a, b] w^b, or, for flows, the derivative of w^a along L w."""
+    m = len(linear)
+    wanted = monomials(m, degree)
+    place = {a: i for i, a in enumerate(wanted)}
+    table = np.zeros((len(wanted), len(wanted)), dtype=complex)
+    for i, a in enumerate(wanted):
+        factors = [j for j in range(m) for _ in range(a[j])]
+        for skipped in range(degree) if flow else (None,):
+            ranges = [
+                range(m) if skipped is None or k == skipped else (factor,) for k, factor in enumerate(factors)
+            ]
+            for chosen in product(*ranges):
+                weight = complex(1.0)
+                for k, (old, new) in enumerate(zip(factors, chosen)):
+                    weight *= linear[old, new] if skipped is None or k == skipped else 1.0
+                if weight != 0.0:
+                    table[i, place[tuple(sum(c == j for c in chosen) for j in range(m))]] += weight
+    return table
+
+
+class Reduction:
+    """The centre manifold of a problem at one point, degree by degree.
+
+    Parameters
+    ----------
+    forms : Forms
+        The point, with J, K and ``rest``.
+    vectors : ndarray of complex, shape (N, m)
+        Critical directions; those of complex coordinates in conjugate pairs.
+    linear : ndarray of complex, shape (m, m)
+        L; diagonal, or with Jordan blocks.
+    real : ndarray of complex, shape (m, m)
+        w = real @ xi for real xi: (1, i; 1, -i) for a conjugate pair.
+    stay : sequence of (int, Monomial)
+        Which monomials may stand in which equation of the normal form.
+    radius : float
+        Of the samples, in units of the unknowns.
+    """
+
+    def __init__(
+        self,
+        forms: Any,
+        vectors: np.ndarray,
+        linear: np.ndarray,
+        real: np.ndarray,
+        stay: Sequence[tuple[int, Monomial]],
+        radius: float,
+    ) -> None:
+        self.forms, self.linear, self.real, self.radius = forms, np.asarray(linear, complex), real, radius
+        self.m = len(self.linear)
+        self.vectors, self.stay = np.asarray(vectors, complex), list(stay)
+        units = [tuple(int(i == j) for i in range(self.m)) for j in range(self.m)]
+        self.H: Series = {unit: self.vectors[:, j] for j, unit in enumerate(units)}
+        self.N: dict[Monomial, np.ndarray] = {unit: self.linear[:, j].copy() for j, unit in enumerate(units)}
+        self.degree = 1
+
+    def to(self, degree: int) -> Reduction:
+        """Go on to a degree."""
+        while self.degree < degree:
+            self.degree += 1
+            self._balance(self.degree)
+        return self
+
+    # ------------------------------------------------------------------ what is left over
+    def _rest(self, w: np.ndarray) -> np.ndarray:
+        """What H and N, as far as they are known, leave over in the equations at points w, shape (n, N)."""
+        here, drift = np.real(values_of(self.H, w)), values_of(self.N, w)
+        rest = self.forms.rest
+        if not self.forms.flow:
+            return np.array([rest(x, y) for x, y in zip(here, np.real(values_of(self.H, drift)))])
+        rate = np.zeros(here.shape, dtype=complex)
+        for j in range(self.m):
+            slopes = {_less(a, j): a[j] * c for a, c in self.H.items() if a[j]}
+            rate += drift[:, j, None] * values_of(slopes, w)
+        return np.array([rest(x, None) for x in here]) - np.real(rate)
+
+    def _left_over(self, degree: int) -> np.ndarray:
+        """Taylor coefficients of this degree of what is left over, shape (number of monomials, N)."""
+        wanted = monomials(self.m, degree)
+        count = int(np.ceil(SPREAD * len(wanted))) + 1
+        if self.m == 1:
+            lines = np.ones((1, 1))
+        elif self.m == 2:
+            angles = np.pi * (np.arange(count) + 0.25) / count
+            lines = np.column_stack([np.cos(angles), np.sin(angles)])
+        else:
+            lines = np.random.default_rng(3).standard_normal((4 * count, self.m))
+            lines /= np.linalg.norm(lines, axis=1)[:, None]
+        nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+        weights = fit_weights(degree)
+        sizes = np.abs(lines @ self.real.T @ np.eye(self.m)).max(axis=1)
+        values = []
+        for line, size in zip(lines, sizes):
+            r = self.radius / (size * max(float(np.abs(self.vectors).max()), 1e-300))
+            samples = self._rest(np.outer(r * nodes, self.real @ line))
+            values.append(weights @ samples / r**degree)
+        table = powers(lines @ self.real.T, wanted)
+        return np.linalg.lstsq(table, np.array(values).astype(complex), rcond=None)[0]
+
+    # ------------------------------------------------------------------ what balances it
+    def _balance(self, degree: int) -> None:
+        wanted, left = monomials(self.m, degree), self._left_over(degree)
+        if not np.isfinite(left).all():
+            raise ValueError("the equations cannot be evaluated near the special point")
+        table = substitution(self.linear, degree, self.forms.flow)
+        diagonal = np.abs(table - np.diag(np.diag(table))).max() == 0.0
+        groups = [[b] for b in range(len(wanted))] if diagonal else [list(range(len(wanted)))]
+        for group in groups:
+            self._solve(group, wanted, left, table)
+
+    def _solve(self, group: list[int], wanted: list[Monomial], left: np.ndarray, table: np.ndarray) -> None:
+        forms, n = self.forms, self.forms.n
+        open_ = forms.J if forms.flow else forms.J - forms.K
+        allowed = [(i, b) for b in group for i, a in self.stay if a == wanted[b]]
+        size = n * len(group)
+        matrix = np.zeros((size, size + len(allowed)), dtype=complex)
+        for row, b in enumerate(group):
+            rows = slice(row * n, (row + 1) * n)
+            matrix[rows, rows] += open_
+            for column, a in enumerate(group):
+                matrix[rows, column * n : (column + 1) * n] += table[a, b] * forms.K
+            for k, (i, place) in enumerate(allowed):
+                if place == b:
+                    matrix[rows, size + k] = forms.K @ self.vectors[:, i]
+        side = -left[group].reshape(-1)
+        if len(group) == 1 and allowed:  # no part along the critical vectors
+            lefts = [forms.null(table[group[0], group[0]])[1] for _ in allowed]
+            rows = np.array([np.append(w @ forms.K, np.zeros(len(allowed))) for w in lefts])
+            matrix, side = np.vstack([matrix, rows]), np.append(side, np.zeros(len(allowed)))
+        found = np.linalg.lstsq(matrix, side, rcond=CUTOFF)[0]
+        for row, b in enumerate(group):
+            self.H[wanted[b]] = found[row * n : (row + 1) * n]
+        for k, (i, b) in enumerate(allowed):
+            self.N.setdefault(wanted[b], np.zeros(self.m, dtype=complex))[i] = found[size + k]
+
+
+def _less(exponents: Monomial, j: int) -> Monomial:
+    return tuple(e - (i == j) for i, e in enumerate(exponents))
+
+
+@cache
+def fit_weights(degree: int) -> np.ndarray:
+    """Weights of samples at Chebyshev nodes in the coefficient of t^degree of the polynomial through them, on [-1, 1]."""
+    nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+    chebyshev = np.polynomial.chebyshev
+    series = np.linalg.inv(chebyshev.chebvander(nodes, NODES - 1))
+    parts = [chebyshev.cheb2poly(np.eye(NODES)[k])[degree] if k >= degree else 0.0 for k in range(NODES)]
+    return np.array(parts) @ series
+
+
+def reduced(
+    forms: Any,
+    vectors: np.ndarray,
+    linear: np.ndarray,
+    real: np.ndarray,
+    stay: Sequence[tuple[int, Monomial]],
+    degree: int,
+    wanted: Callable[[dict[Monomial, np.ndarray]], Mapping[str, float]],
+) -> dict[str, float]:
+    """Coefficients of a normal form, from the radius of the samples at which they are known best.
+
+    Parameters
+    ----------
+    forms, vectors, linear, real, stay
+        As for :class:`Reduction`.
+    degree : int
+    wanted : callable
+        N -> coefficients by name.
+
+    Raises
+    ------
+    ValueError
+        If the equations cannot be evaluated near the point, or the coefficients are not known to two digits.
+    """
+    scale = max(float(np.sqrt(np.mean(forms.u**2))), 1.0)
+    best: dict[str, float] = {}
+    error, before = np.inf, None
+    for radius in RADII:
+        try:
+            now = dict(wanted(Reduction(forms, vectors, linear, real, stay, radius * scale).to(degree).N))
+        except ValueError:
+            continue
+        if before is not None:
+            sizes = 1e-12 + max(abs(v) for v in now.values())
+            change = max(abs(now[name] - before[name]) for name in now) / sizes
+            if change < error:
+                error, best = change, now
+                if error < ENOUGH:
+                    break
+            elif change > 100.0 * error:
+                break
+        before = now
+    if not error < 1e-2:
+        raise ValueError("the coefficients are not known to two digits")
+    return best

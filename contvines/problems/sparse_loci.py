@@ -1,0 +1,36 @@
+"""What a locus in a second parameter, or a normal form, asks of equations with a sparse Jacobian beside solving them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+LARGEST = 300  # unknowns up to which a dense matrix is made for normal forms
+
+
+def assign(data: Any, other: Any, value: float) -> None:
+    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+    data.values.assign(other.parameter, value)
+
+
+def flip(data: Any, work: Any, sign: float) -> None:
+    """Nothing: what has a sparse Jacobian is no map."""
+
+
+def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
+    """The transposed Jacobian, with another last column, into another workspace."""
+    if not sp.issparse(work.jacobian):
+        raise ValueError(
+            "loci need the transposed Jacobian: give it as an array or a sparse matrix, not as a LinearOperator"
+        )
+    other.jacobian, other.factors, other.failed = work.jacobian.T.tocsc(), None, False
+    other.derivative[:] = column
+
+
+def matrix(data: Any, work: Any) -> np.ndarray:
+    """F_u as it stands in a workspace, dense."""
+    if len(work.residual) > LARGEST or not sp.issparse(work.jacobian):
+        raise ValueError(f"normal forms of sparse problems are computed up to {LARGEST} unknowns")
+    return work.jacobian.toarray()

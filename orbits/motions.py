@@ -1,0 +1,70 @@
+"""What the problem of an orbit says of its machine's motions, by simulation: sections, and what is settled on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors import find_attractor
+from orbits.machines.base import Model
+from orbits.machines.catalogue import stepper
+from orbits.simulation.section import Section
+from orbits.words import Word
+
+
+class Simulated:
+    """Answers of a problem that knows its machine, word, periods and parameter vector."""
+
+    model: Model
+    word: Word
+    periods: int
+
+    def values(self, p: float) -> np.ndarray:
+        """The parameter vector at parameter value `p`."""
+        raise TypeError("a problem says what its parameters are")
+
+    def witness(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
+        """What the machine settles on at a parameter value, simulated from rest and from random starts.
+
+        Returns
+        -------
+        list of dict
+            "word" (None where there is none), "periods" and "kind" of each motion, sorted.
+        """
+        params, generator = self.values(p), np.random.default_rng(7)
+        named = dict(zip(self.model.parameter_names, map(float, params)))
+        found: dict[tuple[str, int, str], dict[str, Any]] = {}
+        for i in range(starts):
+            start = None if i == 0 else self.model.random_start(params, generator)
+            motion = find_attractor(self.model, start, max_period=12, patience=1, **named)
+            word = motion.word
+            text = None if word is None else word.canonical().text
+            key = (text or "", int(motion.periods), motion.kind)
+            found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
+        return [found[key] for key in sorted(found)]
+
+    def section(self, p: float) -> Section:
+        """Its motions by simulation, once per period of the cycle.
+
+        Raises
+        ------
+        ValueError
+            For the empty word, which has no event to begin with.
+        """
+        if not len(self.word):
+            raise ValueError("the absorber that never slides has no section")
+        code, mode = int(self.word.codes[0]), int(self.word.mode_codes[0])
+        return Section(stepper(self.model.name), self.values(p), code, mode, self.periods)
+
+    def check_value(self, name: str, value: float) -> None:
+        """Refuse a value that a parameter of the machine cannot have.
+
+        Raises
+        ------
+        ParameterError
+            Naming the parameter, the value and what would do.
+        """
+        for entry in self.model.settable:
+            if entry.name == name:
+                entry.number(value)

@@ -1,0 +1,57 @@
+"""Border collisions of piecewise linear maps, x -> a x + p left of zero and b x + p right of it: all of it is known by hand."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def problem(a, b, start=-0.5):
+    def f(x, p, sign):
+        return (a if sign["side"] < 0 else b) * x + p
+
+    return cv.MapProblem(f, [start / (1.0 - a)], start, switches={"side": lambda x, p: x[0]}, scale=1.0)
+
+
+def leading(graph):
+    (point,) = [p for p in graph.special.values() if p.kind == "switch"]
+    assert point.value == pytest.approx(0.0, abs=1e-9)
+    return [s for s in graph.switches if s.point == point.label]
+
+
+def test_margins_are_positive_inside_a_piece():
+    one = problem(0.5, 0.3)
+    assert one.margins(np.array([-0.4]), 0.0) == pytest.approx([0.4])
+    assert problem(0.5, 0.3, start=0.5).margins(np.array([0.4]), 0.0) == pytest.approx([0.4])
+
+
+def test_a_fixed_point_that_goes_on_in_the_next_piece():
+    """0 < a, b < 1: x = p / (1 - a) left, p / (1 - b) right."""
+    graph = cv.diagram(problem(0.5, 0.3), within=(-1.0, 1.0), depth=1)
+    assert {s.note for s in leading(graph)} == {"persistence"}
+    right = next(b for b in graph.branches.values() if b.points.max() > 0.1)
+    np.testing.assert_allclose(right.points[:, 0], right.values / 0.7, atol=1e-10)
+    assert right.values.max() == 1.0 and right.stable[1:-1].all()
+    assert right.multipliers[5, 0] == pytest.approx(0.3)
+
+
+def test_two_fixed_points_that_meet_and_vanish():
+    """b > 1: the right one is -p / (b - 1), for p < 0 as well, and unstable."""
+    graph = cv.diagram(problem(0.5, 2.0), within=(-1.0, 1.0), depth=1)
+    assert {s.note for s in leading(graph)} == {"nonsmooth fold"}
+    right = next(b for b in graph.branches.values() if b.points.max() > 0.1)
+    np.testing.assert_allclose(right.points[:, 0], -right.values, atol=1e-10)
+    assert right.values.max() == pytest.approx(0.0, abs=1e-9) and right.values.min() == -1.0
+    assert not right.stable.any()
+
+
+def test_a_cycle_of_two_points_that_leaves_the_border():
+    """a b = -0.8: beyond the border the right fixed point is unstable, and one point on either side is a stable cycle."""
+    graph = cv.diagram(problem(0.4, -2.0), within=(-1.0, 1.0), depth=1)
+    assert {s.note for s in leading(graph)} == {"persistence", "nonsmooth flip"}
+    pair = next(b for b in graph.branches.values() if b.points.shape[1] == 2)
+    p = pair.values[-1]
+    low, high = sorted(pair.points[-1])
+    assert 0.4 * low + p == pytest.approx(high) and -2.0 * high + p == pytest.approx(low)
+    assert low < 0.0 < high and p == 1.0
+    assert pair.multipliers[len(pair) // 2, 0] == pytest.approx(-0.8)

@@ -1,0 +1,54 @@
+"""Many motions at once: each ends as the same motion run alone does, and the compiled loop is kept on disk."""
+
+import numpy as np
+
+from orbits import Absorber
+from orbits.attractors import batches
+from orbits.attractors.batches import AT_REST, SETTLED, settle_all
+from orbits.simulation import driver
+
+MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+def run(states, amplitude, **options):
+    params = MACHINE.vector({"amplitude": amplitude})
+    settings = {"transients": (300.0,), "longest": 4, "tolerance": 1e-9, "workers": 1} | options
+    return params, settle_all("absorber", states, params, **settings)
+
+
+def starts(count):
+    states = np.zeros((count, 6))
+    states[:, 1] = np.linspace(-0.9, 0.9, count)
+    states[:, 2] = np.linspace(1.0, -1.0, count)
+    return states
+
+
+def test_motions_recur_as_the_simulator_says():
+    states = starts(6)
+    params, found = run(states, 0.55)
+    assert np.all(found["outcome"] == SETTLED)
+    for state, periods, impacts in zip(states, found["periods"], found["impacts"]):
+        trajectory = driver.simulate(MACHINE, state.copy(), periods=float(periods), amplitude=0.55)
+        assert np.sum(trajectory.codes < 2) == impacts
+        np.testing.assert_allclose(trajectory.end[[1, 2, 3]], state[[1, 2, 3]], atol=1e-7)
+
+
+def test_shaking_that_friction_holds_ends_at_rest():
+    """Below (1 + eps) mu g of acceleration nothing ever slips again: an amplitude of 0.1 is less than 0.106."""
+    _, found = run(starts(4), 0.1)
+    assert np.all(found["outcome"] == AT_REST)
+
+
+def test_the_number_of_threads_changes_nothing(monkeypatch):
+    monkeypatch.setattr(batches, "BLOCK", 2)
+    one, two = starts(7), starts(7)
+    first, second = run(one, 0.8)[1], run(two, 0.8, workers=2)[1]
+    assert np.array_equal(one, two) and all(np.array_equal(first[name], second[name]) for name in first)
+
+
+def test_the_loop_is_found_again_on_disk():
+    run(starts(1), 0.55)
+    batches._with_stepper.cache_clear()
+    run(starts(1), 0.55)
+    kernel = batches.settle_kernel("absorber")
+    assert sum(kernel.stats.cache_hits.values()) == 1 and not kernel.stats.cache_misses
