@@ -39,7 +39,7 @@ _HOME = {
     "chart": ".loci.charting",
     "diagram": ".graph.automatic",
     "load": ".store",
-    "locus": ".loci.locus",
+    "locus": ".loci.following",
     "register": ".problems.registry",
     "resume": ".store",
     "save": ".store",
@@ -129,7 +129,8 @@ if TYPE_CHECKING:
     from .journal import MemoryJournal, NullJournal
     from .loci.chart import Chart
     from .loci.charting import chart
-    from .loci.locus import Locus, locus
+    from .loci.following import locus
+    from .loci.locus import Locus
     from .problems.algebraic import AlgebraicProblem
     from .problems.maps import MapProblem
     from .problems.protocol import Embedding, Kernels, Seed, Symmetry

@@ -40,6 +40,7 @@ lead(
         "portrait": "orbits.plots.portrait:portrait",
         "portrait_of_page": "orbits.plots.declared:portrait",
         "scene": "orbits.plots.scene:scene",
+        "scene_of_page": "orbits.plots.declared:scene",
         "simulate_page": "orbits.machines.declared.simulation:simulate",
     }
 )

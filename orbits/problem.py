@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.crossing import cross
+from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import SAME, distance
 from orbits.cycles import measures as measuring
 from orbits.cycles.equations import equations
@@ -44,6 +45,8 @@ class OrbitProblem(Simulated):
         Parameter vector; what `parameter` moves in it is the starting value only.
     symmetric : bool
         Solve for symmetric orbits, on half the word.
+    units : (float, float), optional
+        Length and rate in which the unknowns are counted; those of the machine's own size if left out.
 
     Raises
     ------
@@ -61,12 +64,14 @@ class OrbitProblem(Simulated):
         parameter: str,
         params: np.ndarray,
         symmetric: bool = False,
+        units: tuple[float, float] | None = None,
     ) -> None:
         params = np.array(params, dtype=float)
         self.model, self.word, self.periods = model, word, int(periods)
         self.parameter, self.params, self.symmetric = parameter, params, bool(symmetric)
         self.mirrored = model.has_mirror(params, parameter)
-        system = equations(model, word, self.periods, parameter, params, self.symmetric)
+        self.units = model.natural_units(params) if units is None else units
+        system = equations(model, word, self.periods, parameter, params, self.symmetric, self.units)
         self.equations = system
         self.length, self.dimension = system.length, system.dimension
         self.twist, self.shift = system.twist, system.shift
@@ -103,7 +108,9 @@ class OrbitProblem(Simulated):
         params = self.params
         for name, value in (values or {}).items():
             params = along(self.model.path(name, params), params, float(value))
-        return OrbitProblem(self.model, self.word, self.periods, parameter, params, self.symmetric)
+        return OrbitProblem(
+            self.model, self.word, self.periods, parameter, params, self.symmetric, self.units
+        )
 
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
@@ -194,15 +201,14 @@ class OrbitProblem(Simulated):
         image = np.roll(nodes, -places, axis=0) * np.r_[1.0, np.full(self.model.node - 1, sign)]
         image[: self.length - places, 0] -= turn
         image[self.length - places :, 0] += whole - turn
-        return image.ravel()
+        return self.reduce(image)
 
     def sibling(
         self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> OrbitProblem:
         """The problem of another word of the same machine against the same parameter."""
-        return OrbitProblem(
-            self.model, word, periods, self.parameter, self.params if params is None else params, symmetric
-        )
+        own = self.params if params is None else params
+        return OrbitProblem(self.model, word, periods, self.parameter, own, symmetric, self.units)
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
@@ -223,7 +229,10 @@ class OrbitProblem(Simulated):
             direction = np.concatenate([along, along])
             return [
                 Embedding(
-                    double, np.concatenate([nodes, second]).ravel(), np.append(direction, tangent[-1]), kind
+                    double,
+                    double.reduce(np.concatenate([nodes, second])),
+                    np.append(direction, tangent[-1]),
+                    kind,
                 )
             ]
         if kind == "branch-point":
@@ -233,6 +242,10 @@ class OrbitProblem(Simulated):
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
         return cross(self, point)
+
+    def dead_end(self, point: Any) -> str:
+        """Why no motion was found on the other side of a border; empty where the reason is not known."""
+        return dead_end(self, point)
 
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
@@ -244,7 +257,7 @@ class OrbitProblem(Simulated):
         if not len(self.word):
             return ("stuck", self.model.name), np.array(u, dtype=float)
         mirrored = self.model.has_mirror(self.values(p))
-        return canonical(self.word, self.periods, self.expand(u), mirrored)
+        return canonical(self.word, self.periods, self.expand(u) / self.equations.unit, mirrored)
 
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
@@ -333,6 +346,7 @@ class OrbitProblem(Simulated):
             "params": [float(value) for value in self.params],
             **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
+            **({"counted_in": list(self.units)} if self.units != (1.0, 1.0) else {}),
         }
 
 
@@ -350,4 +364,5 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
         description["parameter"],
         np.array(description["params"]),
         description["symmetric"],
+        tuple(description.get("counted_in", (1.0, 1.0))),  # older files count in the machine's own units
     )

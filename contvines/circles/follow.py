@@ -12,6 +12,7 @@ from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..forms.coefficients import Forms
 from ..forms.criticality import strong_resonance
+from ..interrupts import listening
 from .averages import rotation_number
 from .circle import Circle, Circles
 from .invariance import Curve, Frame, first_harmonic, solve
@@ -67,6 +68,7 @@ class Birth(NamedTuple):
         return Curve(points, self.rotation, self.value(amplitude))
 
 
+@listening()
 def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) -> Circles:
     """The invariant circles beside a Neimark-Sacker point, until they break.
 

@@ -12,6 +12,7 @@ from ..graph.automatic import new_run
 from ..graph.builder import begin, work
 from ..graph.graph import Graph
 from ..graph.run import Progress, Run
+from ..interrupts import listening
 from .census import Counted, census
 from .population import Population, population_of
 
@@ -19,6 +20,7 @@ BEYOND = 2e-3  # of the interval: so far outside a stable stretch it is asked wh
 MOST_EXTRA = 24  # values added beyond the ends of stable stretches
 
 
+@listening()
 def atlas(
     machine: Any,
     over: str | None = None,

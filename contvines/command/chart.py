@@ -1,65 +1,12 @@
-"""`contvines locus` and `contvines chart`: special points followed in a second parameter."""
+"""`contvines chart`: all special points of a diagram followed in a second parameter."""
 
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import FileArgument, TrustOption
-
-OverOption = Annotated[str, typer.Option("--over", metavar="NAME", help="The second parameter.")]
-WithinOption = Annotated[
-    tuple[float, float], typer.Option("--within", metavar="LOW HIGH", help="Its interval.")
-]
-PlotOption = Annotated[
-    Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the plane of the two parameters.")
-]
-QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
-VirtualOption = Annotated[
-    bool, typer.Option("--virtual", help="Go on where no machine follows the motion; drawn dotted.")
-]
-
-
-def locus(
-    file: FileArgument,
-    label: Annotated[str, typer.Argument(metavar="LABEL", help="A special point, for example SB1.")],
-    over: OverOption,
-    within: WithinOption,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="FILE.vines", help="Where to keep it; by default FILE-LABEL.vines here."
-        ),
-    ] = None,
-    plot: PlotOption = None,
-    virtual: VirtualOption = False,
-    quiet: QuietOption = False,
-    trust: TrustOption = False,
-) -> None:
-    """Follow one special point of a result in a second parameter.
-
-    The locus ends with either interval: that of the diagram, and --within.
-    """
-    from contvines.command.compose import beside, check_place
-    from contvines.store import load
-
-    target = output or beside(file, f"-{label}.vines")
-    check_place(target)
-    _check(within, plot, target, file)
-    graph = load(file, trust=trust)
-    _refuse_charts(graph, file)
-    if label not in graph.special:
-        what = "is a branch" if label in graph.branches else "is no label of it"
-        raise ValueError(
-            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
-        )
-    from contvines.command.progress import shown
-    from contvines.loci.charting import chart_of_one
-
-    with shown(quiet=quiet) as progress:
-        found = chart_of_one(graph, label, over, within, virtual=virtual, progress=progress)
-    found.save(target)
-    _tell(found, target, plot, quiet)
+from contvines.command.options import TrustOption
+from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
 
 
 def chart(
@@ -93,7 +40,7 @@ def chart(
     target = output or beside(file, "-chart.vines")
     check_place(target)
     graph, over, within = _diagram(file, over, within, trust, quiet)
-    _check(within, plot, target, file)
+    check(within, plot, target, file)
     fingerprint = _fingerprint(graph, over, within, virtual)
     found: Any = None
     if target.exists():
@@ -114,7 +61,7 @@ def chart(
             with interruptible(note), shown(quiet=quiet) as progress:
                 found = make(graph, over, within, virtual=virtual, journal=store, progress=progress)
             store.tidy()
-    _tell(found, target, plot, quiet)
+    tell(found, target, plot, quiet)
 
 
 def _diagram(
@@ -126,7 +73,7 @@ def _diagram(
 
     if is_database(file):
         graph = load(file, trust=trust)
-        _refuse_charts(graph, file)
+        refuse_charts(graph, file)
         if not graph.finished:
             raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
         if over is None or within is None:
@@ -149,23 +96,6 @@ def _diagram(
     return load(beside(file, ".vines")), over, within
 
 
-def _check(within: tuple[float, float], plot: Path | None, target: Path, source: Path) -> None:
-    low, high = within
-    if not low < high:
-        raise ValueError(f"--within {low:g} {high:g}: give the lower number first, then the higher one.")
-    if target.resolve() == source.resolve():
-        raise ValueError(f"{target}: this is the file itself; choose another name with -o.")
-    if plot is not None:
-        from contvines.plots.figures import check_picture
-
-        check_picture(plot)
-
-
-def _refuse_charts(graph: Any, file: Path) -> None:
-    if not hasattr(graph, "special"):
-        raise ValueError(f"{file}: this file holds a chart; give one that `contvines diagram` has made.")
-
-
 def _fingerprint(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:
     import hashlib
     import json
@@ -175,17 +105,3 @@ def _fingerprint(graph: Any, over: str, within: tuple[float, float], virtual: bo
         ["chart", graph.model, graph.parameter, list(graph.within), values, over, list(within), virtual]
     )
     return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _tell(found: Any, target: Path, plot: Path | None, quiet: bool) -> None:
-    from contvines.command.compose import say
-
-    say(f"kept in {target}", quiet)
-    if not quiet:
-        typer.echo(str(found))
-    if plot is not None:
-        from contvines.plots.chart import plot_chart
-        from contvines.plots.figures import save_figure
-
-        save_figure(plot_chart(found), plot)
-        say(f"drawn in {plot}", quiet)

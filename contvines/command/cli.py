@@ -18,6 +18,7 @@ from contvines.command import (
     design,
     editor_schema,
     export,
+    locus,
     orbit,
     plot,
     prove,
@@ -67,7 +68,7 @@ app.command()(run.trace)
 app.command()(run.switch)
 app.command()(run.atlas)
 app.command()(basins.basins)
-app.command()(chart.locus)
+app.command()(locus.locus)
 app.command()(chart.chart)
 app.command()(circle.circle)
 app.command()(show.show)

@@ -22,10 +22,23 @@ def _unraisable(problem: "sys.UnraisableHookArgs") -> None:
     """
     if problem.exc_type is not None and issubclass(problem.exc_type, KeyboardInterrupt):
         import _thread
-        import threading
 
-        again = threading.Timer(0.02, _thread.interrupt_main)
-        again.daemon = True
-        again.start()
+        _thread.start_new_thread(_again, ())  # does not wait for the thread, as `threading` would
     else:
         sys.__unraisablehook__(problem)
+
+
+def _again() -> None:
+    """Interrupt the main thread as soon as it has left the hook."""
+    import _thread
+    import threading
+    import time
+
+    main = threading.main_thread().ident
+    while True:
+        time.sleep(0.02)
+        frame = sys._current_frames().get(main or 0)
+        while frame is not None and frame.f_code is not _unraisable.__code__:
+            frame = frame.f_back
+        if frame is None:
+            return _thread.interrupt_main()

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.options import JsonOption, TrustOption
-from contvines.graph.table import with_unit
 
 
 def orbit(
@@ -102,6 +101,8 @@ EVENTS = {
 
 def _describe(found: Any) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
+    from contvines.graph.table import with_unit
+
     about = _plain(found)
     lines = []
     if "word" in about:

@@ -19,6 +19,9 @@ LONGEST = 0.5  # step, in the metric
 TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
 TURN = 0.6  # largest angle between tangents
 SLOW = 0.2  # part of its range by which the parameter moves while the unknowns double theirs, on branches that do not run away
+MOVES = 1e-2  # an unknown that moves by less than this part of the length over which the equations bend stays where it is
+BARELY = 1e-4  # ... where they do not bend, of its size
+BEYOND = 1e12  # times the start: a length that is longer is rounding
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
 SMALLEST_BEND = 1e-4
@@ -44,6 +47,8 @@ class Scout:
         self.kernels, self.work = problem.kernels, problem.workspace()
         # a bend over less than this share of the unknown itself is rounding
         self.first = np.maximum(problem.lengths, SMALLEST_BEND * np.abs(np.asarray(problem.u0, dtype=float)))
+        start = np.abs(np.asarray(problem.u0, dtype=float))
+        self.first = np.where((start > 0.0) & (self.first > BEYOND * start), start, self.first)
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)
         self.before = np.zeros(self.n + 1)  # ranges when one of them had doubled last
@@ -174,8 +179,11 @@ class Scout:
         extent = 0.5 * (self.high - self.low)
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         bends, first = np.asarray(self.problem.bends), self.first
-        moved = extent[:-1] > 1e-6 * np.where(bends, first, np.maximum(size, 1e-300))
         sure = bends | np.asarray(self.problem.known)
+        own = np.where(size > 0.0, size, first)
+        moved = extent[:-1] > np.where(
+            bends, MOVES * np.minimum(first, own), BARELY * np.where(sure, first, own)
+        )
         rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
         seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)

@@ -12,10 +12,11 @@ from collections.abc import Callable
 import numpy as np
 
 from ..continuation.engine import Solved
-from .scan import dips
+from .scan import MARGIN, dips
 from .segment import Segment
 
 GOLDEN = 0.3819660112501051
+SHARES = (0.99, 0.9, 0.7, 0.4)  # of the way to a border: other margins are looked at there
 
 
 def below_zero(segment: Segment, test: Callable[[Solved], float]) -> tuple[float, Solved] | None:
@@ -49,7 +50,7 @@ def below_zero(segment: Segment, test: Callable[[Solved], float]) -> tuple[float
 
 
 def before_border(segment: Segment, position: float, border: Solved) -> tuple[float, Solved] | None:
-    """A point before a border where a margin is negative that is positive at the border and at both ends, or None.
+    """A point up to a border where another margin is negative, though it is positive at both ends, or None.
 
     Parameters
     ----------
@@ -62,6 +63,12 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
         return None
     margins = segment.engine.margins
     left, middle, right = (margins(point.row) for point in (segment.a, border, segment.b))
+    if middle.min() < MARGIN:  # one of a flight, say, that is over before the segment is
+        return position, border
+    for share in SHARES:
+        point = segment.at(share * position)
+        if point is not None and margins(point.row).min() < MARGIN:
+            return share * position, point
     convex = np.flatnonzero(middle < (1.0 - position) * left + position * right)
     parts = (position * segment.length, (1.0 - position) * segment.length)
     suspects = [j for j in convex if dips(left[j], middle[j], right[j], *parts)]

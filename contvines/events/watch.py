@@ -150,7 +150,8 @@ class Watch(Examiner):
         level = (count[:-2] == count[1:-1]) & (count[1:-1] == count[2:])
         falls = (distance[1:-1] < distance[:-2]) | (distance[1:-1] < distance[2:])
         for i in np.flatnonzero(level & falls & (distance[1:-1] < LIMIT)):
-            if dips(*distance[i : i + 3], lengths[i], lengths[i + 1]):
+            left, middle, right = distance[i : i + 3]
+            if dips(left, middle, right, lengths[i], lengths[i + 1]):
                 found[i : i + 2] = True
         return found
 

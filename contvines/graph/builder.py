@@ -217,7 +217,7 @@ def tie_borders(run: Run) -> None:
         for other in list(graph.special.values()):
             if alike is None or other is point:
                 break  # only those with an earlier label
-            near = abs(other.value - point.value) <= 1e-9 * max(1.0, abs(point.value))
+            near = abs(other.value - point.value) <= 1e-9 * run.unit(point.value)
             if not (near and other.kind in BORDERS and other.real and other.branch != point.branch):
                 continue
             if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):

@@ -213,7 +213,11 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     outward = -point.tangent if at_start else point.tangent
     leaving = replace(point, tangent=outward)
     if branch.real:
-        for seed in _seeds(run, leaving):
+        seeds = _seeds(run, leaving)
+        if not seeds:
+            why = getattr(point.problem, "dead_end", None)
+            run.remark(point.label, why(leaving) if why is not None else "")
+        for seed in seeds:
             persistence = bool(seed["persistence"])
             note = seed["note"] or ("persistence" if persistence else "nonsmooth fold")
             cost = 0 if persistence else 1

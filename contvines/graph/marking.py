@@ -20,7 +20,7 @@ from ..forms.criticality import pair_form
 from ..interrupts import OPEN
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
-from .identity import same_form
+from .identity import same_form, same_vector
 from .pending import Origin, Pending
 from .run import Run
 
@@ -29,6 +29,7 @@ BACK_AT_BORDER = (
 )
 TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
 BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
+AT_BORDER = 1e-4  # border points of one value further apart than this are two
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
@@ -210,12 +211,18 @@ def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
 def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
     """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
 
-    Only problems of one kind that can compare motions tell.
+    Only problems of one kind tell: those that can compare motions, and others where their forms have as many entries.
     """
-    alike = getattr(problem, "same_motion", None)
-    if alike is None or type(point.problem) is not type(problem):
+    if type(point.problem) is not type(problem):
         return True
-    return bool(alike(u, p, point.problem, point.u))
+    alike = getattr(problem, "same_motion", None)
+    if alike is not None:
+        return bool(alike(u, p, point.problem, point.u))
+    one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
+    scales = getattr(problem, "scales", None)
+    return one.shape != other.shape or same_vector(
+        one, other, AT_BORDER, None if scales is None else scales.joined()
+    )
 
 
 def _doubt(engine: Engine, special: SpecialPoint) -> None:

@@ -16,8 +16,17 @@ import numpy as np
 from ..continuation.binding import OPTIONS, copy_with
 from ..problems.protocol import Kernels, kernels_digest
 from . import kernels as source
+from . import probing
 
-HELPERS = ("null_test", "flipped_test", "pair_of", "tests", "slopes_along", "close", "renew")
+HELPERS: tuple[Any, ...] = (
+    probing.null_test,
+    probing.flipped_test,
+    probing.pair_of,
+    probing.tests,
+    probing.slopes_along,
+    source.close,
+    source.renew,
+)
 NAMES = ("linearise", "bordered", "inspect", "assign", "flip", "transpose")
 _interpreted: dict[tuple[Any, ...], Kernels] = {}
 _addresses: dict[tuple[Any, ...], np.ndarray] = {}
@@ -53,7 +62,9 @@ def _compiled_once() -> Kernels:
 
     from .addresses import callers
 
-    sources = (Path(str(source.__file__)), Path(__file__).with_name("addresses.py"))
+    sources = [
+        Path(__file__).with_name(f"{name}.py") for name in ("kernels", "probing", "layout", "addresses")
+    ]
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=6).hexdigest()
     return _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")
 
@@ -62,8 +73,8 @@ def _bind(
     known: dict[str, Any], compile_: Callable[[Any], Any], suffix: str, compiled: bool, digest: str = ""
 ) -> Kernels:
     known = dict(known)
-    for name in HELPERS:
-        known[name] = compile_(copy_with(getattr(source, name), suffix, **known))
+    for helper in HELPERS:
+        known[helper.__name__] = compile_(copy_with(helper, suffix, **known))
     parts = [
         compile_(copy_with(getattr(source, f"locus_{name}"), suffix, **known))
         for name in ("linearise", "bordered", "inspect")

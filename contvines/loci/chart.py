@@ -30,6 +30,8 @@ class Chart:
     loci : dict of Locus
     points : dict of PlanePoint
     regions : list of Region
+    crossings : list of dict
+        Where two loci cross that have nothing to do with one another: "on", "value", "error".
     model : dict
         Name and parameters of the model.
     settings : dict
@@ -45,6 +47,7 @@ class Chart:
     loci: dict[str, Locus] = field(default_factory=dict)
     points: dict[str, PlanePoint] = field(default_factory=dict)
     regions: list[Region] = field(default_factory=list)
+    crossings: list[dict[str, Any]] = field(default_factory=list)
     model: dict[str, Any] = field(default_factory=dict)
     settings: dict[str, Any] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
@@ -85,6 +88,7 @@ class Chart:
             "message": self.message,
             "loci": [locus.to_dict() for locus in self.loci.values()],
             "points": [point.to_dict() for point in self.points.values()],
+            "crossings": self.crossings,
             "regions": [region.to_dict(self.parameters) for region in self.regions],
         }
         return {**result, "units": self.units} if self.units else result

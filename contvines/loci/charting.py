@@ -8,11 +8,13 @@ from typing import Any
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
+from ..interrupts import listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
-from .locus import locus
+from .following import locus
 
 
+@listening()
 def chart(
     graph: Graph,
     over: str,
@@ -73,6 +75,7 @@ def chart(
     return run.chart
 
 
+@listening()
 def chart_of_one(
     graph: Graph,
     label: str,

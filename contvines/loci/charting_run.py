@@ -18,12 +18,13 @@ from ..journal import NullJournal
 from .chart import Chart
 from .codimension_two import find
 from .coefficients_at import coefficients
+from .crossings import crossings
 from .departures import Candidate, leaving
-from .kernels import MARGIN
-from .kinds import PREFIXES
-from .locus import Locus, checked_ends, trace_locus
+from .following import checked_ends, trace_locus
+from .kinds import PREFIXES, condition
+from .layout import MARGIN
+from .locus import Locus
 from .plane_point import PlanePoint
-from .problem import condition
 from .regions import divide
 from .starts import begin
 
@@ -274,7 +275,8 @@ class Charting:
         return list(known["attractors"])
 
     def finish(self) -> None:
-        """Close the chart and keep it."""
+        """Find where loci cross, close the chart and keep it."""
+        self.chart.crossings = crossings(self.chart)
         self.chart.finished = True
         if self.refused and not self.chart.loci:
             raise ValueError("no locus could be followed: " + "; ".join(dict.fromkeys(self.refused)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from .conditions import References, Test, own_conditions, test_of
-from .kernels import FLIP, FOLD, MARGIN, PAIR
 from .kinds import Look, looks
+from .layout import FLIP, FOLD, MARGIN, PAIR
 from .locus import Locus
 from .plane import Place, Plane
 from .plane_point import PlanePoint

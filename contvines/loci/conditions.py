@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ..forms.coefficients import Forms
-from .kernels import BRANCH, FLIP, FOLD, PAIR
 from .kinds import Look
+from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null
 from .plane import Plane
 from .problem import LocusProblem

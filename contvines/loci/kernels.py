@@ -24,40 +24,47 @@ This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts th
 import math
 from typing import Any
 
-FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
-
-# entries of `data`
-FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
-
-# entries of `work`
-(
-    RESIDUAL,
+from .layout import (
+    AT_F,
+    AT_P,
+    AT_Q,
     BASE,
-    TRIAL,
     BASE_F,
     BASE_Q,
-    TRIAL_F,
-    TRIAL_Q,
-    POINT,
-    COLUMNS,
-    SOLUTIONS,
-    DIRECTIONS,
     BORDERS,
-    ROW,
-    SHIFTED,
-    SCALES,
-    VALUES,
-    SLOPES,
+    BRANCH,
+    CALLS,
+    COLUMNS,
+    DIRECTIONS,
+    FIRST,
+    FLIP,
+    FLIP_B,
+    FLIP_C,
+    FLOW,
+    FOLD,
+    KIND,
+    LEFT,
     LINES,
-    REFERENCE,
-    SMALL,
     MASKED,
-) = range(21)
-
-STEP = 1e-7  # of the differences, relative to the scales of the unknowns
-AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
-B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
-
+    MULTIPLIERS,
+    NULL,
+    PAIR,
+    POINT,
+    REFERENCE,
+    RESIDUAL,
+    SCALES,
+    SECOND,
+    SLOPES,
+    SMALL,
+    SOLUTIONS,
+    SPARE,
+    TRIAL,
+    TRIAL_F,
+    VALUES,
+    B,
+    C,
+)
+from .probing import pair_of, slopes_along, tests
 
 # the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
 linearise: Any = None
@@ -66,97 +73,6 @@ inspect: Any = None
 assign: Any = None
 flip: Any = None
 transpose: Any = None
-
-
-def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
-    """Solve M (v, g) = (0, 1) with the linearisation at hand, into `tangent`; returns g."""
-    n = F.shape[0]
-    for i in range(n):
-        F[i] = 0.0
-        Q[i] = b[i]
-        line[i] = c[i]
-    line[n] = 0.0
-    bordered(calls, data, linear, line, 0.0, step, tangent)
-    return tangent[n]
-
-
-def flipped_test(calls, data, linear, F, Q, b, c, line, step, tangent):
-    """The same for perturbations that change sign over the period; the linearisation is left as it was."""
-    flip(calls, data, linear, -1.0)
-    value = null_test(calls, data, linear, F, Q, b, c, line, step, tangent)
-    flip(calls, data, linear, 1.0)
-    return value
-
-
-def pair_of(row, multipliers, flow, reference, found):
-    """(test, position) of the pair nearest to the stability boundary and to the reference, into `found`.
-
-    Maps: m1 m2 - 1 and (m1 + m2)/2, the cosine of the angle; flows: l1 + l2 and l1 l2, the square of the frequency.
-    """
-    best = math.inf
-    found[0] = math.nan
-    found[1] = math.nan
-    for i in range(multipliers):
-        a, b = row[2 * i], row[2 * i + 1]
-        for j in range(i + 1, multipliers):
-            c, d = row[2 * j], row[2 * j + 1]
-            if abs(b + d) > 1e-9 * (1.0 + abs(b)) or (b != 0.0 and abs(a - c) > 1e-9 * (1.0 + abs(a))):
-                continue  # neither two real ones nor a conjugate pair
-            total, product = a + c, a * c - b * d
-            if flow:
-                test, place = total, product
-                distance = abs(total) + 0.1 * abs(product - reference) / (1.0 + abs(reference))
-            else:
-                test, place = product - 1.0, 0.5 * total
-                distance = abs(test) + 0.1 * abs(place - reference)
-            if distance < best:
-                best = distance
-                found[0] = test
-                found[1] = place
-
-
-def tests(data, work, u, p, q, values):
-    """The tests g at any (u, p, q), into `values`; the linearisation in TRIAL is used up. Returns the residual."""
-    first, trial = data[FIRST], work[TRIAL]
-    F, Q, lines, borders, solutions = (
-        work[TRIAL_F],
-        work[TRIAL_Q],
-        work[LINES],
-        work[BORDERS],
-        work[SOLUTIONS],
-    )
-    n = F.shape[0]
-    kind, calls = data[KIND], data[CALLS]
-    assign(calls, first, data[SECOND], q)
-    residual = linearise(calls, first, u, p, trial)
-    if not residual < 1e300:
-        return residual
-    if kind == FOLD:
-        values[0] = null_test(
-            calls, first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[SPARE]
-        )
-    elif kind == FLIP:
-        values[0] = flipped_test(
-            calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[SPARE]
-        )
-    elif kind == BRANCH:
-        for i in range(n):
-            F[i] = Q[i]
-            Q[i] = borders[B, i]
-            lines[0, i] = borders[C, i]
-        lines[0, n] = 0.0
-        bordered(calls, first, trial, lines[0], 0.0, lines[1], solutions[SPARE])
-        values[0] = solutions[SPARE, n]
-        values[1] = lines[1, n]
-    else:
-        row = work[ROW]
-        inspect(calls, first, u, p, trial, row)
-        if kind == MARGIN:
-            values[0] = row[2 * data[MULTIPLIERS] + data[WHICH]]
-        else:
-            pair_of(row, data[MULTIPLIERS], data[FLOW], work[REFERENCE][0], work[REFERENCE][1:])
-            values[0] = work[REFERENCE][1]
-    return residual
 
 
 def locus_linearise(data, U, q, work):
@@ -206,27 +122,6 @@ def locus_linearise(data, U, q, work):
             return math.inf
         largest = max(largest, abs(values[k]))
     return largest
-
-
-def slopes_along(data, work, direction, slopes):
-    """Derivatives of the tests along a direction in (U, q), by differences."""
-    point, scales, shifted, values = work[POINT], work[SCALES], work[SHIFTED], work[VALUES]
-    n, last = work[BASE_F].shape[0], point.shape[0] - 1
-    count = last - n
-    length = abs(direction[last]) / scales[last]
-    for i in range(n + 1):
-        length = max(length, abs(direction[i]) / max(scales[i], abs(point[i])))
-    if not length > 1e-14:
-        for k in range(count):
-            slopes[k] = 0.0
-        return
-    h = STEP / length
-    for i in range(n + 1):
-        shifted[i] = point[i] + h * direction[i]
-    q = point[last] + h * direction[last]
-    tests(data, work, shifted[:n], shifted[n], q, slopes)
-    for k in range(count):
-        slopes[k] = (slopes[k] - values[k]) / h
 
 
 def close(small, size):

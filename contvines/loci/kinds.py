@@ -5,10 +5,34 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..events.kinds import CODIMENSION_TWO
-from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
+from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
 
 #: kind of a point of codimension two -> prefix of its label
 PREFIXES = {kind.name: kind.label for kind in CODIMENSION_TWO.values()}
+
+
+#: kind of a special point -> what is followed, unless it is a border (then its margin)
+CONDITIONS = {
+    "fold": FOLD,
+    "branch-point": BRANCH,
+    "neimark-sacker": PAIR,
+    "hopf": PAIR,
+    "period-doubling": FLIP,
+    "symmetry-breaking": FLIP,
+}
+
+
+def condition(problem: Any, kind: str) -> int:
+    """What is followed for a special point of this kind, seen in this problem.
+
+    A symmetry breaking or period doubling is a multiplier -1 where the problem says so (``flip_kind``), else a branch point
+    of the problem itself, on the fixed space of a symmetry.
+    """
+    if kind in ("period-doubling", "symmetry-breaking") and not (
+        problem.spectrum == "map" and problem.flip_kind == kind
+    ):
+        return BRANCH
+    return CONDITIONS.get(kind, MARGIN)
 
 
 class Look(NamedTuple):

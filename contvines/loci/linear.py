@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..interrupts import HELD
+
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
 
 
@@ -99,7 +101,8 @@ class Linearisation:
         """Multipliers as (re, im) pairs, then margins."""
         row = np.zeros(2 * int(self.problem.n_multipliers) + int(self.problem.n_margins))
         self.again()
-        self.kernels.inspect(self.data, self.point[0], self.point[1], self.work, row)
+        with HELD:
+            self.kernels.inspect(self.data, self.point[0], self.point[1], self.work, row)
         self.again()
         return row
 

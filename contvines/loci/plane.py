@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .kernels import pair_of
 from .linear import Linearisation
+from .probing import pair_of
 from .problem import LocusProblem
 
 STEP = 1e-5  # of central differences of the conditions, relative to the unknowns

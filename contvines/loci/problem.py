@@ -9,37 +9,14 @@ import numpy as np
 
 from ..problems.protocol import ProblemDefaults
 from .binding import locus_kernels
-from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR
-
-#: kind of a special point -> what is followed, unless it is a border (then its margin)
-CONDITIONS = {
-    "fold": FOLD,
-    "branch-point": BRANCH,
-    "neimark-sacker": PAIR,
-    "hopf": PAIR,
-    "period-doubling": FLIP,
-    "symmetry-breaking": FLIP,
-}
-
+from .kinds import condition
+from .layout import BRANCH, FLIP, MARGIN, PAIR
 
 UNSEEN = 1e-12  # typical sizes below this part of the largest one are those of zeros
 
 
-def condition(problem: Any, kind: str) -> int:
-    """What is followed for a special point of this kind, seen in this problem.
-
-    A symmetry breaking or period doubling is a multiplier -1 where the problem says so (``flip_kind``), else a branch point
-    of the problem itself, on the fixed space of a symmetry.
-    """
-    if kind in ("period-doubling", "symmetry-breaking") and not (
-        problem.spectrum == "map" and problem.flip_kind == kind
-    ):
-        return BRANCH
-    return CONDITIONS.get(kind, MARGIN)
-
-
 class Work(NamedTuple):
-    """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.kernels`."""
+    """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`."""
 
     residual: np.ndarray
     base: Any

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
-from .kernels import BRANCH, FLIP, FOLD, MARGIN, PAIR, pair_of
+from .kinds import condition
+from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
 from .linear import Linearisation
-from .problem import LocusProblem, condition
+from .probing import pair_of
+from .problem import LocusProblem
 
 ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
 

@@ -143,7 +143,8 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
             bent = (bent | ~np.isfinite(odd[:, r])) & (np.arange(len(lengths)) > first)
             if bent.any():
                 k = int(np.argmax(bent))
-                found = min(found, float(lengths[k]) / np.sqrt(FACTOR))
+                if float(lengths[k]) / np.sqrt(FACTOR) < found and _smooth(f, float(lengths[k]), r):
+                    found = float(lengths[k]) / np.sqrt(FACTOR)
     return found if np.isfinite(found) else None
 
 
@@ -182,6 +183,18 @@ def _table(f: Line, spacing: float) -> np.ndarray:
             gamma = factorial(k) ** 2 / factorial(2 * k)
             estimates.append(np.sqrt(gamma * (table**2).mean(axis=0)))
     return np.median(estimates, axis=0)
+
+
+def _smooth(f: Line, t: float, r: int) -> bool:
+    """Whether entry r of f, or of its mirror image, is smooth at t: not the rounding of terms that cancel."""
+    for side in (t, -t):
+        low, here, high = (float(f(side * (1.0 + change))[r]) for change in (-1e-4, 0.0, 1e-4))
+        if not np.isfinite([low, here, high]).all():
+            return True  # it cannot be evaluated there, which is a length, too
+        before, after = here - low, high - here
+        if abs(after - before) > 0.1 * max(abs(before), abs(after)):
+            return False
+    return True
 
 
 def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int = REACH) -> float | None:

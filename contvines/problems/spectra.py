@@ -8,7 +8,7 @@ REAL = (
     1e-9  # an imaginary part below this part of the largest eigenvalue is roundoff: a double real eigenvalue
 )
 WATCHED = (
-    60  # unknowns up to which the eigenvalues of problems without a spectrum are watched for branch points
+    20  # unknowns up to which the eigenvalues of problems without a spectrum are watched for branch points
 )
 
 

@@ -13,6 +13,7 @@ from ..continuation.engine import Engine, Solved
 KERNEL = 4  # null vectors that are followed at most
 EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
+SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
 
 
@@ -191,7 +192,12 @@ def _in_a_family(engine: Engine, point: Solved) -> bool:
 
 
 def _at(
-    engine: Engine, z: np.ndarray, direction: np.ndarray, amplitude: float, offset: float = 0.0
+    engine: Engine,
+    z: np.ndarray,
+    direction: np.ndarray,
+    amplitude: float,
+    offset: float = 0.0,
+    reach: float = 10.0,
 ) -> Solved | None:
     border = engine.weights * direction
     guess = z + amplitude * direction
@@ -200,8 +206,16 @@ def _at(
     found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), along)
     if found is None:
         return None
-    far = engine.norm(engine.join(found.u, found.p) - z) > 10.0 * abs(amplitude)
+    far = engine.norm(engine.join(found.u, found.p) - z) > reach * abs(amplitude)
     return None if far else found
+
+
+def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved | None) -> bool:
+    """Whether two points, the second one at half the amplitude, come from the same branch through z, as their distances tell."""
+    if point is None or near is None:
+        return False
+    far, close = (engine.norm(engine.join(p.u, p.p) - z) for p in (point, near))
+    return far < 3.5 * close
 
 
 def _depart(
@@ -221,13 +235,18 @@ def _depart(
             break
         half, offset = 0.5 * amplitude, bend * amplitude**2
         ahead, near = (
-            _at(engine, z, direction, x, y) for x, y in ((amplitude, offset), (half, 0.25 * offset))
+            _at(engine, z, direction, x, y, SLANTED) for x, y in ((amplitude, offset), (half, 0.25 * offset))
         )
         back = behind = None
         if not one_sided:
             back, behind = (
-                _at(engine, z, direction, x, y) for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
+                _at(engine, z, direction, x, y, SLANTED)
+                for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
             )
+            if not _lined_up(engine, z, back, behind):
+                back = None
+        if not _lined_up(engine, z, ahead, near):
+            ahead = None
         if (
             ahead is not None
             and near is not None

@@ -49,7 +49,7 @@ def main():
         two.plot(slow["B" if name == "mean" else name], slow["C2"], ".", color=color, ms=4)
     for level in (fold, breaking):
         one.axhline(level, color=paper.GREY, lw=0.8, ls=paper.DASHED)
-    one.legend(loc="lower left")
+    one.legend(loc="lower right")
     one.set(xlabel="speed of the absorber", ylabel="$C^2$", ylim=(0, 0.9), xlim=(0, 1.7))
     two.set(xlabel="speed of the absorber", xlim=(0, 1.7), title="dots: free motion, coupled machine")
     one.set(title="dotted: beyond a border, no such motion")

@@ -46,7 +46,7 @@ def main():
         axes.set(ylim=(0, 1.2), title=rf"$\sigma={sigma}$, $\Omega={omega:.4f}$")
         axes.set(xlabel="$B$" if axes.get_subplotspec().is_last_row() else "")
         axes.set(ylabel="$C^2$" if axes.get_subplotspec().is_first_col() else "")
-    axes.legend(loc="upper left")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure, numbers
 
 

@@ -43,7 +43,7 @@ def main():
     left.plot(turns, seen.w - seen.v, color=paper.BLUE, label=r"$\Phi=w-v$")
     left.plot(turns, seen.w, color=paper.PALE, lw=1, label="$w$")
     left.plot(turns, seen.v, color=paper.GREY, lw=1, ls=paper.DASHED, label="$v$")
-    left.set(xlabel=r"$\tau/2\pi$", title=r"$\mu=0.5$, $\tilde g=0.211$", xlim=(0, 6))
+    left.set(xlabel=r"$\tau/2\pi$", title=r"$\mu=0.5$, $\tilde g=0.211$", xlim=(0, 6), ylim=(-1.8, 2.2))
     left.legend(loc="upper right", ncols=3)
     b = np.linspace(0, 1.3, 400)
     right.plot(b, ms.squared_amplitude(b, flow.loss, flow.level), color="k", label="manifold")
@@ -61,7 +61,7 @@ def main():
     right.set(
         xlabel="$B$", ylabel="$C^2$", ylim=(0, 1.0), xlim=(0, 1.3), title=r"$\mu=0.3$, $\tilde g=0.355$"
     )
-    right.legend(loc="upper left")
+    right.legend(loc="upper center")
 
     rough = ms.SlowFlow(restitution=0.5, friction=1.0, gravity=0.15)
     ends = [ms.reversal_bound(p.amplitude, p.velocity, flow.level) for p in (low, flow.symmetry_limit)]

@@ -50,7 +50,7 @@ def main():
     start = two_impacts.speeds(two_impacts.symmetric(machine, np.array([fold + 1e-12, breaking])))
     axes.plot(start["mean"][0, 0], fold, "s", color=paper.BLUE, label="fold")
     axes.plot(start["mean"][1, 0], breaking, "D", color=paper.BLUE, label="symmetry breaking")
-    axes.legend(loc="lower left")
+    axes.legend(loc="upper center")
     axes.set(xlabel="mean speed $B$", ylabel="$C^2$", ylim=(0, 1.0), xlim=(0, 1.45))
 
     both = two_impacts.symmetric(machine, np.array([fold + 1e-9, breaking]))

@@ -61,6 +61,30 @@ def find_attractor(
     SimulationError
         If the start or the lengths cannot be.
     """
+    return lasting(
+        left_over(
+            model,
+            start,
+            transient=transient,
+            max_period=max_period,
+            tolerance=tolerance,
+            patience=patience,
+            **parameters,
+        )
+    )
+
+
+def left_over(
+    model: Any,
+    start: Mapping[str, float] | np.ndarray | None = None,
+    *,
+    transient: float = 300,
+    max_period: int = 16,
+    tolerance: float = 1e-6,
+    patience: int = 2,
+    **parameters: float,
+) -> Attractor:
+    """`find_attractor`, a motion that does not recur not yet observed (see `orbits.attractors.observation.lasting`)."""
     if max_period < 1:
         raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
     if not (np.isfinite(transient) and transient >= 0.0):
@@ -68,7 +92,7 @@ def find_attractor(
     params = model.vector(parameters)
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
-    return lasting(settle(model, engine, params, state, transient, max_period, tolerance, patience))
+    return settle(model, engine, params, state, transient, max_period, tolerance, patience)
 
 
 def settle(

@@ -134,8 +134,7 @@ def sweep(
 
 
 def _row(value: float, direction: str, found: Attractor) -> SweepRow:
-    seen = observe(found)
-    found = lasting(found, seen)
+    found, numbers = described(found)
     return SweepRow(
         value=value,
         direction=direction,
@@ -143,14 +142,15 @@ def _row(value: float, direction: str, found: Attractor) -> SweepRow:
         word=found.text,
         periods=found.periods,
         impacts=found.impacts,
-        measures=_named(found, seen),
+        measures=numbers,
         detail=found,
     )
 
 
-def measures(found: Attractor) -> dict[str, float]:
-    """The measures of an attractor, by name; see `measure_names`."""
-    return _named(found, observe(found))
+def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
+    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
+    seen = observe(found)
+    return lasting(found, seen), _named(found, seen)
 
 
 def _named(found: Attractor, seen: Observation) -> dict[str, float]:

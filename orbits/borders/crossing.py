@@ -6,6 +6,7 @@ if its maps have a real solution next to the border and the simulator, which kno
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import chain
 from typing import Any
@@ -14,8 +15,18 @@ import numpy as np
 
 from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
+from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends_to
-from orbits.borders.neighbours import REAL, SIZES, Grown, grown, margins_of, proposals, turned
+from orbits.borders.neighbours import (
+    REAL,
+    SIZES,
+    Grown,
+    grown,
+    margins_of,
+    parameter_unit,
+    proposals,
+    turned,
+)
 from orbits.borders.rewriting import Edit, edits_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.equations import solved_at
@@ -54,7 +65,7 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
         return from_rest(problem, point)
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
-    if rest:
+    if rest or piled_up(problem.orbit(u, p)):
         return rest
     old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), int(point.margin_index))
     seeds = []
@@ -195,7 +206,7 @@ def _simulated(
     here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
     place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
     for side in (1.0, -1.0):
-        q = p + side * 1e-6 * max(1.0, abs(p))
+        q = p + side * 1e-6 * parameter_unit(problem, p)
         params = problem.values(q)
         state = state_of(
             engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
@@ -210,14 +221,14 @@ def _simulated(
             continue
         if canonical(found.word, found.periods, found.nodes)[0] == here:
             continue
-        if abs(
-            found.measure("friction_loss") / found.periods - orbit.measure("friction_loss") / orbit.periods
-        ) > 0.05 * problem.model.gauge("energy", params):
+        losses = [o.measure("friction_loss") / o.periods for o in (found, orbit)]
+        energy = problem.model.gauge("energy", params) * math.prod(problem.equations.units) ** 2
+        if abs(losses[0] - losses[1]) > 0.05 * energy:
             continue
         if distance(orbit, found) > CLOSE:
             continue
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
-        other = problem.sibling(found.word, found.periods, symmetric, found.params)
+        other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
         if not tends_to(orbit, _nearer(other, v, q, p), found):
             continue  # an attractor somewhere else: nothing joins it to the border

@@ -30,7 +30,7 @@ def tends_to(border: Solution, near: Solution, further: Solution) -> bool:
 def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
     """Largest difference in w at equal phases, modulo whole periods of the forcing, and the mirror image if asked for.
 
-    Where one of them hits no wall its mean position is free, and left out.
+    In units of the machine's size. Where one of them hits no wall its mean position is free, and left out.
     """
     periods = math.lcm(one.periods, other.periods)
     grid = np.linspace(0.0, 2.0 * np.pi * periods, PER_PERIOD * periods, endpoint=False)
@@ -42,7 +42,7 @@ def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
         moved = np.roll(image, -PER_PERIOD * shift)
         if _largest((moved - there)[::COARSE], free) < best:
             best = min(best, _largest(moved - there, free))
-    return best
+    return best / one.model.natural_units(one.params)[0]
 
 
 def _largest(gap: np.ndarray, free: bool) -> float:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from orbits.borders.distance import tends_to
 from orbits.borders.rewriting import Edit, edits_at, rewritten
+from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
-from orbits.contacts.letters import STICK
+from orbits.contacts.letters import HIT, STICK
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
@@ -37,6 +39,11 @@ def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     return _examined(problem, u, p)[2 * problem.n_multipliers :]
 
 
+def parameter_unit(problem: CycleProblem, p: float) -> float:
+    """What changes of the parameter near p are compared with: its own size, or where it started."""
+    return max(abs(p), abs(problem.value(problem.params))) or 1.0
+
+
 def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
     """Whether all multipliers of a solution lie inside the unit circle."""
     pairs = _examined(problem, u, p)[: 2 * problem.n_multipliers]
@@ -45,7 +52,8 @@ def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
 
 def _examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
-    assemble(problem.model).examine(problem.data, u, p, problem.scratch, row)
+    with kept_back():
+        assemble(problem.model).examine(problem.data, u, p, problem.scratch, row)
     return row
 
 
@@ -134,16 +142,31 @@ def grown(
         other = problem.sibling(word, problem.periods, problem.symmetric)
     except ValueError:
         return None
-    guess = np.ascontiguousarray(nodes, dtype=float).ravel()
+    guess = other.reduce(nodes)
     change = edits[0].change
     if change.grows is Grows.MARGIN:
-        return _beside(other, guess, p, orbit, steady)
+        found = _beside(other, guess, p, orbit, steady)
+        soft = None if found is not None else _soft_impact(other, guess, p)
+        if soft is None:
+            return found
+        # another round still has the impact whose speed vanishes at the border: it grows
+        first, change = soft, replace(change, events=other.word.events[soft : soft + 2], grows=Grows.SPEED)
     for sizes in ways:
         found = _climb(other, guess, first, change, p, sizes)
         if found and steady and not stable_at(other, found[-1].u, found[-1].p):
             return None
         if found and _begins_at(orbit, other, first, change, p, found):
             return Grown(other, *found[-1][:3])
+    return None
+
+
+def _soft_impact(other: CycleProblem, guess: np.ndarray, p: float) -> int | None:
+    """An impact of vanishing speed; there the equations are singular."""
+    orbit, units = other.orbit(guess, p), other.equations.unit
+    for place in range(other.length):
+        speed = abs(orbit.events.rate_post[place]) / units[place, 1]
+        if other.word.letter(place).kind == HIT and speed < NEAR:
+            return place
     return None
 
 
@@ -178,28 +201,31 @@ def _hold(
             u[(first + 1) * n] = u[first * n] + wanted
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
+        unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
         cavity = _cavity_speed(other, u, q, first)
         node = slice(first * n, (first + 1) * n)
-        border[node] = -sign * other.model.cavity_speed_slopes(u[node], other.values(q))
+        slopes = other.model.cavity_speed_slopes(other.expand(u)[first], other.values(q))
+        border[node] = -sign * slopes * unit / unit[1]
         border[first * n + 1] += sign
-        change_with = _cavity_speed(other, u, q + NEAR, first) - cavity
-        border[size] = -sign * change_with / NEAR
+        near = NEAR * parameter_unit(other, p)
+        border[size] = -sign * (_cavity_speed(other, u, q + near, first) - cavity) / near
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if (
-            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK
+            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
         ):  # it comes to rest the sooner the slower it is
             u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10 or abs(q_new - p) > 0.02 * max(1.0, abs(p)):
+    if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
         return None
     return _Held(u, float(q_new), tangent, wanted)
 
 
 def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) -> float:
-    """v' at an event."""
+    """v' at an impact, in the unit of its node's second entry."""
     node = problem.expand(u)[place]
-    return float(problem.model.cavity_motion(node[None, None], problem.values(p)[None])[1][0, 0])
+    speed = problem.model.cavity_motion(node[None, None], problem.values(p)[None])[1][0, 0]
+    return float(speed / problem.equations.unit[place, 1])
 
 
 def _begins_at(
@@ -247,7 +273,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
     kernels, work = assemble(other.model), other.scratch
     border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
     border[-1] = 1.0
-    at_border = guess.copy()
+    at_border, unit = guess.copy(), parameter_unit(other, p)
     residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10:
         return None
@@ -255,7 +281,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
     for distance in (1e-8, 1e-7, 1e-6):
         sides = []
         for side in (1.0, -1.0):
-            q = p + side * distance * max(1.0, abs(p))
+            q = p + side * distance * unit
             u = at_border + (q - p) * tangent[:-1]
             along = tangent.copy()
             residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
@@ -268,7 +294,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
             ):  # not one that vanishes all along, as at a wall touched without speed
                 found = Grown(other, u, q, along)
                 break
-    if found is None and np.abs(tangent).max() > STEEP:
+    if found is None and np.abs(tangent).max() * unit > STEEP:
         found = _along(other, at_border, p, tangent)
     if found is None or (steady and not stable_at(other, found.u, found.p)):
         return None
@@ -281,9 +307,10 @@ def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.nda
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
     kernels, work = assemble(other.model), other.scratch
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
+    length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
     for distance in (1e-5, 1e-6):
         for side in (1.0, -1.0):
-            direction = side * tangent / np.linalg.norm(tangent)
+            direction = side * tangent / length
             u = at_border + distance * direction[:-1]
             guess = p + distance * direction[-1]
             residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)

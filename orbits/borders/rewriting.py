@@ -6,6 +6,7 @@ At the border the old and the new description are the same motion, so an inserte
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -105,7 +106,8 @@ def edits_at(orbit: Solution, index: int, unit: int | None = None) -> list[Edit]
 def _soft(orbit: Solution, place: int) -> int | None:
     """The event at either end of a flight that is an impact of vanishing speed."""
     places = (place, (place + 1) % len(orbit.word))
-    return next((k for k in places if abs(orbit.events.rate_post[k]) < NO_SPEED), None)
+    speed = NO_SPEED * math.prod(orbit.model.natural_units(orbit.params))
+    return next((k for k in places if abs(orbit.events.rate_post[k]) < speed), None)
 
 
 def _touching(orbit: Solution, place: int) -> tuple[_Touch | None, int]:
@@ -131,6 +133,7 @@ def _placed(orbit: Solution, place: int, change: Change, touch: _Touch | None) -
     word, nodes = orbit.word, orbit.nodes
     letters = word.alphabet.letters
     rows: list[np.ndarray] = []
+    length, rate = orbit.model.natural_units(orbit.params)
     hit_before = 0  # side of a new impact among the events so far
     for text, spot in zip(change.events, change.spots):
         hit = letters[text].kind == HIT
@@ -138,11 +141,11 @@ def _placed(orbit: Solution, place: int, change: Change, touch: _Touch | None) -
         row, speed, was_hit = _at(orbit, place, spot, touch)
         row[0] += spot.later * FIRST
         if hit and not was_hit:
-            row[1] = speed + side * FIRST  # B+ = v' - w'+
+            row[1] = speed + side * FIRST * length * rate  # B+ = v' - w'+
         elif was_hit and not hit and spot.node is not None:
             row[1] = orbit.events.w[spot.node]
         elif hit_before and not hit:
-            row[1] -= hit_before * 0.1 * FIRST**2  # a little off the wall
+            row[1] -= hit_before * 0.1 * FIRST**2 * length  # a little off the wall
         hit_before = side
         rows.append(row)
     return np.array(rows) if rows else nodes[:0]

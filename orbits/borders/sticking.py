@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.distance import CLOSE
+from orbits.borders.neighbours import parameter_unit
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import StartError, find
@@ -19,7 +20,7 @@ def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     p = float(point.value)
     for distance in (1e-4, 1e-3):
         for side in (1.0, -1.0):
-            q = p * (1.0 + side * distance)
+            q = p + side * distance * parameter_unit(problem, p)
             if Solution.at_rest(problem.model, problem.values(q)).real:
                 continue
             values = dict(
@@ -30,9 +31,10 @@ def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
             except (StartError, ValueError):
                 continue
             half = orbit.symmetric and orbit.model.has_mirror(orbit.params, problem.parameter)
-            other = problem.sibling(orbit.word, orbit.periods, half, orbit.params)
+            other = problem.sibling(orbit.word, orbit.periods, half)
             u, q = other.reduce(orbit.nodes), other.value(orbit.params)
-            if orbit.real and np.ptp(orbit.sample()["w"]) < CLOSE and orbit.replay() < FOLLOWED:
+            length = orbit.model.natural_units(orbit.params)[0]
+            if orbit.real and np.ptp(orbit.sample()["w"]) < CLOSE * length and orbit.replay() < FOLLOWED:
                 sign = np.zeros(other.dimension + 1)
                 sign[-1] = side
                 note = "the stuck absorber begins to slip: persistence, the word becomes ss"
@@ -45,12 +47,13 @@ def to_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     if sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []
     p = float(point.value)
+    unit = parameter_unit(problem, p)
     for side in (-1.0, 1.0):
-        q = p * (1.0 + side * 1e-7)
+        q = p + side * 1e-7 * unit
         orbit = Solution.at_rest(problem.model, problem.values(q))
-        beyond = Solution.at_rest(problem.model, problem.values(p * (1.0 - side * 1e-7)))
+        beyond = Solution.at_rest(problem.model, problem.values(p - side * 1e-7 * unit))
         if orbit.margin > 0.0 > beyond.margin:
-            other = problem.sibling(orbit.word, 1, orbit.symmetric, orbit.params)
+            other = problem.sibling(orbit.word, 1, orbit.symmetric)
             direction = np.zeros(other.dimension + 1)
             direction[-1] = side
             note = "the slips vanish: persistence, the absorber is stuck"

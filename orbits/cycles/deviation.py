@@ -6,6 +6,8 @@ the motion itself is not.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from orbits.cycles.cycle import Cycle
@@ -27,15 +29,16 @@ def replay_error(orbit: Cycle, margins: np.ndarray, multipliers: np.ndarray) -> 
 
     Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
     unstable orbits the relative position w is compared at many instants as well, stretch by stretch, and the smaller
-    deviation counts. Infinite if the simulation does something else.
+    deviation counts. Infinite if the simulation does something else. Lengths and speeds count in units of the machine's own size.
     """
     if not len(orbit.word):
         return _from_rest(orbit)
-    error = float(replay(orbit).error)
+    length, rate = orbit.model.natural_units(orbit.params)
+    error = float(replay(orbit).error) / max(1.0, length, length * rate)
     delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(multipliers) > WILD)
     if error < AGREED or not (delicate or np.isfinite(error)):
         return error
-    return min(error, position_error(orbit))
+    return min(error, position_error(orbit) / length)
 
 
 def _from_rest(orbit: Cycle) -> float:
@@ -54,7 +57,7 @@ def position_error(orbit: Cycle, points: int = 400) -> float:
     infinite derivatives, and a very unstable orbit large ones, so that rounding would grow out of bounds over a period.
     """
     speeds = np.abs(orbit.events.rate_post)
-    definite = np.flatnonzero(speeds > DEFINITE)
+    definite = np.flatnonzero(speeds > DEFINITE * math.prod(orbit.model.natural_units(orbit.params)))
     places = definite if definite.size else _calm(orbit)
     places = places[:: -(-len(places) // STRETCHES)]
     ends = np.append(places[1:], places[0] + len(orbit.word))

@@ -19,6 +19,8 @@ from orbits.machines.base import Model
 from orbits.machines.path import along
 from orbits.words import Word
 
+PLAIN = (1.0, 1.0)
+
 
 class Equations:
     """Closed chains of elementary maps, against one parameter.
@@ -32,6 +34,8 @@ class Equations:
         Closure: the first node returns with its phase plus `shift` and all else times `twist`.
     loose : bool
         Whether the motion may be moved as a whole; `pinned` says how that is prevented.
+    units : (float, float)
+        Length and rate in which the unknowns are counted; see `Model.natural_units`.
     data : tuple
         First argument of the kernels.
 
@@ -42,7 +46,14 @@ class Equations:
     """
 
     def __init__(
-        self, model: Model, word: Word, periods: int, parameter: str, params: np.ndarray, symmetric: bool
+        self,
+        model: Model,
+        word: Word,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool,
+        units: tuple[float, float] | None = None,
     ) -> None:
         if symmetric and not model.has_mirror(params, parameter):
             raise ValueError(
@@ -63,17 +74,24 @@ class Equations:
         self.n_margins = PER_NODE * length
         self.period_shift = np.zeros(self.dimension)
         self.period_shift[::n] = 2.0 * np.pi
-        own, law = params.copy(), model.law
+        self.units = model.natural_units(params) if units is None else units
+        self.unit = unit_nodes(word, n, self.units)
+        path, own, law, amounts = self.path, params.copy(), model.law, params
+        if self.units != PLAIN:
+            factors = model.factors(self.units)
+            own, path = params / factors, np.array([self.path[0] / factors, self.path[1]])
+            law = law.copy() if len(law) else np.vstack([np.ones(params.size), np.eye(params.size)])
+            law[0] /= factors
         self.data = (
             word.codes[:length].copy(),
             word.mode_codes[:length].copy(),
             own,
-            self.path,
+            path,
             self.twist,
             self.shift,
             self.pinned,
             model.place_of(parameter),
-            np.array(model.amounts(own), dtype=float) if len(law) else own,
+            np.array(model.amounts(amounts), dtype=float) if len(law) else own,
             law,
         )
 
@@ -106,6 +124,8 @@ class Equations:
         """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N)."""
         u = np.asarray(u, dtype=float)
         nodes = u.reshape(*u.shape[:-1], self.length, self.model.node)
+        if self.units != PLAIN:
+            nodes = nodes * self.unit[: self.length]
         if self.twist > 0.0:
             return nodes
         image = -nodes
@@ -114,7 +134,10 @@ class Equations:
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""
-        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
+        own = np.array(nodes[: self.length], dtype=float, order="C")
+        if self.units != PLAIN:
+            own /= self.unit[: self.length]
+        return own.ravel()
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
@@ -122,13 +145,28 @@ class Equations:
         return spectrum**2 if self.twist < 0.0 else spectrum
 
 
+def unit_nodes(word: Word, node: int, units: tuple[float, float]) -> np.ndarray:
+    """What one dimensionless node is, shape (L, n): phases have no unit, then B or w, v and v'."""
+    length, rate = units
+    unit = np.ones((len(word), node))
+    unit[:, 1] = np.where([letter in "LR" for letter in word.events], length * rate, length)
+    unit[:, 2::2], unit[:, 3::2] = length, length * rate
+    return unit
+
+
 def equations(
-    model: Model, word: Word, periods: int, parameter: str, params: np.ndarray, symmetric: bool = False
+    model: Model,
+    word: Word,
+    periods: int,
+    parameter: str,
+    params: np.ndarray,
+    symmetric: bool = False,
+    units: tuple[float, float] | None = None,
 ) -> Equations | RestEquations:
     """The equations of the cycles with this word."""
     if not len(word):
         return RestEquations(model, parameter, params)
-    return Equations(model, word, int(periods), parameter, params, symmetric)
+    return Equations(model, word, int(periods), parameter, params, symmetric, units)
 
 
 def solved_at(

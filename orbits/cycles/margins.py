@@ -63,6 +63,24 @@ def border_kind(word: Word, index: int) -> str:
     return BORDERS[name]
 
 
+def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
+    """What margins of one are in a length and a rate, shape (4 L,)."""
+    length, rate = units
+    sizes = {
+        "flight": length * rate,
+        "approach": length * rate,
+        "wall": length,
+        "turn": length * rate**2,
+        "stick": length * rate**2,
+        "slip": length * rate**3,
+        "hold": 1.0 / rate,
+        "duration": 1.0 / rate,
+    }
+    if not len(word) or (length == 1.0 and rate == 1.0):
+        return np.ones(max(PER_NODE * len(word), 1))
+    return np.array([sizes[margin_name(word, index)] for index in range(PER_NODE * len(word))])
+
+
 def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
     """The finite margins among `values`, shape (4 L,), with their names."""
     return [

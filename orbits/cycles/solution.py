@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from orbits.compiling.interrupts import kept_back
 from orbits.cycles import measures as measuring
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
 from orbits.cycles.equations import equations
-from orbits.cycles.margins import Margin, named_margins
+from orbits.cycles.margins import Margin, margin_units, named_margins
 from orbits.cycles.sampling import sample
 
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
@@ -62,12 +63,19 @@ class Solution(Cycle):
 
     @property
     def margins(self) -> list[Margin]:
-        """Margins of admissibility, all positive for a real orbit."""
+        """Margins of admissibility, all positive for a real orbit; in the units of the nodes."""
+        own = self._examined[2]  # of half a symmetric motion without impacts
+        units = margin_units(self.word, self.model.natural_units(self.params))
+        return named_margins(self.word, own * units[: own.size])
+
+    @property
+    def relative_margins(self) -> list[Margin]:
+        """The same in units of the machine's own size."""
         return named_margins(self.word, self._examined[2])
 
     @property
     def margin(self) -> float:
-        """The smallest margin."""
+        """The smallest margin, in units of the machine's own size."""
         return float(self._examined[2].min())
 
     @property
@@ -112,5 +120,6 @@ def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.nda
     count = 2 * system.n_multipliers
     row = np.empty(count + system.n_margins)
     value = system.value(system.params)
-    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.workspace(), row)
+    with kept_back():
+        residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.workspace(), row)
     return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.attractors.sweep import measures
+from orbits.attractors.recurrence import left_over
+from orbits.attractors.sweep import described
 from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.starts.find import StartError, find, polish
@@ -143,8 +144,8 @@ class Family:
             generator = np.random.default_rng(20)
             for trial in range(starts):
                 start = None if trial == 0 else model.random_start(params, generator)
-                attractor = find_attractor(model, start, **numbers)
-                found.append((float(value), measures(attractor), attractor.text))
+                attractor, numbers_of = described(left_over(model, start, **numbers))
+                found.append((float(value), numbers_of, attractor.text))
         return found
 
     @staticmethod

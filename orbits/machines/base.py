@@ -272,6 +272,19 @@ class Model:
         """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
         return 1.0
 
+    def natural_units(self, params: np.ndarray) -> tuple[float, float]:
+        """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.
+
+        Powers of two, so that nothing is rounded; 1 where the machine's equations have no unit to choose.
+        """
+        return 1.0, 1.0
+
+    def factors(self, units: tuple[float, float]) -> np.ndarray:
+        """What one dimensionless number of each of the machine's own parameters is, (P,), in units of a length and a rate."""
+        length, rate = units
+        sizes = {"b": length, "omega_0": rate, "b omega_0^2": length * rate * rate}
+        return np.array([sizes.get(parameter.unit, 1.0) for parameter in self.table])
+
     def place_of(self, name: str) -> int:
         """Place of a parameter among `amount_names`.
 

@@ -102,6 +102,7 @@ def portrait(
             _phase(drawn[0], orbit, motion)
         if panels != "phase":
             _history(drawn[-1], orbit, motion)
+            _legend(figure, drawn[-1], axes is None)
     return figure
 
 
@@ -118,12 +119,18 @@ def title(orbit: Orbit) -> str:
         for name, value in orbit.parameters.items()
         if (name, value) != ("excitation", 1.0)
     )
+    told = getattr(
+        orbit, "spelling", None
+    )  # machines on a page have none: any of their words may be read as it stands
     if not len(orbit.word):
-        return f"stuck, the absorber rides with the cavity, {state}\n{here}"
+        return (
+            f"{'no event' if told is None else 'stuck, the absorber rides with the cavity'}, {state}\n{here}"
+        )
     many = "impact" if orbit.impacts == 1 else "impacts"
     periods = "forcing period" if orbit.periods == 1 else "forcing periods"
     kind = "symmetric" if orbit.symmetric else "asymmetric"
-    word = orbit.spelling if len(orbit.spelling) <= 60 else orbit.spelling[:40] + "..."
+    word = str(orbit.word) if told is None else told
+    word = word if len(word) <= 60 else word[:40] + "..."
     return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
 
 
@@ -173,7 +180,16 @@ def _history(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
         xlabel=r"forcing periods $\Psi/2\pi$", ylabel=r"positions in units of $b$", xlim=(turns[0], turns[-1])
     )
     axes.margins(y=0.02)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=4, frameon=False, fontsize="small")
+
+
+def _legend(figure: Any, axes: Axes, own: bool) -> None:
+    """Under everything in a figure of ours, which makes room for it; under the axes in others."""
+    if not own:
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=4, frameon=False, fontsize="small")
+        return
+    handles, labels = axes.get_legend_handles_labels()
+    columns = len(labels) if figure.get_size_inches()[0] >= 1.35 * len(labels) else 2
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize="small")
 
 
 def _events(axes: Any, orbit: Orbit, x: np.ndarray, y: np.ndarray, labelled: bool = False) -> None:

@@ -13,6 +13,8 @@ from orbits.machines.stepping import HOLD, PSI, RATE, STATUS, TURNS, Machine
 
 TWO_PI = 2.0 * np.pi
 LETTERS = "LRtsuH"
+PLACED = 1e-8  # phases of a peak that differ by less: the peak itself is known to the square of that
+MOST_STEPS = 60  # towards a peak
 
 
 class Samples(NamedTuple):
@@ -130,11 +132,9 @@ class Trajectory:
         ValueError
             If a phase lies outside the run.
         """
-        first = self.start[PSI] + TWO_PI * self.start[TURNS]
-        last = self.end[PSI] + TWO_PI * self.end[TURNS]
+        first, last = self._span()
         if phases is None:
-            count = max(2, int(np.ceil((last - first) / TWO_PI * per_period)) + 1)
-            phases = np.linspace(first, last, count)
+            phases = self._grid(per_period)
         phases = np.atleast_1d(np.asarray(phases, dtype=float))
         slack = 1e-9 * max(1.0, abs(last))
         if phases.size and (phases.min() < first - slack or phases.max() > last + slack):
@@ -154,10 +154,10 @@ class Trajectory:
 
     def peak_cavity(self, per_period: int = 200) -> float:
         """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
-        seen = self.sample(per_period=per_period)
         eps = self.params[self.model.parameter_names.index("mass_ratio")]
-        marks = np.concatenate([seen.phase, self.phases])
-        marks = np.unique(marks[(marks >= seen.phase[0]) & (marks <= seen.phase[-1])])
+        grid = self._grid(per_period)
+        marks = np.concatenate([grid, self.phases])
+        marks = np.unique(marks[(marks >= grid[0]) & (marks <= grid[-1])])
         seen = self.sample(marks)
         speed = seen.v_rate + eps * seen.w_rate
         turn = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
@@ -166,17 +166,36 @@ class Trajectory:
         steep = np.maximum(np.abs(speed[turn]), np.abs(speed[turn + 1])) / (1.0 + eps)
         rise = steep * (marks[turn + 1] - marks[turn])  # q1' changes its sign there: q1 can gain no more
         turn = turn[np.maximum(high[turn], high[turn + 1]) + rise >= peak]
-        lo, hi = marks[turn], marks[turn + 1]
-        below = speed[turn]
-        for _ in range(
-            30 if turn.size else 0
-        ):  # bisection, all at once; the peak's error is the interval's squared
-            middle = 0.5 * (lo + hi)
-            here = self.sample(middle)
-            same = (here.v_rate + eps * here.w_rate) * below > 0.0
-            lo, hi = np.where(same, middle, lo), np.where(same, hi, middle)
+        lo, hi, below, above = marks[turn], marks[turn + 1], speed[turn], speed[turn + 1]
+        before, place = np.zeros(turn.size, dtype=int), np.full(turn.size, np.inf)
+        for _ in range(MOST_STEPS if turn.size else 0):  # the Illinois rule, for all at once
+            last, place = place, np.clip(lo + (hi - lo) * below / (below - above), lo, hi)
+            here = self.sample(place)
+            rate = here.v_rate + eps * here.w_rate
             peak = max(peak, float(np.abs(here.cavity).max()))
+            if np.all((rate == 0.0) | (np.abs(place - last) < PLACED)):
+                break
+            side = np.where(rate * below > 0.0, 1, -1)
+            share = np.where(side == before, 0.5, 1.0)  # an end that stays twice counts half
+            lo, hi = np.where(side > 0, place, lo), np.where(side > 0, hi, place)
+            below, above = (
+                np.where(side > 0, rate, share * below),
+                np.where(side > 0, share * above, rate),
+            )
+            before = side
         return peak
+
+    def _span(self) -> tuple[float, float]:
+        """Phases at which the run begins and ends, counted through."""
+        return (
+            float(self.start[PSI] + TWO_PI * self.start[TURNS]),
+            float(self.end[PSI] + TWO_PI * self.end[TURNS]),
+        )
+
+    def _grid(self, per_period: int) -> np.ndarray:
+        """Evenly spaced phases over the run."""
+        first, last = self._span()
+        return np.linspace(first, last, max(2, int(np.ceil((last - first) / TWO_PI * per_period)) + 1))
 
     def balance(self) -> Balance:
         """Energy balance over the run, in the energy that the model's kernels define."""

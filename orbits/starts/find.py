@@ -125,6 +125,7 @@ def find(
             raise StartError(str(error)) from None
         orbit = _from_guess(made(model, reading, periods, nodes, params))
         if orbit is not None:
+            _warn_virtual(orbit)
             return orbit
         tried.append("Newton's method from the guess")
     else:
@@ -182,6 +183,19 @@ def _warn(guess: Any, word: Word, instead: str) -> None:
             StartWarning,
             stacklevel=4,
         )
+
+
+def _warn_virtual(orbit: Solution) -> None:
+    if orbit.real:
+        return
+    least = min(orbit.margins, key=lambda margin: margin.value)
+    warnings.warn(
+        f"the guess leads to an orbit that no machine follows: the margin {least.kind!r} at event {least.segment + 1} "
+        f"({orbit.word.events[least.segment]}) is {least.value:.3g}, below 0; check that phases and positions of the guess belong "
+        "to one motion, and to this word",
+        StartWarning,
+        stacklevel=4,
+    )
 
 
 def _repeated(

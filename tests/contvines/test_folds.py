@@ -86,3 +86,20 @@ def test_folds_beside_borders_of_a_machine():
         changes = np.array([value(step), value(-step)]) - fold.value
         assert np.all(changes < 0.0) or np.all(changes > 0.0)
         assert abs(changes[0] - changes[1]) < 0.1 * abs(changes).min()
+
+
+@pytest.mark.parametrize(
+    "name", ["border", "leap", "meets", "fold", "astray", "branch-point", "end", "plain"]
+)
+def test_a_user_function_may_have_any_name(name):
+    """The circle x^2 + p^2 = 1 closes, folds at p = -1 and 1, and has x = 0.3 at p = -+sqrt(0.91), whatever that is called."""
+    problem = cv.AlgebraicProblem(lambda u, p: [u[0] ** 2 + p**2 - 1.0], [1.0], 0.0)
+    graph = cv.diagram(problem, within=(-2.0, 2.0), user_functions={name: lambda u, p: u[0] - 0.3})
+    (branch,) = graph
+    assert branch.closed
+    folds = sorted(point.value for point in graph.of_kind("fold"))
+    assert folds == pytest.approx([-1.0, 1.0], abs=1e-10)
+    mine = graph.of_kind("user")
+    assert [point.name for point in mine] == [name, name]
+    assert sorted(point.value for point in mine) == pytest.approx([-np.sqrt(0.91), np.sqrt(0.91)], abs=1e-10)
+    assert len(graph.special) == 4

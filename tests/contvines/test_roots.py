@@ -15,6 +15,7 @@ def test_root_of_odd_powers(root, power, scale):
     found, low, high, flow, fhigh = bracketed_root(f, -1.0, 1.0, f(-1.0), f(1.0))
     assert abs(found - root) < 1e-12
     assert low <= found <= high and flow * fhigh <= 0.0
+    assert abs(f(found)) == min(abs(flow), abs(fhigh))  # the better end of the bracket
 
 
 @given(st.floats(-0.95, 0.95))

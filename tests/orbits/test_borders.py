@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
 from orbits.simulation.replay import replay
 from orbits.starts.find import polish
@@ -306,3 +306,41 @@ def test_periods_are_added_where_a_turn_touches_a_wall():
         start["w_rate"] = orbit.events.rate_post[0] * (1.0 + 1e-8)
         seen = find_attractor(machine, start, amplitude=orbit.parameters["amplitude"], max_period=8)
         assert (seen.periods, seen.impacts) == (orbit.periods, 2 * orbit.periods + 1)
+
+
+def test_an_impact_and_the_flight_after_it_vanish_together():
+    """From the stick at the wall the motion goes on without the impact; both are one motion at the border, and both are followed."""
+    machine = Cavity(
+        restitution_left=0.724035,
+        restitution_right=0.818974,
+        friction_left=0.424031,
+        friction_right=0.906205,
+        gravity=0.491416,
+        slope=-0.083218,
+        distance_left=1.438987,
+        distance_right=0.912791,
+        mass_ratio=0.05,
+    )
+    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.5727}, amplitude=0.754836)
+    graph = cv.diagram(polish(found.orbit), over="amplitude", within=(0.74, 0.79), depth=1)
+    soft = next(
+        point for point in graph.special.values()
+        if point.kind in ("stick", "wall-graze")
+        and any(m.kind == "approach" and abs(m.value) < 1e-9 for m in point.orbit.margins)
+    )  # fmt: skip
+    assert soft.orbit.word.events.count("L") == 2
+    assert switches(graph, soft)
+    for switch in switches(graph, soft):
+        target = graph[switch.target]
+        end = int(np.argmin(np.abs(target.values - soft.value)))
+        near = target.orbit(end)
+        assert near.word.events.count("L") == 2 * near.periods - 1
+        if near.periods > 1:
+            continue  # in every other round only; the border orbit itself is compared below
+        grid = np.linspace(0.0, 2.0 * np.pi, 500)
+        one, other = (
+            np.interp((grid - path["phase"][0]) % (2 * np.pi), path["phase"] - path["phase"][0], path["w"])
+            for path in (orbit.sample(20000) for orbit in (soft.orbit, near))
+        )
+        assert np.abs(one - other).max() < 1e-6
+        assert replay(target.orbit(len(target) // 2)).error < 1e-6

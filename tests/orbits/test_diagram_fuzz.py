@@ -129,7 +129,8 @@ def crossed(graph, depth):
             continue
         outward = replace(point, tangent=-point.tangent if point.index == 0 else point.tangent)
         seeds = point.problem.beyond(outward)
-        assert seeds, point
+        assert seeds or point.problem.dead_end(outward) in point.note, point
+        assert seeds or point.note, point
         assert not any(seed.persistence for seed in seeds), (point, [seed.note for seed in seeds])
 
 

@@ -1,5 +1,7 @@
 """Orbits: closed forms, determinant identities, long words, mirror images, energy."""
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -222,6 +224,19 @@ def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
     orbit = SLIDING.orbit("tt", amplitude=amplitude, guess=guess)
     assert orbit.real
     assert orbit.nodes[:, 1] == pytest.approx([-way * turning, way * turning], abs=1e-12)
+
+
+def test_a_guess_whose_phases_and_positions_belong_to_two_motions_is_not_taken_in_silence():
+    """The mirror image has the same positions half a period later: with the phases of the one, those of the other reverse."""
+    amplitude = np.sqrt(0.3)
+    turning = np.sqrt(0.3 - (0.5 * np.pi * 1.006 * 0.5 * 0.211) ** 2)
+    right = SLIDING.orbit("tt", amplitude=amplitude, guess=[[4.403, -turning], [4.403 + np.pi, turning]])
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        orbit = SLIDING.orbit("tt", amplitude=amplitude, guess=[[4.403, turning], [4.403 + np.pi, -turning]])
+    assert orbit.real or any("no machine follows" in str(warning.message) for warning in caught)
+    if orbit.real:
+        assert np.sort(orbit.nodes[:, 1]) == pytest.approx(np.sort(right.nodes[:, 1]), abs=1e-12)
 
 
 def test_a_guess_against_stated_directions_is_refused():

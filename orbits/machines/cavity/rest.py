@@ -26,14 +26,16 @@ class InclinedRest:
         return np.eye(1), np.zeros(1)
 
     def reserve(self, params: np.ndarray, u: np.ndarray) -> float:
-        """Of the two directions the nearer to slipping: a_left + b - C Omega^2 and a_right - b - C Omega^2."""
+        """Of the two directions the nearer to slipping."""
+        return min(self.reserves(params))
+
+    def reserves(self, params: np.ndarray) -> tuple[float, float]:
+        """Of both directions: a_left + b - C Omega^2 and a_right - b - C Omega^2."""
         weight = (1.0 + float(params[MASS_RATIO])) * float(params[GRAVITY])
         normal, b = weight * math.cos(params[SLOPE]), weight * math.sin(params[SLOPE])
         shaking = float(params[AMPLITUDE]) * float(params[FREQUENCY]) ** 2
-        return (
-            min(normal * float(params[FRICTION_LEFT]) + b, normal * float(params[FRICTION_RIGHT]) - b)
-            - shaking
-        )
+        left, right = normal * float(params[FRICTION_LEFT]), normal * float(params[FRICTION_RIGHT])
+        return left + b - shaking, right - b - shaking
 
     def multipliers(self, params: np.ndarray) -> np.ndarray:
         return np.zeros(0, complex)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +17,12 @@ class Shaken(Model):
     node_names = ("phase", "B or w")
     default_parameter = "amplitude"
     driven_by = "amplitude"
+
+    def natural_units(self, params: np.ndarray) -> tuple[float, float]:
+        left, right = (float(wall) for wall in self.walls(params))
+        sizes = min(left, -right), float(self.column(params, "frequency"))  # a far wall may be out of reach
+        length, rate = (2.0 ** round(math.log2(size)) if 0.0 < size < math.inf else 1.0 for size in sizes)
+        return length, rate
 
     @classmethod
     def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -212,6 +212,10 @@ class DeclaredOrbit:
         """Phase portrait and time history; see `orbits.plots.declared.portrait`."""
         return above("portrait_of_page")(self, **options)
 
+    def scene(self, points: int = 120) -> dict[str, Any]:
+        """The orbit as plain numbers for a page that draws it; see `orbits.plots.declared.scene`."""
+        return above("scene_of_page")(self, points)
+
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
         clock = "phase" if self.machine.forced else "duration"

@@ -17,6 +17,7 @@ def test_a_transcritical_point_is_said_to_be_one():
     (point,) = graph_of(lambda u, p: p * u - u**2).of_kind("branch-point")
     assert "transcritical" in " ".join(point.remarks)
     assert point.criticality is None and point.value == pytest.approx(0.0, abs=1e-10)
+    assert 0.0 <= point.location_error < 1e-8 and abs(point.value) <= point.location_error + 1e-14
 
 
 @pytest.mark.parametrize(("cubic", "kind"), [(-1.0, "supercritical"), (1.0, "subcritical")])

@@ -120,6 +120,12 @@ class Curve:
                 return  # an isolated point
             if (len(inner[0]), len(inner[1])) not in {(2, 2), (1, 3), (3, 1)}:
                 raise Unsuitable("a cusp")
+            place = {X: sy.Float(at, 30), P: sy.Float(str(value), 30)}
+            gxx, gxp, gpp = (
+                float(f.eval(place)) for f in (self.gx.diff(X), self.gx.diff(P), self.gp.diff(P))
+            )
+            if not gxx * gpp - gxp**2 < -1e-6:
+                raise Unsuitable("branches that touch")
             special = Special("branch-point", p, at)
         elif sorted(map(len, inner)) == [0, 2]:
             special = Special("fold", p, at)

@@ -69,9 +69,9 @@ def test_a_periodic_motion_that_is_recorded_is_the_simulated_one():
     base = eps * 6.0 * np.sin(omega * seen.times[last])
     settled = np.abs(seen.oscillator[last] + base).max()
     from orbits.attractors import find_attractor
-    from orbits.attractors.sweep import measures
+    from orbits.attractors.sweep import described
 
-    assert settled == pytest.approx(measures(find_attractor(machine))["max_abs_q1"], rel=2e-3)
+    assert settled == pytest.approx(described(find_attractor(machine))[1]["max_abs_q1"], rel=2e-3)
 
 
 def test_bad_records_get_a_sentence():

@@ -1,0 +1,95 @@
+"""Where two loci cross in the plane without anything to do with one another: two motions, or two directions of one."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from .locus import Locus
+
+MEETING = 1e-5  # of the plane's sides: a crossing so near to a point on both loci is that point
+SOLVED = 1e-12  # of the interval of the second parameter
+
+
+def crossings(chart: Any) -> list[dict[str, Any]]:
+    """The crossings of the real parts of a chart's loci.
+
+    Returns
+    -------
+    list of dict
+        "on", the labels of the two loci; "value", both parameters by name; "error", the uncertainty of the place relative to the plane.
+    """
+    lows = np.array([interval[0] for interval in chart.within])
+    widths = np.array([interval[1] - interval[0] for interval in chart.within])
+    curves = {label: (locus.values - lows) / widths for label, locus in chart.loci.items()}
+    found: list[dict[str, Any]] = []
+    for one, other in combinations(chart.loci, 2):
+        first, second = chart.loci[one], chart.loci[other]
+        meetings = [p.value for p in chart.points.values() if one in p.on and other in p.on]
+        for i, j, place in segments(curves[one], curves[other]):
+            if not (first.real[i : i + 2].all() and second.real[j : j + 2].all()):
+                continue
+            p, q, error = _solved(first, second, i, j, lows + place * widths)
+            if any(np.abs((np.array([p, q]) - m) / widths).max() < max(MEETING, error) for m in meetings):
+                continue
+            found.append(
+                {"on": [one, other], "value": dict(zip(chart.parameters, (p, q))), "error": float(error)}
+            )
+    return found
+
+
+def segments(a: np.ndarray, b: np.ndarray) -> list[tuple[int, int, np.ndarray]]:
+    """Crossings of two polygons, shapes (n, 2) and (m, 2): (segment of a, segment of b, place)."""
+    if len(a) < 2 or len(b) < 2:
+        return []
+    d, e = np.diff(a, axis=0), np.diff(b, axis=0)
+    gap = b[None, :-1] - a[:-1, None]
+    turn = d[:, None, 0] * e[None, :, 1] - d[:, None, 1] * e[None, :, 0]
+    with np.errstate(all="ignore"):
+        s = (gap[..., 0] * e[None, :, 1] - gap[..., 1] * e[None, :, 0]) / turn
+        t = (gap[..., 0] * d[:, None, 1] - gap[..., 1] * d[:, None, 0]) / turn
+        inside = (s >= 0.0) & (s < 1.0) & (t >= 0.0) & (t < 1.0)
+    return [(int(i), int(j), a[i] + s[i, j] * d[i]) for i, j in np.argwhere(inside)]
+
+
+def _solved(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) -> tuple[float, float, float]:
+    """(p, q, error): the place by the secant method on the second parameter, where both loci can be solved at a value of it."""
+    low, high = first.within
+    width = high - low
+    p, q = float(place[0]), float(place[1])
+    size = max(
+        abs(np.diff(first.branch.values[i : i + 2])[0]), abs(np.diff(second.branch.values[j : j + 2])[0])
+    )
+    if first.problem is None or second.problem is None:
+        return p, q, float(size / width)
+    engines = [Engine(locus.problem, (low, high), Settings()) for locus in (first, second)]
+
+    def gap(value: float) -> tuple[float, float] | None:
+        ends = []
+        for locus, engine, k in zip((first, second), engines, (i, j)):
+            a, b = locus.branch.values[k : k + 2]
+            share = 0.5 if a == b else (value - a) / (b - a)
+            guess = (1.0 - share) * locus.branch.points[k] + share * locus.branch.points[k + 1]
+            solved = engine.at_value(guess, value)
+            if solved is None:
+                return None
+            ends.append(float(solved.u[locus.size]))
+        return ends[0] - ends[1], ends[0]
+
+    before, now = q, q + 1e-3 * size + 1e-9 * width
+    last = gap(before)
+    for _ in range(20):
+        here = gap(now)
+        if last is None or here is None or here[0] == last[0]:
+            break
+        step = -here[0] * (now - before) / (here[0] - last[0])
+        if not abs(now + step - q) <= 2.0 * size:
+            break
+        before, last, now = now, here, now + step
+        if abs(step) < SOLVED * width:
+            return here[1], float(now), float(abs(step) / width)
+    return p, q, float(size / width)

@@ -1,0 +1,211 @@
+"""How the special points of one kind are followed in the plane of two parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ..branches.assembly import make_branch
+from ..branches.ending import Ending
+from ..branches.half_branch import HalfBranch
+from ..branches.special_point import SpecialPoint
+from ..branches.tracing import trace_half
+from ..continuation.engine import Solved
+from ..continuation.settings import Settings
+from ..continuation.starts import check_interval
+from ..continuation.status import Status
+from ..events.located import Located, Role
+from ..events.watch import Watch
+from ..interrupts import listening
+from ..journal import NullJournal
+from .layout import BRANCH, MARGIN
+from .locus import Locus, Turn
+from .problem import LocusProblem
+from .sides import impossible_side
+from .starts import begin, first_point
+
+UNFOLDED = 1e-7  # an unfolding beyond this (relative to the largest unknown) says that a branch point does not persist
+
+
+@listening()
+def locus(
+    point: SpecialPoint,
+    over: str,
+    within: tuple[float, float],
+    bounds: tuple[float, float] | None = None,
+    virtual: bool = False,
+    settings: Settings | Mapping[str, Any] | None = None,
+    progress: Callable[[str, int, float], None] | None = None,
+) -> Locus:
+    """Follow a special point of any kind in a second parameter.
+
+    Parameters
+    ----------
+    point : SpecialPoint
+        Fold, symmetry breaking, branch point, period doubling, Neimark-Sacker, Hopf, or any border.
+    over : str
+        Name of the second parameter.
+    within : (float, float)
+        Its interval; it must hold the value at which the diagram was made.
+    bounds : (float, float), optional
+        Interval of the first parameter, at whose ends the locus ends; unbounded if left out.
+    virtual : bool
+        Go on where the motion ceases to exist (such points have ``real`` False).
+    settings : Settings or mapping, optional
+    progress : callable, optional
+        Called with (label, number of points, value of the second parameter).
+
+    Returns
+    -------
+    Locus
+
+    Raises
+    ------
+    ValueError
+        If the point has no locus, or a parameter or interval will not do; the sentence says why.
+    """
+    if point.kind in ("end", "user"):
+        raise ValueError(f"{point.label} is no special point of the motion ({point.kind}); it has no locus")
+    if point.problem is None:
+        raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+    within = check_interval(within)
+    known = getattr(point.problem, "parameters", {})
+    problem = begin(
+        point.problem,
+        point.kind,
+        point.u,
+        point.value,
+        over,
+        point.margin_index or 0,
+        (-np.inf, np.inf) if bounds is None else check_interval(bounds),
+    )
+    q = known[over]
+    if not within[0] <= q <= within[1]:
+        raise ValueError(
+            f"the diagram was made at {over} = {q:.10g}, outside of within = [{within[0]:.10g}, {within[1]:.10g}]; "
+            "widen the interval"
+        )
+    checked_ends(point.problem, over, within)
+    settings = Settings.of(settings)
+    found = trace_locus(
+        problem,
+        point.u,
+        point.value,
+        q,
+        within,
+        settings,
+        label=point.label,
+        seed=point.label,
+        virtual=virtual,
+        progress=progress,
+    )
+    if found is None:
+        raise ValueError(
+            f"the locus of {point.label} cannot be started: its equations do not converge at {over} = {q:.10g}"
+        )
+    return found
+
+
+def checked_ends(problem: Any, over: str, within: tuple[float, float]) -> None:
+    """Refuse an interval whose ends are no sensible values of the parameter, where the problem can tell."""
+    check = getattr(problem, "check_value", None)
+    if check is not None:
+        for value in within:
+            check(over, value)
+
+
+def trace_locus(
+    problem: LocusProblem,
+    u: np.ndarray,
+    p: float,
+    q: float,
+    within: tuple[float, float],
+    settings: Settings,
+    label: str,
+    seed: str | None = None,
+    virtual: bool = False,
+    journal: Any = None,
+    progress: Callable[[str, int, float], None] | None = None,
+) -> Locus | None:
+    """The locus through a special point, both ways; None if its equations do not converge there."""
+    engine, start = first_point(problem, u, p, q, within, settings)
+    if start is None:
+        return None
+    watch = Watch(engine)
+    journal = NullJournal() if journal is None else journal
+    own = int(problem.base.n_margins)
+    margins = engine.margins(start.row)
+    real = not np.any(margins[:own] < -1e-9)
+
+    def notice(points: int, value: float) -> None:
+        if progress is not None:
+            progress(label, points, value)
+
+    def go(first: Solved, side: str) -> tuple[HalfBranch, np.ndarray, str]:
+        now, half = real, None
+        flags = np.zeros(0, dtype=bool)
+        for part in range(20):
+            more = trace_half(
+                engine, first, watch, journal, f"locus/{label}/{side}/{part}", now, None, notice
+            )
+            flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))
+            half = more if half is None else half.extended(more, skip=1)
+            border = _border(more)
+            if border is None or not virtual or problem.margin_kind(border.index) in ("end", "resonance"):
+                break
+            now, first = not now, border.point
+        assert half is not None
+        return half, flags, _sentence(problem, half)
+
+    if start.tangent[-1] < 0.0:
+        start = start._replace(tangent=-start.tangent, sign=-start.sign)
+    ahead, ahead_real, ahead_ended = go(start, "ahead")
+    if ahead.status == Status.CLOSED:
+        whole, flags, ended = ahead, ahead_real, (ahead_ended, ahead_ended)
+    else:
+        back, back_real, back_ended = go(start._replace(tangent=-start.tangent, sign=-start.sign), "back")
+        whole = back.reversed().extended(ahead, skip=1)
+        flags = np.append(back_real[::-1], ahead_real[1:])
+        ended = (back_ended, ahead_ended)
+    endings = (Ending.said(ended[0]), Ending.said(ended[1]))
+    branch = make_branch(label, engine, whole, real, endings, ahead.status == Status.CLOSED, seed)
+    branch.description["unfolded"] = problem.unfolded
+    if problem.condition == BRANCH and _unfolds(problem, branch.points):
+        return None
+    turns = tuple(
+        Turn(i, (float(e.point.u[problem.size]), float(e.point.p)))
+        for i, e in whole.events
+        if e.kind == "fold"
+    )
+    side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
+    return Locus(
+        label, problem.kind, (problem.inner, problem.over), branch, flags, seed, (), turns, within, side
+    )
+
+
+def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
+    sizes = 1.0 + np.abs(points[:, : problem.size]).max(axis=1)
+    return bool((np.abs(points[:, problem.size + 1]) > UNFOLDED * sizes).any())
+
+
+def _border(half: HalfBranch) -> Located | None:
+    if half.status != Status.BORDER or not half.events:
+        return None
+    last = half.events[-1][1]
+    return last if last.role is Role.BORDER else None
+
+
+def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
+    """Why this side of the locus ends."""
+    border = _border(half)
+    if border is None:
+        return half.status.sentence(problem.over, half.end)
+    kind, p, q = problem.margin_kind(border.index), border.point.u[problem.size], border.point.p
+    place = f"{problem.inner} = {p:.10g}, {problem.over} = {q:.10g}"
+    if kind == "end":
+        return f"reaches the end of the interval of {problem.inner}, {place}"
+    if kind == "resonance":
+        return f"the pair of multipliers becomes real at {place}"
+    return f"reaches a border ({kind}) at {place}"

@@ -1,0 +1,35 @@
+"""What stands where in the data and work arrays of the kernels of a locus, and the conditions that it may follow."""
+
+FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
+
+# entries of `data`
+FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
+
+# entries of `work`
+(
+    RESIDUAL,
+    BASE,
+    TRIAL,
+    BASE_F,
+    BASE_Q,
+    TRIAL_F,
+    TRIAL_Q,
+    POINT,
+    COLUMNS,
+    SOLUTIONS,
+    DIRECTIONS,
+    BORDERS,
+    ROW,
+    SHIFTED,
+    SCALES,
+    VALUES,
+    SLOPES,
+    LINES,
+    REFERENCE,
+    SMALL,
+    MASKED,
+) = range(21)
+
+STEP = 1e-7  # of the differences, relative to the scales of the unknowns
+AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
+B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS

@@ -1,0 +1,52 @@
+"""Why no branch goes on at a border, where the reason is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.cycles.solution import Solution
+from orbits.protocol import CycleProblem
+
+SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
+UNRESOLVED = 1e-5  # the way after an impact this slow, its square, is lost in that of the margins
+VANISHING = 1e-9  # margins smaller than this are those of the border itself
+ONE_WAY = 1e-9  # relative difference of the frictions, slope included, of the two directions
+
+CREEPS = (
+    "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
+)
+PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be told from rest"
+TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be told from contact"
+
+
+def dead_end(problem: CycleProblem, point: Any) -> str:
+    """A sentence that says why no motion was found on the other side of a border; empty where none is known."""
+    u, p = np.asarray(point.u, dtype=float), float(point.value)
+    orbit = problem.orbit(u, p)
+    if not len(problem.word):
+        return CREEPS if _gives_way_one_way(orbit) else ""
+    margins = orbit.relative_margins
+    speeds = [m.value for m in margins if m.kind == "approach" and VANISHING < m.value < SLOW]
+    turns = [k for k, letter in enumerate(orbit.word.events) if letter == "t"]
+    gaps = [
+        m.value for m in margins if m.kind == "wall" and m.segment in turns and VANISHING < m.value < SLOW
+    ]
+    if speeds:
+        return PILING.format(speed=min(speeds))
+    return TOUCHING.format(gap=min(gaps)) if gaps else ""
+
+
+def piled_up(orbit: Solution) -> bool:
+    """Whether a border orbit has an impact that is too slow to see what the next ones do."""
+    return any(m.kind == "approach" and VANISHING < m.value < UNRESOLVED for m in orbit.relative_margins)
+
+
+def _gives_way_one_way(orbit: Solution) -> bool:
+    """Whether friction and slope hold the absorber better one way than the other."""
+    reserves = getattr(orbit.model.rest, "reserves", None)
+    if reserves is None:
+        return False
+    left, right = reserves(orbit.params)
+    return abs(left - right) > ONE_WAY * orbit.model.friction_acceleration(orbit.params)

@@ -1,0 +1,87 @@
+"""Maps and flows of the literature in two parameters, against closed forms and solves of their own in many digits."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.loci.codimension_two import find
+
+
+def test_adaptive_control_map_is_its_closed_forms():
+    # Golden and Ydstie (Syst. Control Lett. 11 (1988) 413); Frouzakis, Adomaitis and Kevrekidis (Int. J. Bifurc. Chaos 1 (1991) 83)
+    c = 0.1
+
+    def control(x, p):
+        y = p.b * x[0] + p.k + x[1] * x[2]
+        return np.array([x[1], y, x[2] - p.k * x[1] / (c + x[1] ** 2) * (y - 1)])
+
+    # fixed point (1, 1, 1 - b - k); characteristic polynomial m^3 + a2 m^2 + a1 m + a0 there
+    def polynomial(b, k):
+        s, z = k / (1 + c), 1 - b - k
+        J = mp.matrix([[0, 1, 0], [b, z, 1], [-s * b, -s * z, 1 - s]])
+        a2 = -(J[0, 0] + J[1, 1] + J[2, 2])
+        a1 = sum(J[i, i] * J[j, j] - J[i, j] * J[j, i] for i, j in ((0, 1), (0, 2), (1, 2)))
+        return a2, a1, -mp.det(J)
+
+    def flip(b, k):  # det(J + 1) = 4 - 4 b - 2 k - k / (1 + c)
+        return 4 - 4 * b - 2 * k - k / (1 + c)
+
+    def pair(b, k):  # a pair with product one: m^3 + a2 m^2 + a1 m + a0 = (m^2 + t m + 1)(m + a0)
+        a2, a1, a0 = polynomial(b, k)
+        return a1 - 1 - a0 * (a2 - a0)
+
+    b0, k0 = -0.5, 0.1
+    problem = cv.MapProblem(control, [1.0, 1.0, 1 - b0 - k0], {"b": b0, "k": k0}, parameter="b")
+    graph = cv.diagram(problem, over="b", within=(-1.2, 0.98), depth=0)
+    assert graph.of_kind("neimark-sacker") and graph.of_kind("period-doubling")
+    for kind, condition in (("period-doubling", flip), ("neimark-sacker", pair)):
+        locus = cv.locus(graph.of_kind(kind)[0], over="k", within=(0.02, 0.4), bounds=(-1.2, 0.995))
+        assert len(locus) > 5
+        for b, k in locus.values:
+            exact = mp.findroot(lambda x, k=k, condition=condition: condition(x, k), b)
+            assert float(exact) == pytest.approx(b, abs=1e-10)
+
+
+def test_bazykin_predator_and_prey():
+    # x' = x - x y / (1 + al x) - x^2 / 100, y' = -y + x y / (1 + al x) - de y^2; Kuznetsov's textbook, example 8.3 (epsilon = 0.01)
+    eps = 0.01
+
+    def flow(u, p):
+        x, y = u
+        eaten = x * y / (1 + p.al * x)
+        return np.array([x - eaten - eps * x * x, -y + eaten - p.de * y * y])
+
+    problem = cv.AlgebraicProblem(flow, [2.0, 1.6], {"al": 0.3, "de": 0.2}, parameter="de", spectrum="flow")
+    graph = cv.diagram(problem, over="de", within=(0.02, 0.6), depth=0)
+    start = next(point for kind in ("hopf", "fold") for point in graph.of_kind(kind))
+    locus = cv.locus(start, over="al", within=(0.05, 0.7), bounds=(0.005, 1.0))
+    for (de, al), u in zip(locus.values, locus.branch.points[:, :2]):
+
+        def system(x, y, de, al=al):
+            d = 1 + al * x
+            fx, fy = 1 - y / d**2 - 2 * eps * x, -x / d
+            gx, gy = y / d**2, -1 + x / d - 2 * de * y
+            last = fx + gy if start.kind == "hopf" else fx * gy - fy * gx
+            return [1 - y / d - eps * x, -1 + x / d - de * y, last]
+
+        exact = mp.findroot(system, [float(u[0]), float(u[1]), de])
+        assert float(exact[2]) == pytest.approx(de, abs=1e-9)
+
+
+def test_ricker_with_a_delay():
+    # x' = x exp(r - a x - y), y' = x: fixed point x = r / (1 + a), trace 1 - a x, determinant x: Neimark-Sacker at x = 1, r = 1 + a
+    def ricker(u, p):
+        return np.array([u[0] * np.exp(p.r - p.a * u[0] - u[1]), u[0]])
+
+    problem = cv.MapProblem(ricker, [0.6, 0.6], {"r": 0.8, "a": 0.3}, parameter="r")
+    graph = cv.diagram(problem, over="r", within=(0.5, 2.5), depth=0)
+    (point,) = graph.of_kind("neimark-sacker")
+    assert point.value == pytest.approx(1.3, abs=1e-11)
+    locus = cv.locus(point, over="a", within=(0.05, 3.4), bounds=(0.5, 5.0))
+    for r, a in locus.values:
+        assert r == pytest.approx(1 + a, abs=1e-11)
+    # trace 1 - a = 2 cos(angle): resonances 1:3 at a = 2, 1:4 at a = 1, 1:2 at a = 3
+    found = {p.kind: p for _, p in find(locus)}
+    for kind, a in (("resonance-1-4", 1.0), ("resonance-1-3", 2.0), ("resonance-1-2", 3.0)):
+        assert found[kind].value == pytest.approx((1 + a, a), abs=1e-9)
