@@ -35,6 +35,9 @@ def report(
     check_page(target)
     result = _result(file, trust)
     typer.echo(str(write_report(result, target, file.name)))
+    branches = getattr(result, "branches", {}) or getattr(result, "loci", {})
+    if branches and not trust and all(branch.problem is None for branch in branches.values()):
+        say(f"the page has no orbits: {file} names Python code, which --trust would run")
     if not getattr(result, "finished", True):
         say(f"{file} is unfinished: the page shows what there is so far")
 

@@ -18,6 +18,7 @@ class RestEquations:
     twist, shift = 1.0, 2.0 * np.pi
     loose, pinned = False, 0
     period_shift = None
+    unit = np.ones((0, 1))  # there are no nodes
 
     def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
         self.model, self.params, self.parameter = model, params, parameter

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.plots.portrait import ORBIT, title
+from orbits.plots.figures import new_figure, styled
+from orbits.plots.portrait import LOW, NARROW, ORBIT, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +20,15 @@ MARKS = "osD^v<>Ph*Xd"
 COLOURS = (ORBIT, "#b5531c", "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
 
 
-def portrait(orbit: DeclaredOrbit, points: int = 1200) -> Figure:
+def portrait(
+    orbit: DeclaredOrbit,
+    points: int = 1200,
+    *,
+    axes: Axes | Sequence[Axes] | None = None,
+    heading: bool = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
     """Draw the orbit: the first two states against one another on the left, all states over time on the right.
 
     Parameters
@@ -27,20 +36,82 @@ def portrait(orbit: DeclaredOrbit, points: int = 1200) -> Figure:
     orbit : DeclaredOrbit
     points : int
         Samples over the period.
+    axes : Axes or two of them, optional
+        Drawn on: one has the phase portrait, two have both. Without, a new figure.
+    heading : bool
+        Write what the orbit is above a new figure.
+    figsize : (float, float), optional
+        Inches, of a new figure; where it is narrow the two stand below one another, where it is small the first stands alone.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
     """
-    import matplotlib.pyplot as plt
-
     names = list(orbit.machine.states)
-    with plt.style.context(str(files("orbits.plots") / "house.mplstyle")):
-        figure, (left, right) = plt.subplots(
-            1, 2, figsize=(9.6, 4.0), width_ratios=(1.0, 1.5), layout="constrained"
-        )
-        motion = orbit.sample(points)
-        second = names[1] if len(names) > 1 else names[0]
-        _phase(left, orbit, motion, names[0], second)
-        _history(right, orbit, motion)
-        figure.suptitle(title(orbit), fontsize="medium")  # type: ignore[arg-type]
+    motion = orbit.sample(points)
+    with styled(style):
+        if axes is None:
+            size = figsize or (9.6, 4.0)
+            small = size[0] < NARROW and size[1] < LOW
+            figure: Any = new_figure(size)
+            if small:
+                drawn = [figure.add_subplot()]
+            elif size[0] < NARROW:
+                drawn = list(figure.subplots(2, 1))
+            else:
+                drawn = list(figure.subplots(1, 2, width_ratios=(1.0, 1.5)))
+            if heading:
+                text = title(orbit)  # type: ignore[arg-type]
+                figure.suptitle(text.split("\n")[0] if small else text, fontsize="medium", wrap=True)
+        else:
+            drawn = list(axes) if isinstance(axes, Sequence | np.ndarray) else [axes]
+            figure = drawn[0].get_figure(root=True)
+        _phase(drawn[0], orbit, motion, names[0], names[1] if len(names) > 1 else names[0])
+        if len(drawn) > 1:
+            _history(drawn[-1], orbit, motion)
     return figure
+
+
+def scene(orbit: DeclaredOrbit, points: int = 120) -> dict[str, Any]:
+    """Curves of one period as plain numbers, as `orbits.plots.scene.scene` has them; without an animation.
+
+    Parameters
+    ----------
+    orbit : DeclaredOrbit
+    points : int
+        About how many samples.
+    """
+    motion, names = orbit.sample(points), list(orbit.machine.states)
+    x, y = names[0], names[1] if len(names) > 1 else names[0]
+    clock = _clock(orbit, motion)
+    starts = _starts(orbit, motion, clock)
+    columns = [1 + names.index(name) for name in (x, y)]
+    return {
+        "portrait": {"x": motion[x], "y": motion[y], "names": [x, y], "walls": [], "reversed": False},
+        "history": {
+            "x": clock,
+            "name": _time(orbit),
+            "unit": "states",
+            "curves": {name: motion[name] for name in names},
+            "walls": [],
+        },
+        "animation": None,
+        "events": [
+            {"event": letter, "at": float(at), "x": float(node[columns[0]]), "y": float(node[columns[1]])}
+            for letter, at, node in zip(orbit.word.events, starts, orbit.nodes)
+        ],
+    }
+
+
+def _time(orbit: DeclaredOrbit) -> str:
+    return "forcing periods" if orbit.machine.forced else "time"
+
+
+def _clock(orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> np.ndarray:
+    return motion["phase"] / (2.0 * np.pi) if orbit.machine.forced else motion["time"]
+
+
+def _starts(orbit: DeclaredOrbit, motion: dict[str, np.ndarray], clock: np.ndarray) -> list[Any]:
+    """When each event happens."""
+    return [clock[np.searchsorted(motion["segment"], i)] for i in range(len(orbit.word))]
 
 
 def _phase(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray], x: str, y: str) -> None:
@@ -57,12 +128,10 @@ def _phase(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray], x: s
 
 
 def _history(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> None:
-    forced = orbit.machine.forced
-    clock = motion["phase"] / (2.0 * np.pi) if forced else motion["time"]
+    clock = _clock(orbit, motion)
     for name, colour in zip(orbit.machine.states, COLOURS * 3):
         axes.plot(clock, motion[name], color=colour, label=name)
-    starts: list[Any] = [clock[np.searchsorted(motion["segment"], i)] for i in range(len(orbit.word))]
-    for where, letter in zip(starts, orbit.word.events):
+    for where, letter in zip(_starts(orbit, motion, clock), orbit.word.events):
         axes.axvline(where, color="#bdbdbd", lw=0.7, zorder=0)
         axes.annotate(
             letter,
@@ -72,5 +141,5 @@ def _history(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) ->
             va="bottom",
             fontsize="small",
         )
-    axes.set(xlabel="forcing periods" if forced else "time", ylabel="states")
+    axes.set(xlabel=_time(orbit), ylabel="states")
     axes.legend(fontsize="small", loc="best", ncols=2)

@@ -119,12 +119,18 @@ def title(orbit: Orbit) -> str:
         for name, value in orbit.parameters.items()
         if (name, value) != ("excitation", 1.0)
     )
+    told = getattr(
+        orbit, "spelling", None
+    )  # machines on a page have none: any of their words may be read as it stands
     if not len(orbit.word):
-        return f"stuck, the absorber rides with the cavity, {state}\n{here}"
+        return (
+            f"{'no event' if told is None else 'stuck, the absorber rides with the cavity'}, {state}\n{here}"
+        )
     many = "impact" if orbit.impacts == 1 else "impacts"
     periods = "forcing period" if orbit.periods == 1 else "forcing periods"
     kind = "symmetric" if orbit.symmetric else "asymmetric"
-    word = orbit.spelling if len(orbit.spelling) <= 60 else orbit.spelling[:40] + "..."
+    word = str(orbit.word) if told is None else told
+    word = word if len(word) <= 60 else word[:40] + "..."
     return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
 
 

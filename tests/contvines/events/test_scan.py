@@ -62,6 +62,14 @@ def test_uneven_steps_count():
     assert ("shallow" in swapped[0]) == (bend > 0.0 and -0.3 < -0.5 * slope / bend < 0.1 and lowest < 0.0)
 
 
+def test_uneven_steps_count_for_slopes():
+    """(p - 0.2)^2 - 1e-4 at 0, 0.1, 0.3: below zero between the last two; with the lengths exchanged it would not be."""
+    p = np.array([0.0, 0.1, 0.3])
+    assert ["hump" in found for found in marked(p, slopes=(p - 0.2) ** 2 - 1e-4)[0]] == [True, True]
+    exchanged, _ = marked([0.0, 0.2, 0.3], slopes=(p - 0.2) ** 2 - 1e-4)
+    assert not any("hump" in found for found in exchanged)
+
+
 def test_a_long_ago_dip_is_forgotten():
     p = np.arange(7.0)
     damping = np.array([0.5, 0.1, 0.02, 0.3, 0.4, 0.5, 0.6])

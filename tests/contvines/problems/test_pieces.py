@@ -10,7 +10,9 @@ def problem(a, b, start=-0.5):
     def f(x, p, sign):
         return (a if sign["side"] < 0 else b) * x + p
 
-    return cv.MapProblem(f, [start / (1.0 - a)], start, switches={"side": lambda x, p: x[0]}, scale=1.0)
+    return cv.MapProblem(
+        f, [start / (1.0 - (a if start < 0.0 else b))], start, switches={"side": lambda x, p: x[0]}, scale=1.0
+    )
 
 
 def leading(graph):
@@ -63,3 +65,11 @@ def test_what_goes_on_costs_no_depth():
     assert (
         len(cv.diagram(problem(0.5, 2.0), within=(-1.0, 1.0), depth=0).branches) == 1
     )  # what turns back does
+
+
+def test_the_same_from_the_other_side():
+    graph = cv.diagram(problem(0.5, 0.3, start=0.5), within=(-1.0, 1.0), depth=1)
+    assert {s.note for s in leading(graph)} == {"persistence"}
+    left = next(b for b in graph.branches.values() if b.points.min() < -0.1)
+    np.testing.assert_allclose(left.points[:, 0], left.values / 0.5, atol=1e-10)
+    assert left.values.min() == -1.0
