@@ -144,7 +144,8 @@ def conditions(c, box, wanted):
         tests = {("duration", i, 0): (y[0] - node[0])[VALUE]}
         tests |= {("wall", i, s): (p[f"wall{s}"] - node[1])[VALUE] * s for s in SIDES if letter in "tsu"}
         found |= {key: True if value > 0 else False if value < 0 else None for key, value in tests.items()}
-        for s in SIDES if c["frictionless"] or mode == 0 else (mode,):
+        sides = [1] if letter == "o" and "slope" not in p else SIDES  # stuck for ever: the other side is the mirror image
+        for s in sides if c["frictionless"] or mode == 0 else (mode,):
             def rates(phase, letter=letter, mode=mode, node=node, s=s):
                 w, v = motion(p, letter, mode, node, jet(phase))
                 f = w.dot() * s if mode else p[f"limit{s}"] - (v.dot().dot() + p["bias"]) * s
@@ -217,10 +218,9 @@ def verify(c):
     if half:
         alike = [given[a] == given[b] and given[a][1] == "0" for a, b in PAIRS] if c["machine"] == "cavity" else []
         need(c["periods"] % 2 and all(alike) and (not alike or given["slope"] == ["0", "0", 0]), "no mirror symmetry")
-    boxes, claims = [unfolded(c, box) for box in c["boxes"]], c["claims"]
-    kinds = [box.get("kind") for box in boxes]
-    alone = len(boxes) == 3 and kinds[1]  # a special point by itself
-    need(c["kind"] == ("orbit" if len(boxes) == 1 else alone or "piece") and len(boxes) % 2 and not any(kinds[::2]), "no such kind")
+    boxes, claims, kinds = [unfolded(c, box) for box in c["boxes"]], c["claims"], [box.get("kind") for box in c["boxes"]]
+    alone, single = len(boxes) == 3 and kinds[1], len(boxes) == 1  # a special point by itself, an orbit
+    need(c["kind"] == ("orbit" if single else alone or "piece") and len(boxes) % 2 and not any(kinds[::2]), "no such kind")
     need(claims["stable"] is None if alone else len(boxes) == 1 or None in kinds[1::2], "nothing but special points")
     for i, (box, kind) in enumerate(zip(boxes, kinds)):
         need(i % 2 or box["q"] == 0, "an orbit has no width")

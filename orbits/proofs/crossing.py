@@ -26,7 +26,7 @@ APART = (
     "2e-14",
     "2e-17",
 )  # of either orbit from the special point; nearer where the branch bends sharply
-TURN = ("4e-6", "1e-7", "4e-9")  # the same in the unknown that goes on where the parameter turns
+TURN = ("1e-6", "1e-8", "1e-10", "1e-13")  # the same in the unknown that goes on where the parameter turns
 WIDTH = 1.25  # of the tile
 
 

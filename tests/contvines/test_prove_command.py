@@ -7,6 +7,7 @@ import pytest
 
 import contvines as cv
 from contvines.command.cli import main
+from contvines.report.contents import contents
 from orbits import Absorber
 
 STUDY = Path(__file__).parents[2] / "examples" / "friction.toml"
@@ -81,3 +82,30 @@ def test_a_problem_of_ones_own_has_no_proofs(tmp_path, capsys):
     cv.diagram(problem, within=(-1.0, 2.0)).save(path)
     status, _, err = run(capsys, "prove", path)
     assert status == 1 and "offers no proofs" in err
+
+
+def test_what_is_proved_is_marked_in_tables_pictures_and_the_report(kept, capsys, tmp_path):
+    graph = cv.load(kept)
+    plain = cv.load(kept)
+    plain.proofs.clear()
+    graph.proofs.clear()
+    proof = graph.prove("B1", within=(0.55, 0.57))["B1"]
+    assert all(piece.existence for piece in proof.pieces)
+    graph.prove("SB1")
+    shown = str(graph)
+    assert "0.55..0.57 real, stable" in shown
+    assert "proved" not in str(plain).splitlines()[2]
+    marked, unmarked = graph.plot(labels=False), plain.plot(labels=False)
+    names = [text.get_text() for text in marked.axes[0].get_legend().get_texts()]
+    assert "proved" in names
+    assert "proved" not in [text.get_text() for text in unmarked.axes[0].get_legend().get_texts()]
+    # a band per stretch and a mark per proved point lie beneath the same picture
+    assert len(marked.axes[0].lines) == len(unmarked.axes[0].lines) + len(proof.pieces) + 1
+    path = tmp_path / "marked.vines"
+    graph.save(path)
+    assert str(cv.load(path)) == shown
+    status, out, _ = run(capsys, "prove", path, "B1", "--check")
+    assert status == 0 and "verified" in out
+    told = contents(graph, "marked.vines")
+    assert [branch["proof"] for branch in told["branches"]] == ["0.55..0.57 real, stable"]
+    assert next(point for point in told["special"] if point["label"] == "SB1")["proof"] == "proved"

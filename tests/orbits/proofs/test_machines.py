@@ -1,0 +1,175 @@
+"""Proofs of machines in physical units, of level cavities by their mirror image, and what the checker may cost."""
+
+import ast
+import json
+from pathlib import Path
+
+import pytest
+from mpmath import iv, mp, mpf
+
+from orbits import Absorber, Cavity
+from orbits.machines.physical.machine import physical
+from orbits.proofs import checker
+from orbits.proofs.balls import ball, precision
+from orbits.proofs.jets import Jet, power
+from orbits.proofs.obstacles import ProofError
+
+STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
+
+
+def verified(proof):
+    checker.check(json.loads(json.dumps(proof.certificate())))
+    return True
+
+
+def inside(pair, number):
+    return abs(mpf(pair[0]) - number) <= mpf(pair[1]) + mpf(10) ** -44
+
+
+def test_a_half_width_that_moves_gravity_and_forcing_at_once():
+    """The symmetry breaking against the half-width is the one against gravity and forcing in proportion."""
+    machine = physical(
+        "coupled",
+        {
+            "oscillator_mass": "3.8 kg", "natural_frequency": "8 Hz", "absorber_mass": "32 g", "half_width": "18.4 mm",
+            "damping_ratio": 0.007, "restitution": 0.6, "friction": 0.1, "base_amplitude": "0.3 mm", "frequency": "7.9 Hz",
+        },
+    )  # fmt: skip
+    orbit = machine.symmetric_orbit()
+    problem = orbit.problem("half_width", symmetric=True)
+
+    # bisection on the half map's multiplier, by floating-point orbits of the dimensionless machine
+    def least(width):
+        moved = machine.with_(half_width=width).symmetric_orbit()
+        return min(m.real for m in moved.half_multipliers)
+
+    low, high = 18.0, 19.0
+    assert (least(low) + 1) * (least(high) + 1) < 0
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if (least(middle) + 1) * (least(low) + 1) > 0 else (low, middle)
+    near = machine.with_(half_width=low).symmetric_orbit()
+    proof = problem.prove(
+        "symmetry-breaking", near.problem("half_width", symmetric=True).reduce(near.nodes), low
+    )
+    assert proof.existence and proof.radius < 1e-10 and abs(float(proof.value[0]) - low) < 1e-6
+    moved = {name: entry[2] for name, entry in proof.certificate()["parameters"].items() if entry[2]}
+    assert moved == {"gravity": -1, "forcing": -1}
+    assert verified(proof)
+
+
+def test_a_level_cavity_with_equal_sides_is_proved_on_half_its_word():
+    level = Cavity(**STRONG)
+    orbit = level.orbit("LR", 1, guess=Absorber(**STRONG).symmetric_orbit(amplitude=0.6).nodes, amplitude=0.6)
+    proof = orbit.prove()
+    assert proof.motif.half and proof.existence and proof.real and proof.stable
+    assert verified(proof)
+    with mp.workdps(45):  # the closed form of the symmetry breaking
+        r = mpf("0.76")
+        R, H = (1 - r) / (1 + r), mp.pi / 2 * mpf("1.006") * mpf("0.5") * mpf("0.211")
+        beta = (2 * mp.pi - 4 * R * H) / (mp.pi**2 - 4)
+        expected = mp.sqrt((1 - mp.pi * beta / 2) ** 2 + (R * beta + H) ** 2)
+        near = level.orbit("LR", 1, guess=orbit.nodes, amplitude=float(expected))
+        problem = near.problem("amplitude", symmetric=True)
+        point = problem.prove("symmetry-breaking", problem.reduce(near.nodes), float(expected))
+        assert point.motif.half and inside(point.value, expected)
+    assert verified(point)
+    wrong = json.loads(json.dumps(point.certificate()))
+    wrong["parameters"]["friction_left"] = ["0.5000001", "0", 0]  # no mirror image any more
+    with pytest.raises(checker.Refused, match="mirror"):
+        checker.check(wrong)
+    assert not orbit.prove(friction_left="0.5000001").motif.half
+
+
+def test_a_slope_has_no_half_words():
+    level = Cavity(**STRONG)
+    orbit = level.orbit("LR", 1, guess=Absorber(**STRONG).symmetric_orbit(amplitude=0.6).nodes, amplitude=0.6)
+    assert not orbit.prove(slope="1e-9").motif.half
+    with pytest.raises(ProofError, match="no parameter"):
+        orbit.prove(incline="0")
+
+
+@pytest.mark.parametrize("exponent", [-2, -1, 0.5, 1, 2, 3])
+def test_powers_of_a_parameter(exponent):
+    """Value and derivative against mpmath's."""
+    with precision(160), mp.workdps(40):
+        found = power(Jet(ball("1.7"), {0: ball("1")}), exponent)
+        x = mpf("1.7")
+        for part, expected in (
+            (found.value, x**exponent),
+            (found.partials[0], exponent * x ** (exponent - 1)),
+        ):
+            middle = mpf(part.mid().str(40, radius=False))
+            assert abs(middle - expected) < mpf(10) ** -36
+
+
+# ------------------------------------------------------------------ the checker
+def code_lines(path):
+    """Lines with code: neither blank, nor comments or docstrings."""
+    text = path.read_text()
+    told = set()
+    for node in ast.walk(ast.parse(text)):
+        body = getattr(node, "body", None)
+        first = body[0] if isinstance(body, list) and body else None
+        if (
+            isinstance(first, ast.Expr)
+            and isinstance(first.value, ast.Constant)
+            and isinstance(first.value.value, str)
+        ):
+            told |= set(range(first.lineno, (first.end_lineno or first.lineno) + 1))
+    lines = enumerate(text.splitlines(), 1)
+    return sum(1 for i, line in lines if line.strip() and not line.strip().startswith("#") and i not in told)
+
+
+def test_the_checker_is_short_and_stands_alone():
+    path = Path(checker.__file__)
+    assert code_lines(path) <= 200
+    imported = {
+        alias.name.split(".")[0]
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in (node.names if isinstance(node, ast.Import) else [ast.alias(node.module or "")])
+    }
+    assert imported == {"math", "re", "typing", "mpmath", "numpy"}
+
+
+def test_the_checkers_flights_solve_the_equations_of_motion():
+    """w'' = -C Omega^2 sin(Psi) - s a of the shaken absorber, and both masses of the coupled machine, at random instants."""
+    entries = {
+        "restitution": "0.7",
+        "friction": "0.4",
+        "gravity": "0.3",
+        "mass_ratio": "0.02",
+        "frequency": "1.1",
+    }
+    own = {"forcing": "2.5", "damping": "0.8", "excitation": "1"}
+    given = {name: [text, "0", 0] for name, text in {**entries, **own}.items()}
+    iv.prec = 160
+    p = checker.machine({"n": 4, "machine": "coupled", "parameters": given}, checker.jet(1))
+    eps, a = iv.mpf("0.02"), iv.mpf("1.02") * iv.mpf("0.4") * iv.mpf("0.3")
+    node = [checker.jet(iv.mpf(text)) for text in ("0.3", "0.5", "0.2", "-0.4")]
+    for mode in (1, -1):
+        w, v = checker.motion(p, "t", mode, node, checker.jet(iv.mpf("1.9")))
+        w0, w2, v0, v1, v2 = (
+            x.get((k, 0)) * f for x, k, f in ((w, 0, 1), (w, 2, 2), (v, 0, 1), (v, 1, 1), (v, 2, 2))
+        )
+        q1 = (v0 + eps * w0) / (1 + eps)
+        rate = (v1 + eps * w.get((1, 0))) / (1 + eps)
+        force = (
+            eps
+            * iv.mpf("2.5")
+            * (iv.sin(iv.mpf("1.9")) + eps * iv.mpf("0.8") * iv.mpf("1.1") * iv.cos(iv.mpf("1.9")))
+        )
+        pull = mode * a / (1 + eps)
+        # q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps mu g s, q2'' = mu g s, v = q1 + eps q2
+        second = force - eps * iv.mpf("0.8") * rate - q1 - eps * pull
+        assert abs(float((v2 - second - eps * pull).mid)) < 1e-30
+        assert abs(float((w2 - second + pull).mid)) < 1e-30
+
+
+def test_decimals_only():
+    for text in ("nan", "inf", "1e", "0x1", " 1", "1_0", ""):
+        with pytest.raises(checker.Refused):
+            checker.number(text)
+    tenth = checker.number("0.1")
+    assert tenth * 10 - 1 in iv.mpf([-1, 1]) * iv.mpf("1e-30")
