@@ -1,0 +1,65 @@
+"""A file that version 0.1 wrote opens, shows, draws, switches and is continued.
+
+`version_0_1.vines` was made by version 0.1 from `examples/friction.toml` with amplitude within [0.7, 0.87] and depth 2.
+"""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import contvines as cv
+from contvines.command.cli import app
+
+FILE = Path(__file__).with_name("version_0_1.vines")
+H = 0.5 * np.pi * (1 + 0.006) * 0.5 * 0.211
+R = (1 - 0.76) / (1 + 0.76)
+BETA = (2 * np.pi - 4 * R * H) / (np.pi**2 - 4)
+BREAKING = (1 - 0.5 * np.pi * BETA) ** 2 + (R * BETA + H) ** 2  # of the symmetric orbit, amplitude squared
+
+
+@pytest.fixture
+def file(tmp_path):
+    return Path(shutil.copy(FILE, tmp_path / "old.vines"))
+
+
+def test_what_it_holds_is_right(file):
+    graph = cv.load(file)
+    assert [b.label for b in graph.branches.values()] == ["B1", "B2", "B3", "B4"]
+    (breaking,) = graph.of_kind("symmetry-breaking")
+    assert breaking.value**2 == pytest.approx(BREAKING, abs=1e-12)
+    for branch in graph.branches.values():
+        for k in (0, len(branch) // 2, len(branch) - 1):
+            orbit = branch.orbit(k)
+            assert orbit.residual < 1e-12 and orbit.real
+            assert orbit.replay() < 1e-8
+            stable = bool(np.all(np.abs(orbit.multipliers) < 1.0))
+            if 0 < k < len(branch) - 1:
+                assert stable == bool(branch.stable[k])
+
+
+def test_borders_lead_on(file):
+    graph = cv.load(file)
+    (graze,) = graph.of_kind("velocity-graze")
+    before, after = graph["B2"].orbit(len(graph["B2"]) - 1), graph["B3"].orbit(0)
+    assert {round(float(before.params[0]), 12), round(float(after.params[0]), 12)} == {round(graze.value, 12)}
+    assert [switch.target for switch in graph.switches if switch.point == graze.label] == ["B3"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["show"],
+        ["show", "--json"],
+        ["orbit", "VG1"],
+        ["plot", "-o", "old.png"],
+        ["export", "--to", "csv", "-o", "old.csv"],
+        ["switch", "SB1"],
+    ],
+)
+def test_commands(file, words, monkeypatch):
+    monkeypatch.chdir(file.parent)
+    done = CliRunner().invoke(app, [words[0], file.name, *words[1:]])
+    assert done.exit_code == 0, done.output
