@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+from orbits.doors import lead
+
 _PLACES = {
     "Absorber": "orbits.machines.absorber.machine",
     "Cavity": "orbits.machines.cavity.machine",
@@ -21,6 +23,27 @@ _PLACES = {
     "WordError": "orbits.words",
 }
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
+lead(
+    {
+        "attractor_of_page": "orbits.machines.declared.attractor:find_attractor",
+        "attractors_of_page": "orbits.machines.declared.attractor:find_attractors",
+        "DeclaredPopulation": "orbits.machines.declared.population:DeclaredPopulation",
+        "DeclaredProblem": "orbits.machines.declared.problem:DeclaredProblem",
+        "find": "orbits.starts.find:find",
+        "find_on_page": "orbits.machines.declared.starts:find",
+        "of_branch": "orbits.proofs.subjects:of_branch",
+        "of_orbit": "orbits.proofs.subjects:of_orbit",
+        "of_point": "orbits.proofs.subjects:of_point",
+        "Orbit": "orbits.orbit:Orbit",
+        "OrbitProblem": "orbits.problem:OrbitProblem",
+        "Population": "orbits.population:Population",
+        "portrait": "orbits.plots.portrait:portrait",
+        "portrait_of_page": "orbits.plots.declared:portrait",
+        "scene": "orbits.plots.scene:scene",
+        "scene_of_page": "orbits.plots.declared:scene",
+        "simulate_page": "orbits.machines.declared.simulation:simulate",
+    }
+)
 __all__ = sorted([*_PLACES, *_ROOMS])
 
 

@@ -53,7 +53,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
     ValueError
         With one sentence per value that cannot be used.
     """
-    from orbits.machines.declared.page import load_page
+    from orbits.machines.declared.loading import load_page
 
     try:
         file = PageStudyFile.model_validate(data)

@@ -34,7 +34,7 @@ def report(
     target = output or beside(file, ".html")
     check_page(target)
     result = _result(file, trust)
-    typer.echo(str(write_report(result, target, file.name)))
+    typer.echo(str(write_report(result, target, file.name, trust)))
     branches = getattr(result, "branches", {}) or getattr(result, "loci", {})
     if branches and not trust and all(branch.problem is None for branch in branches.values()):
         say(f"the page has no orbits: {file} names Python code, which --trust would run")

@@ -8,6 +8,7 @@ converges like the Taylor series at the distance r. Two radii give an estimate o
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -56,8 +57,9 @@ def along_line(
         once = _fit(jacobian, u, x, ROUGH * radius)
         return None if once is None else Line(*once, 0.0, 0.0)
     best: Line | None = None
+    narrow = _fit(jacobian, u, x, radius)
     for _ in range(14):
-        wide, narrow = _fit(jacobian, u, x, radius), _fit(jacobian, u, x, SMALLER * radius)
+        wide, narrow = narrow, _fit(jacobian, u, x, SMALLER * radius)
         if wide is not None and narrow is not None:
             errors = [float(np.abs(a - b).max()) for a, b in zip(wide, narrow)]
             if best is None or errors[1] < best.third_error:
@@ -71,25 +73,30 @@ def along_line(
 def _fit(
     jacobian: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray, x: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+    first, second = _weights()
     samples = []
-    for t in nodes:
+    for t in _nodes():
         found = jacobian(u + radius * t * x)
         if found is None:
             return None
         samples.append(found)
     values = np.array(samples)
-    first, second = _weights()
     shape = values.shape[1:]
     flat = values.reshape(NODES, -1)
     return (first @ flat).reshape(shape) / radius, (second @ flat).reshape(shape) / radius**2
 
 
+@cache
+def _nodes() -> np.ndarray:
+    """The zeros of the Chebyshev polynomial of this degree."""
+    return np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+
+
+@cache
 def _weights() -> tuple[np.ndarray, np.ndarray]:
     """Weights of the samples in the first and second derivative at 0 of the polynomial through them, on [-1, 1]."""
-    nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
     chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(nodes, NODES - 1))
+    series = np.linalg.inv(chebyshev.chebvander(_nodes(), NODES - 1))
     unit = np.eye(NODES)
     first = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row)) for row in unit])
     second = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row, 2)) for row in unit])

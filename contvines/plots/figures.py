@@ -58,11 +58,10 @@ def new_axes(axes: Axes | None, **options: Any) -> tuple[Figure, Axes]:
 
     made = new_figure(**options)
     axes = made.add_subplot()
-    for axis in (
-        "x",
-        "y",
-    ):  # in points: how many ticks there are must not change when a figure is drawn again elsewhere
-        size = FontProperties(size=rcParams[f"{axis}tick.labelsize"]).get_size_in_points()
+    settings: Any = rcParams
+    for axis, key in (("x", "xtick.labelsize"), ("y", "ytick.labelsize")):
+        # in points: how many ticks there are must not change when a figure is drawn again elsewhere
+        size = FontProperties(size=settings[key]).get_size_in_points()
         axes.tick_params(axis=axis, labelsize=size)  # type: ignore[arg-type]
     return made, axes
 

@@ -60,10 +60,8 @@ class Picture:
                 word = str(branch.description.get("word") or branch.description.get("name", ""))
                 tint = words.setdefault(short_word(word, 24), colors[len(words) % len(colors)])
             self.tint[branch.label] = tint
-            (
-                measured(branch, self.x),
-                measured(branch, self.y),
-            )  # refused in a sentence before anything is drawn
+            for name in (self.x, self.y):
+                measured(branch, name)  # refused in a sentence before anything is drawn
             for first, last, stable in branch.pieces():
                 state = ("stable" if stable else "unstable") if branch.real else "virtual"
                 self.key.states.setdefault(state, None)

@@ -112,7 +112,8 @@ class SimulatedFlow:
         with np.errstate(all="ignore"):
             speed = float((np.abs(rate(0.0, u)) / size).max())
             span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
-            solver = LSODA(rate, 0.0, u, np.inf, rtol=1e-8, atol=1e-10 * size)
+            small: Any = 1e-10 * size
+            solver = LSODA(rate, 0.0, u, np.inf, rtol=1e-8, atol=small)
             rest, since = u, 0.0  # where the motion was, and when
             for _ in range(PATIENCE):
                 solver.step()

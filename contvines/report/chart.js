@@ -4,6 +4,7 @@ const loci = Object.fromEntries(data.loci.map((l) => [l.label, l]));
 const kinds = [...new Set(data.loci.map((l) => l.name))];
 const tint = ["#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4"];
 const shade = ["#1d3550", "#4a3022", "#24402b", "#38294a", "#4a4220", "#1f4444", "#472a36", "#3a3a36"];
+const file = `cv.load("${data.source}"${data.trust ? ", trust=True" : ""})`;
 let here = null; // { locus, index } or { point }
 
 // ------------------------------------------------------------------ the plane
@@ -74,14 +75,14 @@ function choose(label, index) {
   const known = Object.keys(data.orbits[label] || {}).map(Number);
   const place = known.length ? known.reduce((a, b) => (Math.abs(b - index) < Math.abs(a - index) ? b : a)) : null;
   tell(`${label}: ${locus.name}, point ${index}`, [`${p} = ${number(locus.p[index], 12)}`, `${q} = ${number(locus.q[index], 12)}`, locus.word === null ? "" : `word ${locus.word || "(stuck)"}`,
-    locus.real[index] ? "" : "virtual: no machine can follow it"], label, `cv.load("${data.source}")["${label}"].orbit(${index})`, place === null ? null : data.orbits[label][place], [`row-${label}`]);
+    locus.real[index] ? "" : "virtual: no machine can follow it"], label, `${file}["${label}"].orbit(${index})`, place === null ? null : data.orbits[label][place], [`row-${label}`]);
 }
 function point(label) {
   const one = data.points.find((m) => m.label === label);
   here = { point: one };
   tell(`${label}: ${one.name}`, [`${p} = ${number(one.value[p], 12)}`, `${q} = ${number(one.value[q], 12)}`, `on ${one.on.join(", ")}`,
     ...Object.entries(one.coefficients).map(([k, v]) => `${k} = ${number(v, 6)}`), one.real ? "" : "virtual", one.note], label,
-  `cv.load("${data.source}")["${label}"].orbit`, one.scene, [`row-${label}`, ...one.on.map((l) => `row-${l}`)]);
+  `${file}["${label}"].orbit`, one.scene, [`row-${label}`, ...one.on.map((l) => `row-${l}`)]);
 }
 const jump = (act) => { started = true; act(); $("diagram").scrollIntoView({ behavior: still.matches ? "auto" : "smooth", block: "start" }); };
 

@@ -92,8 +92,9 @@ function choose(branch, index, label) {
   $("orbit-about").textContent = facts.join("; ");
   $("orbit-about").classList.toggle("virtual", !about.real);
   const name = special ? label : `${branch}:${index}`;
-  $("command").textContent = `contvines orbit ${data.source} ${name}`;
-  $("python").textContent = special ? `cv.load("${data.source}")["${label}"].orbit` : `cv.load("${data.source}")["${branch}"].orbit(${index})`;
+  $("command").textContent = `contvines orbit ${data.source} ${name}${data.trust ? " --trust" : ""}`;
+  const file = `cv.load("${data.source}"${data.trust ? ", trust=True" : ""})`;
+  $("python").textContent = special ? `${file}["${label}"].orbit` : `${file}["${branch}"].orbit(${index})`;
   document.querySelectorAll("tr.chosen").forEach((row) => row.classList.remove("chosen"));
   for (const id of [`row-${label}`, `row-${branch}`]) if ($(id)) $(id).classList.add("chosen");
   const place = nearest(branch, index);

@@ -23,7 +23,9 @@ PROGRAMS = {
 MISSING = "a report needs plotly: pip install 'contvines[report]'"
 
 
-def write_report(result: Graph | Chart | Survey, target: str | Path, source: str | Path) -> Path:
+def write_report(
+    result: Graph | Chart | Survey, target: str | Path, source: str | Path, trust: bool = False
+) -> Path:
     """Write a result as one self-contained HTML page.
 
     Parameters
@@ -34,6 +36,8 @@ def write_report(result: Graph | Chart | Survey, target: str | Path, source: str
         The page; its name ends in .html.
     source : path
         The result's file, as the commands on the page shall name it.
+    trust : bool
+        Whether the file names Python code that these commands must be allowed to run.
 
     Returns
     -------
@@ -47,6 +51,7 @@ def write_report(result: Graph | Chart | Survey, target: str | Path, source: str
     place = Path(target)
     check_page(place)
     kind, data = told(result, str(source))
+    data["trust"] = trust
     try:
         place.write_text(page(data, kind), encoding="utf-8")
     except OSError as error:

@@ -7,18 +7,15 @@ the motion itself is not.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.cycles.cycle import Cycle
 from orbits.cycles.sampling import sample
 from orbits.machines.states import states_of
 from orbits.machines.stepping import PSI, TURNS, W
 from orbits.simulation.driver import follow, machine, simulate
 from orbits.simulation.replay import replay
-
-if TYPE_CHECKING:
-    from orbits.cycles.solution import Solution
 
 AT_BORDER = 1e-4  # margins below this may make two events one
 DEFINITE = 1e-2  # speed after an event from which a simulation starts without doubt
@@ -27,8 +24,8 @@ STRETCHES = 32  # at most so many starts
 AGREED = 1e-9  # deviations below this need no second look
 
 
-def replay_error(orbit: Solution) -> float:
-    """Largest deviation of the simulation over one period of the orbit.
+def replay_error(orbit: Cycle, margins: np.ndarray, multipliers: np.ndarray) -> float:
+    """Largest deviation of the simulation over one period of an orbit with these margins and multipliers.
 
     Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
     unstable orbits the relative position w is compared at many instants as well, stretch by stretch, and the smaller
@@ -38,14 +35,13 @@ def replay_error(orbit: Solution) -> float:
         return _from_rest(orbit)
     length, rate = orbit.model.natural_units(orbit.params)
     error = float(replay(orbit).error) / max(1.0, length, length * rate)
-    margins = np.array([margin.value for margin in orbit.relative_margins])
-    delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(orbit.multipliers) > WILD)
+    delicate = np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(multipliers) > WILD)
     if error < AGREED or not (delicate or np.isfinite(error)):
         return error
     return min(error, position_error(orbit) / length)
 
 
-def _from_rest(orbit: Solution) -> float:
+def _from_rest(orbit: Cycle) -> float:
     """Largest relative displacement in a simulation of two periods of the absorber at rest."""
     motion = sample(orbit, 5)
     start = {"phase": 0.0, "w": 0.0, "w_rate": 0.0}
@@ -54,7 +50,7 @@ def _from_rest(orbit: Solution) -> float:
     return float(np.abs(run.sample().w).max())
 
 
-def position_error(orbit: Solution, points: int = 400) -> float:
+def position_error(orbit: Cycle, points: int = 400) -> float:
     """Largest difference of the relative positions over one period.
 
     The simulation is started at every definite event and followed to the next one: an impact of vanishing speed has
@@ -85,7 +81,7 @@ def position_error(orbit: Solution, points: int = 400) -> float:
     return max(error(int(a), int(b)) for a, b in zip(places, ends, strict=True))
 
 
-def _calm(orbit: Solution) -> np.ndarray:
+def _calm(orbit: Cycle) -> np.ndarray:
     """Slips if there are any (friction gives way at a known phase), else all events."""
     slips = [i for i, letter in enumerate(orbit.word.events) if letter == "u"]
     return np.array(slips or range(len(orbit.word)))

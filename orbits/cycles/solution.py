@@ -112,7 +112,7 @@ class Solution(Cycle):
 
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
-        return replay_error(self)
+        return replay_error(self, self._examined[2], self.multipliers)
 
 
 def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:

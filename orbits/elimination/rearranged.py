@@ -54,10 +54,8 @@ def matrix(data, work) -> np.ndarray:
     length, n = A.shape[0], A.shape[1]
     whole = np.zeros((length, n, length, n))
     closure = np.r_[1.0, np.full(n - 1, twist)]
-    for k in range(length):
-        whole[k, :, k, :] += A[k]
-        if k + 1 < length:
-            whole[k, :, k + 1, :] += D[k]
-        else:
-            whole[k, :, 0, :] += D[k] * closure
+    place = np.arange(length)
+    whole[place, :, place, :] = A
+    whole[place[:-1], :, place[1:], :] = D[:-1]
+    whole[-1, :, 0, :] += D[-1] * closure
     return whole.reshape(length * n, length * n)

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from orbits.proofs.pieces import Piece
-    from orbits.proofs.proof import Proof
+from typing import Any
 
 SAYS = {
     "real": {
@@ -18,8 +14,8 @@ SAYS = {
 }
 
 
-def sentence(proof: Proof) -> str:
-    """What is proved, and what was in the way."""
+def sentence(proof: Any) -> str:
+    """What an `orbits.proofs.proof.Proof` proves, and what was in the way."""
     word = "".join(proof.motif.events) + (" and its mirror image" if proof.motif.half else "")
     what = "the orbit" if proof.kind == "orbit" else f"the {proof.kind}"
     if proof.box is None:
@@ -39,8 +35,8 @@ def sentence(proof: Proof) -> str:
     return "\n".join(lines)
 
 
-def piece_sentence(piece: Piece) -> str:
-    """What is proved of a piece of a branch."""
+def piece_sentence(piece: Any) -> str:
+    """What an `orbits.proofs.pieces.Piece` proves of a piece of a branch."""
     word = "".join(piece.motif.events) + (" and its mirror image" if piece.motif.half else "")
     lines = []
     if piece.covered:

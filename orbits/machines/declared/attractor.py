@@ -12,10 +12,10 @@ from orbits.contacts.letters import HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.orbit import DeclaredOrbit
-from orbits.machines.declared.problem import DeclaredProblem
 from orbits.machines.declared.simulation import Trajectory, collect, first_state
 from orbits.machines.declared.solving import SOLVED, newton
 from orbits.machines.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.machines.declared.system import DeclaredSystem
 from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
@@ -78,7 +78,7 @@ class DeclaredAttractor:
             )
         return self.orbit
 
-    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> DeclaredProblem:
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
         """The orbit as a continuation problem.
 
         Raises
@@ -88,7 +88,7 @@ class DeclaredAttractor:
         """
         return self.found.problem(parameter, symmetric)
 
-    def seed(self, problem: DeclaredProblem) -> tuple[np.ndarray, float]:
+    def seed(self, problem: DeclaredSystem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value in `problem`."""
         return self.found.seed(problem)
 
@@ -221,7 +221,7 @@ def solved(run: Trajectory, length: int, periods: int) -> DeclaredOrbit | None:
 def polished(orbit: DeclaredOrbit, far: float = 0.1) -> DeclaredOrbit | None:
     """The orbit with the same word next to a guess; None if there is none within `far` (relative to 1 + states)."""
     word = orbit.word
-    problem = orbit.problem(symmetric=False)
+    problem = orbit.system(symmetric=False)
     p = float(orbit.params[problem.index])
     u, _, residual, _ = newton(problem, problem.reduce(orbit.nodes), p)
     nodes = problem.expand(u)

@@ -13,13 +13,15 @@ import numpy as np
 
 from orbits.contacts.changes import Change, Grows, What
 from orbits.contacts.letters import SLIP, STICK
+from orbits.machines.declared.attractor import settle
 from orbits.machines.declared.deviation import deviation
 from orbits.machines.declared.edits import Edit, edits_at
 from orbits.machines.declared.margins import per_node
 from orbits.machines.declared.orbit import REAL, DeclaredOrbit
-from orbits.machines.declared.problem import DeclaredProblem
-from orbits.machines.declared.sampling import lengths
+from orbits.machines.declared.sampling import lengths, sample
 from orbits.machines.declared.solving import SOLVED, examined, newton
+from orbits.machines.declared.stepper import SimulationError, Stepper
+from orbits.machines.declared.system import DeclaredSystem
 from orbits.protocol import Seed
 from orbits.words.rewriting import applied, spliced
 
@@ -29,17 +31,17 @@ NEAR = 0.02  # change of the parameter, relative, beyond which an orbit is not n
 GROWING = 1e-4  # least growth of the margins with the distance from a border
 SAME = 1e-5  # largest difference of states, at equal clocks, of one and the same motion
 CLOSE = 0.05  # of one that goes on from the border
-Found = tuple[DeclaredProblem, np.ndarray, float, np.ndarray]
+Found = tuple[DeclaredSystem, np.ndarray, float, np.ndarray]
 
 
-def cross(problem: DeclaredProblem, point: Any) -> list[Seed]:
+def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
     """Seeds of the branches on the other side of a border (as `orbits.borders.crossing.cross`)."""
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     index = int(point.margin_index)
     old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), index)
     seeds = []
     for other, v, q, tangent, note in (*proposals(problem, u, p, index), *_simulated(problem, u, p)):
-        if not _followed(other.orbit(v, q)):
+        if not _followed(DeclaredOrbit.of(other, v, q)):
             continue
         smallest, v, tangent = _simplest(other, v, q, tangent)
         persistence = bool(np.sign(q - p) != old_side)
@@ -55,10 +57,10 @@ def _followed(orbit: DeclaredOrbit) -> bool:
 
 
 def _simplest(
-    problem: DeclaredProblem, u: np.ndarray, p: float, tangent: np.ndarray | None
-) -> tuple[DeclaredProblem, np.ndarray, np.ndarray | None]:
+    problem: DeclaredSystem, u: np.ndarray, p: float, tangent: np.ndarray | None
+) -> tuple[DeclaredSystem, np.ndarray, np.ndarray | None]:
     """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
-    root = problem.orbit(u, p).root()
+    root = DeclaredOrbit.of(problem, u, p).root()
     if len(root.word) == len(problem.word) and root.symmetric == problem.symmetric:
         return problem, u, tangent
     smallest = problem.sibling(root.word, root.periods, root.symmetric)
@@ -66,8 +68,8 @@ def _simplest(
 
 
 def turned(
-    problem: DeclaredProblem, u: np.ndarray, p: float, index: int
-) -> tuple[DeclaredProblem, np.ndarray, int]:
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int
+) -> tuple[DeclaredSystem, np.ndarray, int]:
     """The same border read from another event, so that what changes does not straddle the end of the word."""
     width = per_node(problem.contacts)
     place, column = divmod(index, width)
@@ -77,25 +79,25 @@ def turned(
         first = place - 1
     if first % problem.length == 0 or not len(problem.word):
         return problem, u, index
-    orbit = problem.orbit(u, p).rotate(first % len(problem.word))
+    orbit = DeclaredOrbit.of(problem, u, p).rotate(first % len(problem.word))
     other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
     return other, other.reduce(orbit.nodes), width * ((place - first) % problem.length) + column
 
 
 def proposals(
-    problem: DeclaredProblem, u: np.ndarray, p: float, index: int
-) -> Iterator[tuple[DeclaredProblem, np.ndarray, float, np.ndarray, str]]:
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the rules propose."""
     first = problem
     problem, u, index = turned(problem, u, p, index)
-    orbit = problem.orbit(u, p)
+    orbit = DeclaredOrbit.of(problem, u, p)
     for edit in edits_at(orbit, index):
         found = grown(problem, orbit, p, [edit])
         if found is not None:
             yield (*_read_alike(first, problem, edit.change, found), edit.change.what.value)
 
 
-def _read_alike(first: DeclaredProblem, problem: DeclaredProblem, edit: Change, found: Found) -> Found:
+def _read_alike(first: DeclaredSystem, problem: DeclaredSystem, edit: Change, found: Found) -> Found:
     """The orbit found, read from the event from which the border orbit was read before it was turned; never from a slip."""
     ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
     grown_by = len(edit.events) - (edit.stop - edit.start)
@@ -114,7 +116,7 @@ def _rotated(found: Found, places: int) -> Found:
     other, v, q, tangent = found
     if places == 0 or not len(other.word):
         return found
-    orbit = other.orbit(v, q).rotate(places)
+    orbit = DeclaredOrbit.of(other, v, q).rotate(places)
     again = other.sibling(orbit.word, other.periods, other.symmetric)
     direction = np.roll(other.expand_direction(tangent[:-1]), -places, axis=0)[: again.length]
     return again, again.reduce(orbit.nodes), q, np.append(direction.ravel(), tangent[-1])
@@ -127,7 +129,7 @@ def _unslipped(found: Found) -> Found:
     return _rotated(found, len(word) - 1) if slips else found
 
 
-def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[Edit]) -> Found | None:
+def grown(problem: DeclaredSystem, orbit: DeclaredOrbit, p: float, edits: list[Edit]) -> Found | None:
     """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
     length = problem.length
     forced = problem.forced
@@ -165,7 +167,7 @@ def grown(problem: DeclaredProblem, orbit: DeclaredOrbit, p: float, edits: list[
     return None
 
 
-def _margins(problem: DeclaredProblem, u: np.ndarray, p: float) -> np.ndarray:
+def _margins(problem: DeclaredSystem, u: np.ndarray, p: float) -> np.ndarray:
     return np.nan_to_num(examined(problem, u, p)[2], nan=-np.inf, posinf=np.inf)
 
 
@@ -191,8 +193,6 @@ def _durations(orbit: DeclaredOrbit, nodes: np.ndarray, edit: Edit) -> np.ndarra
 
 def _strobed(orbit: DeclaredOrbit) -> np.ndarray:
     """Node at phase zero of a motion on which nothing happens any more."""
-    from orbits.machines.declared.sampling import sample
-
     table = sample(orbit, 4000)
     phase = table["phase"] / (2.0 * np.pi)
     k = int(np.argmin(np.abs(phase - np.round(phase))))
@@ -200,7 +200,7 @@ def _strobed(orbit: DeclaredOrbit) -> np.ndarray:
 
 
 def _climb(
-    other: DeclaredProblem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
+    other: DeclaredSystem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
 ) -> Found | None:
     """Solve with what grows beyond the border held at each of the sizes in turn; the last that converges."""
     d, size = other.size + 1, other.dimension
@@ -234,7 +234,7 @@ def _climb(
 
 
 def _approach(
-    problem: DeclaredProblem, u: np.ndarray, p: float, place: int
+    problem: DeclaredSystem, u: np.ndarray, p: float, place: int
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """Rate of a wall's gap after an impact, its slope by the states, and the push of that wall."""
     compiled, d = problem.machine.compiled, problem.size + 1
@@ -247,7 +247,7 @@ def _approach(
     return float(row[0]), row[1:d], row[d:]
 
 
-def _beside(other: DeclaredProblem, guess: np.ndarray, p: float) -> Found | None:
+def _beside(other: DeclaredSystem, guess: np.ndarray, p: float) -> Found | None:
     """The new word's branch through the border itself, on the side where its margins grow."""
     u, q, residual, tangent = newton(other, guess, p)
     if not residual < SOLVED:
@@ -270,7 +270,7 @@ def _beside(other: DeclaredProblem, guess: np.ndarray, p: float) -> Found | None
     return None
 
 
-def _real_side(problem: DeclaredProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
+def _real_side(problem: DeclaredSystem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
     """Sign of the parameter's change from the border into the branch's real part."""
     length = 1e-4 / max(float(np.abs(tangent).max()), 1e-12)
     sides = []
@@ -283,12 +283,12 @@ def _real_side(problem: DeclaredProblem, u: np.ndarray, p: float, tangent: np.nd
     return float(np.sign(max(sides)[1])) if sides else 0.0
 
 
-def _escapes(problem: DeclaredProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
+def _escapes(problem: DeclaredSystem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
     """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
     if not len(problem.word):
         return
     problem, u, index = turned(problem, u, p, index)
-    orbit = problem.orbit(u, p)
+    orbit = DeclaredOrbit.of(problem, u, p)
     if problem.symmetric:
         wider, what = (
             problem.sibling(problem.word, problem.periods, False),
@@ -303,7 +303,7 @@ def _escapes(problem: DeclaredProblem, u: np.ndarray, p: float, index: int) -> I
         if found is None:
             continue
         other, v, q, tangent = found
-        there = other.orbit(v, q)
+        there = DeclaredOrbit.of(other, v, q)
         if there.symmetric or len(there.root().word) != len(other.word) or not _followed(there):
             continue
         note = f"{edit.change.what.value}: {what}, the word becomes {other.word.text}"
@@ -312,13 +312,10 @@ def _escapes(problem: DeclaredProblem, u: np.ndarray, p: float, index: int) -> I
 
 
 def _simulated(
-    problem: DeclaredProblem, u: np.ndarray, p: float
-) -> Iterator[tuple[DeclaredProblem, np.ndarray, float, None, str]]:
+    problem: DeclaredSystem, u: np.ndarray, p: float
+) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, None, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
-    from orbits.machines.declared.attractor import settle
-    from orbits.machines.declared.stepper import SimulationError, Stepper
-
-    orbit = problem.orbit(u, p)
+    orbit = DeclaredOrbit.of(problem, u, p)
     here = problem.canonical(u, p)[0]
     for side in (1.0, -1.0):
         q = p + side * 1e-6 * max(1.0, abs(p))

@@ -11,6 +11,7 @@ import numpy as np
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
+from orbits.doors import above
 from orbits.machines.declared import checks
 from orbits.machines.declared.compiled import Compiled
 from orbits.machines.declared.equations import Equations, PageError
@@ -199,27 +200,19 @@ class Machine:
         **parameters: float,
     ) -> Any:
         """Simulate from event to event; see `orbits.machines.declared.simulation.simulate`."""
-        from orbits.machines.declared.simulation import simulate
-
-        return simulate(self, start, periods=periods, time=time, events=events, **parameters)
+        return above("simulate_page")(self, start, periods=periods, time=time, events=events, **parameters)
 
     def attractor(self, start: Mapping[str, float] | None = None, **parameters: float) -> Any:
         """The attractor that a start leads to; see `orbits.machines.declared.attractor.find_attractor`."""
-        from orbits.machines.declared.attractor import find_attractor
-
-        return find_attractor(self, start, parameters=parameters)
+        return above("attractor_of_page")(self, start, parameters=parameters)
 
     def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: float) -> list[Any]:
         """The different attractors that `count` random starts (states within +-`size`) lead to; see `orbits.machines.declared.attractor`."""
-        from orbits.machines.declared.attractor import find_attractors
-
-        return find_attractors(self, count, seed, size, parameters=parameters)
+        return above("attractors_of_page")(self, count, seed, size, parameters=parameters)
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Many starts and what they settle on; see `orbits.machines.declared.population.DeclaredPopulation`."""
-        from orbits.machines.declared.population import DeclaredPopulation
-
-        return DeclaredPopulation(self, over or self.default_parameter, parameters)
+        return above("DeclaredPopulation")(self, over or self.default_parameter, parameters)
 
     def orbit(
         self,
@@ -229,9 +222,7 @@ class Machine:
         **parameters: float,
     ) -> Any:
         """Solve for the orbit with this word; see `orbits.machines.declared.starts.find`."""
-        from orbits.machines.declared.starts import find
-
-        return find(self, word, periods, guess, parameters)
+        return above("find_on_page")(self, word, periods, guess, parameters)
 
 
 __all__ = ["Machine", "PageError"]

@@ -11,10 +11,13 @@ import numpy as np
 from orbits.cycles.margins import Margin
 from orbits.doors import above
 from orbits.machines.declared import identity
+from orbits.machines.declared.deviation import deviation
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import margin_name, per_node
-from orbits.machines.declared.problem import DeclaredProblem
+from orbits.machines.declared.measures import measure, names
+from orbits.machines.declared.sampling import sample
 from orbits.machines.declared.solving import examined
+from orbits.machines.declared.system import DeclaredSystem
 from orbits.words.of_pages import PageWord
 
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
@@ -42,6 +45,11 @@ class DeclaredOrbit:
     nodes: np.ndarray = field(repr=False)
     params: np.ndarray = field(repr=False)
 
+    @classmethod
+    def of(cls, system: DeclaredSystem, u: np.ndarray, p: float) -> DeclaredOrbit:
+        """A solution of some equations as an orbit."""
+        return cls(system.machine, system.word, system.periods, system.expand(u), system.values(p))
+
     # ------------------------------------------------------------------ facts
     @property
     def parameters(self) -> dict[str, float]:
@@ -67,7 +75,7 @@ class DeclaredOrbit:
 
     @cached_property
     def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
-        problem = self.problem(symmetric=False)
+        problem = self.system(symmetric=False)
         residual, spectrum, margins = examined(problem, *self.seed(problem))
         return residual, problem.to_multipliers(spectrum), margins
 
@@ -92,7 +100,7 @@ class DeclaredOrbit:
         """
         if not self.symmetric:
             raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
-        problem = self.problem(symmetric=True)
+        problem = self.system(symmetric=True)
         return examined(problem, *self.seed(problem))[1]
 
     @property
@@ -126,8 +134,6 @@ class DeclaredOrbit:
 
     def measures(self, *wanted: str) -> dict[str, float]:
         """Measures by name, all of them if none is named."""
-        from orbits.machines.declared.measures import measure, names
-
         asked = wanted or names(self.machine)
         values = measure(
             self.machine, self.word, self.periods, self.nodes[None], self.params[None], list(asked)
@@ -178,27 +184,28 @@ class DeclaredOrbit:
         return self._with(self.word.rotate(places), self.periods, nodes)
 
     # ------------------------------------------------------------------ towards continuation
-    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> DeclaredProblem:
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
         """The orbit's word as a continuation problem against `parameter` (default: the forcing's frequency)."""
         half = self.symmetric if symmetric is None else symmetric
         name = parameter or self.machine.default_parameter
-        return DeclaredProblem(self.machine, self.word, self.periods, name, self.params, half)
+        return above("DeclaredProblem")(self.machine, self.word, self.periods, name, self.params, half)
 
-    def seed(self, problem: DeclaredProblem) -> tuple[np.ndarray, float]:
+    def system(self, symmetric: bool) -> DeclaredSystem:
+        """Its equations, against the machine's default parameter."""
+        name = self.machine.default_parameter
+        return DeclaredSystem(self.machine, self.word, self.periods, name, self.params, symmetric)
+
+    def seed(self, problem: DeclaredSystem) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
         return problem.reduce(self.nodes), float(self.params[problem.index])
 
     # ------------------------------------------------------------------ seeing and proving
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
         """States over one period; see `orbits.machines.declared.sampling.sample`."""
-        from orbits.machines.declared.sampling import sample
-
         return sample(self, points)
 
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation over one period; see `orbits.machines.declared.deviation`."""
-        from orbits.machines.declared.deviation import deviation
-
         return deviation(self)
 
     def plot(self, **options: Any) -> Any:

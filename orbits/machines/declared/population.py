@@ -297,7 +297,7 @@ class _Sorting:
         )
 
     def _marks(self, place: int, orbit: DeclaredOrbit, mirrored: bool) -> _Marks:
-        loose = orbit.problem(symmetric=False).loose
+        loose = orbit.system(symmetric=False).loose
         states = orbit.nodes[:, 1:]
         rows = states
         if self.machine.forced:

@@ -81,7 +81,7 @@ def _from_guess(
             f"{first}, {', '.join(machine.states)}"
         )
     orbit = DeclaredOrbit(machine, word, periods, nodes, params)
-    problem = orbit.problem(symmetric=False)
+    problem = orbit.system(symmetric=False)
     u, _, residual, _ = newton(problem, problem.reduce(nodes), float(params[problem.index]))
     if not residual < SOLVED:
         return None
@@ -154,7 +154,7 @@ def _shot(machine: Machine, word: PageWord, periods: int, params: np.ndarray) ->
 
 def polished_anywhere(orbit: DeclaredOrbit) -> DeclaredOrbit | None:
     """The orbit that Newton's method finds from a guess, real or not."""
-    problem = orbit.problem(symmetric=False)
+    problem = orbit.system(symmetric=False)
     u, _, residual, _ = newton(
         problem, problem.reduce(orbit.nodes), float(orbit.params[problem.index]), limit=25
     )

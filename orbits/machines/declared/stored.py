@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from orbits.machines.declared.loading import load_page
 from orbits.machines.declared.machine import Machine
-from orbits.machines.declared.page import digest_of, load_page
+from orbits.machines.declared.page import digest_of
 from orbits.machines.declared.problem import DeclaredProblem
 from orbits.words.of_pages import PageWord
 

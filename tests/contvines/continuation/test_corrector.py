@@ -135,3 +135,17 @@ def test_sums_over_the_unknowns():
     assert norm == pytest.approx(math.sqrt(0.5 * 0.25 + 0.25 * 0.25))
     assert cosine == pytest.approx((0.5 * (0.18 - 0.04) + 0.25 * 0.1) / norm)
     assert error == pytest.approx(math.sqrt(0.5 * (0.01 + 0.04) + 0.25 * 0.09))
+
+
+def test_the_sign_of_the_determinant_turns_with_the_tangent():
+    problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1.0, [1.0], 0.0, scale=1.0)
+    engine = Engine(problem, (-1.0, 1.0), Settings())
+    for angle in (0.3, 1.2):
+        u, p = np.array([math.cos(angle)]), math.sin(angle)
+        tangent = engine.unit(np.array([-p, u[0]]))
+        for border in (engine.weights * tangent, -engine.weights * tangent):
+            target = float(border @ np.append(u, p))
+            for sign in (1.0, -1.0):
+                found = engine.solve(u, p, border, target, sign * tangent)
+                matrix = np.array([[2.0 * u[0], 2.0 * p], sign * tangent * engine.weights])
+                assert found.sign == np.sign(np.linalg.det(matrix))

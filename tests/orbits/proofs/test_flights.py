@@ -6,6 +6,7 @@ import pytest
 from orbits.proofs.balls import ball, precision
 from orbits.proofs.equations import Motif
 from orbits.proofs.special import AtBorder, Vanishing
+from orbits.proofs.varying import Varying
 
 COUPLED = {
     "forcing": 2.1, "damping": 0.8, "restitution": 0.7, "excitation": 0.6, "friction": 0.4,
@@ -121,7 +122,7 @@ def test_the_border_at_a_wall_lies_at_the_wall(side, w, left):
     motif = Motif("cavity", ("t", "t"), (1, -1), 1, False, False)
     with precision(80):
         fixed = {name: value for name, value in numbers(CAVITY).items() if name != "amplitude"}
-        system = AtBorder(motif, fixed, "amplitude", Vanishing("wall", 0, side))
+        system = AtBorder(motif, fixed, Varying.single("amplitude"), Vanishing("wall", 0, side))
         ((place, row),) = system.borders
         assert place == 0 and float(row([ball("0.7"), ball(w)], [ball("0.8")])) == pytest.approx(
             left, abs=1e-15

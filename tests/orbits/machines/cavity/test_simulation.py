@@ -11,7 +11,7 @@ from orbits import Cavity
 from orbits.simulation import simulate
 
 MACHINE = {
-    "restitution_left": 0.9, "restitution_right": 0.5, "friction_left": 0.25, "friction_right": 0.6, "gravity": 0.5,
+    "restitution_left": 0.9, "restitution_right": 0.5, "friction_left": 0.1, "friction_right": 0.9, "gravity": 0.5,
     "mass_ratio": 0.2, "frequency": 1.3, "slope": 0.15, "distance_left": 1.2, "distance_right": 0.7,
 }  # fmt: skip
 

@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from orbits.machines.declared.page import load_page
+from orbits.machines.declared.loading import load_page
 
 PAGES = Path(__file__).resolve().parents[4] / "examples" / "machines"
 
