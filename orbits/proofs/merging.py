@@ -50,7 +50,7 @@ def merged(
     if name == "wall" or not any(event in (i, (i + 1) % len(motif)) for i in pairs):
         return None
     if 2 * len(pairs) == len(motif) and all(_pair(motif, nodes, i) == "us" for i in pairs):
-        return replace(motif, events=(), modes=()), nodes[:0], ("hold", 0)
+        return replace(motif, events=(), modes=(), periods=1, half=False), nodes[:0], ("hold", 0)
     mine = next(i for i in pairs if event in (i, (i + 1) % len(motif)))
     motif, nodes, i = _inwards(motif, nodes, mine)
     if i + 1 >= len(motif) or i == 0:

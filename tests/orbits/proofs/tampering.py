@@ -196,8 +196,8 @@ def wrong_certificate(given, random):
         tile["half_width"] = repr(float(tile["half_width"]) * random.choice([0.0, 0.5, 30.0]))
     elif kind == "missing":
         del wrong["boxes"][random.integers(1, len(wrong["boxes"]) - 1)]
-    elif kind == "end":  # the same orbit on both sides
-        i = 2 * random.integers(len(tiles))
+    elif kind == "end":  # the same orbit on both sides; of a stretch's first tile that is still true
+        i = 2 * random.integers(int(wrong["kind"] == "piece"), len(tiles))
         wrong["boxes"][i] = copy.deepcopy(wrong["boxes"][i + 2])
     elif kind == "exponent":
         (moved,) = (entry for entry in wrong["parameters"].values() if entry[2])

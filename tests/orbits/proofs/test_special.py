@@ -13,6 +13,8 @@ from orbits.proofs.checker import Refused, check
 from orbits.proofs.equations import Motif
 from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import ProofError
+from orbits.proofs.prove import prove_special
+from orbits.proofs.varying import Varying
 
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 ERRATA = Path(__file__).parents[3] / "examples" / "certificates" / "errata.json"
@@ -112,6 +114,24 @@ def test_flights_that_have_shrunk_to_nothing_are_left_out():
     assert rest[:, 0].tolist() == [0.0, 1.0, 1.5, 3.0]
     assert merged(motif, nodes + np.array([[0], [0], [0.1], [0.1], [0.1]]), ("stick", 2), room) is None
     assert merged(motif, nodes, ("stick", 4), room) is None  # a margin elsewhere
+
+
+def test_a_stick_slip_motion_that_shrinks_to_the_stuck_one():
+    """The border is the stuck motion's own, over the whole period; half of it would say nothing of the other direction."""
+    motif = Motif("absorber", tuple("us"), (1, 0), 1, True, False)
+    stuck, rest, margin = merged(
+        motif, np.array([[1.0, 0.0], [1.0, 0.0]]), ("duration", 0), {1: 1.0, -1: 1.0}
+    )
+    assert (stuck.events, stuck.half, len(rest), margin) == ((), False, 0, ("hold", 0))
+    limit = 1.006 * 0.5 * 0.211  # C Omega^2 = a: closed form
+    given = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006, "frequency": 1.0}
+    proof = prove_special("stick", stuck, rest, given, Varying.single("amplitude"), limit, margin=margin)
+    assert proof.existence and abs(value(proof)[0] - mpf("1.006") * mpf("0.5") * mpf("0.211")) < mpf("1e-12")
+    assert verified(proof)
+    wrong = json.loads(json.dumps(proof.certificate()))
+    wrong["half"] = True
+    with pytest.raises(Refused):
+        check(wrong)
 
 
 def test_what_else_shrinks_to_nothing():
