@@ -33,9 +33,11 @@ def check_compared(kinds: list[str] | None, drawn: bool) -> None:
     ------
     ValueError
     """
+    if not kinds:
+        return
     from orbits.design.references import KINDS
 
-    for kind in kinds or ():
+    for kind in kinds:
         if kind not in KINDS:
             raise ValueError(f"--compare {kind}: there is no such response; {', '.join(KINDS)} would do.")
         if not drawn:

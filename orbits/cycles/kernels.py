@@ -197,7 +197,8 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         margins=kernels.margins,
     )
     flip = specialise(rearranged.flip, stamp, inline=True, unpin=kernels.unpin)
-    return Kernels(name, stamp, kernels.linearise, eliminate, inspect, flip, rearranged.transpose)
+    linearise = specialise(kernels.linearise.py_func, stamp, inline=True)  # normal forms call it from Python
+    return Kernels(name, stamp, linearise, eliminate, inspect, flip, rearranged.transpose)
 
 
 def assemble(model: Model) -> Kernels:
