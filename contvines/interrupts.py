@@ -20,6 +20,7 @@ PACKAGE = __name__.partition(".")[0] + "."
 class _State:
     wanted = False  # an interrupt has come that nobody has taken
     held = 0  # held sections that are open
+    alone = False  # the outermost of them listens itself
 
 
 _state = _State()
@@ -28,11 +29,7 @@ _state = _State()
 @contextmanager
 def listening() -> Iterator[None]:
     """Raise interrupts in good order inside; a handler of the user's own is left alone."""
-    mine = (
-        threading.current_thread() is threading.main_thread()
-        and signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    )
-    if not mine:
+    if not _unheard():
         yield
         return
     signal.signal(signal.SIGINT, _interrupted)
@@ -49,6 +46,14 @@ def listening() -> Iterator[None]:
         raise KeyboardInterrupt
 
 
+def _unheard() -> bool:
+    """Whether an interrupt would be raised by Python itself, at once."""
+    return (
+        threading.current_thread() is threading.main_thread()
+        and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    )
+
+
 def take() -> None:
     """The interrupt has been noticed: it is not raised once more."""
     _state.wanted = False
@@ -56,6 +61,8 @@ def take() -> None:
 
 class Section:
     """Work at whose end an interrupt is raised that was kept back, or ignored, inside; its result is then not used.
+
+    One that is held does so outside of `listening`, too.
 
     Parameters
     ----------
@@ -69,6 +76,9 @@ class Section:
         self.held = held
 
     def __enter__(self) -> None:
+        if self.held and not _state.held and _unheard():
+            signal.signal(signal.SIGINT, _interrupted)
+            _state.alone = True
         _state.held += self.held
 
     def __exit__(
@@ -76,6 +86,11 @@ class Section:
     ) -> None:
         if self.held and _state.held:
             _state.held -= 1
+            if _state.alone and not _state.held:
+                signal.signal(signal.SIGINT, signal.default_int_handler)
+                _state.alone = False
+                if kind is not None:
+                    take()
         if _state.wanted and kind is None and not _state.held:
             take()
             raise KeyboardInterrupt

@@ -153,3 +153,27 @@ def test_what_was_not_written_is_written_again(tmp_path):
         store.put = put
         store.checkpoint(graph)
     assert same_graph(cv.load(tmp_path / "x.vines", problems=False), graph)
+
+
+def test_a_held_section_keeps_an_interrupt_back_though_nobody_listens(capfd):
+    """As at the start of a diagram, or where a point of a branch is solved for from Python."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        reached = []
+        with pytest.raises(KeyboardInterrupt):
+            with HELD:
+                with HELD:
+                    ignoring()
+                reached.append("the end of the outer section")
+            raise AssertionError("the section's result was used")
+        assert reached and capfd.readouterr().err == ""
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        with pytest.raises(ZeroDivisionError), HELD:
+            ignoring()
+            raise ZeroDivisionError
+        with HELD:
+            pass  # nothing is left over
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)
