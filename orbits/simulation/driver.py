@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from orbits.machines.catalogue import stepper as machine
-from orbits.machines.stepping import EVENTS_FULL, FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
+from orbits.machines.stepping import EVENTS_FULL, FAILED, MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
 
 CHUNK = 16384
@@ -85,6 +85,8 @@ def follow(
         raise SimulationError(
             f"the motion of {model.name!r} left the range of numbers: give parameters and a start of moderate size"
         )
+    if begin[MODE] == 0.0 and begin[RATE] == 0.0 and model.frictionless(params):
+        begin[MODE] = 1.0  # without friction nothing sticks, not even at the instant at which nothing pushes
     return Trajectory(model, params, engine, begin, state, codes, modes, rows, status)
 
 
