@@ -57,8 +57,15 @@ class Examiner:
 
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""
-        a, b = segment.a, segment.b
         events = self._meetings(segment)
+        if events:
+            # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
+            short = (1.0 - BESIDE) * min(e.position for e in events)
+            last = segment.at(short) if short > 0.0 else None
+            if last is not None:
+                part = self.examine(Segment(self.engine, segment.a, last), real, depth)
+                return events + [e._replace(position=short * e.position) for e in part]
+        a, b = segment.a, segment.b
         met = [e.position for e in events]
         folds = self._fold(segment, met)
         singular = 0

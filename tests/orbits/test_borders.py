@@ -344,3 +344,35 @@ def test_an_impact_and_the_flight_after_it_vanish_together():
         )
         assert np.abs(one - other).max() < 1e-6
         assert replay(target.orbit(len(target) // 2)).error < 1e-6
+
+
+def test_a_doubling_right_before_a_doubled_orbit_comes_back_to_its_root():
+    """A multiplier passes -1 within 2e-5 of the meeting, behind which lies the image of what is before it: found with any steps."""
+    machine = Cavity(
+        restitution_left=0.3026013366985359,
+        restitution_right=0.9116775872513103,
+        friction_left=0.6762239499547344,
+        friction_right=0.9838720605416361,
+        gravity=0.7175520851058237,
+        slope=-0.08957104092297741,
+        distance_left=1.2319815798863538,
+        distance_right=1.5673046754759739,
+    )
+    found = find_attractor(
+        machine, {"w_rate": 1.0, "phase": 3.9579484187309633}, amplitude=1.6462546849061006
+    )
+    for settings in ({}, {"max_step": 0.003}):
+        graph = cv.diagram(
+            polish(found.orbit),
+            over="amplitude",
+            within=(1.2462546849, 2.0462546849),
+            depth=1,
+            settings=settings,
+        )
+        meeting = next(p for p in graph.of_kind("period-doubling") if p.note.startswith("met from"))
+        branch = graph[meeting.met_from]
+        own = [graph[label] for _, label in branch.marks if label != meeting.label]
+        (doubling,) = [point for point in own if point.kind == "period-doubling"]
+        assert 0.0 < doubling.value - meeting.value < 3e-5
+        seen = replay(polish(doubling.orbit), thorough=True).multipliers
+        assert seen[np.argmax(np.abs(seen))] == pytest.approx(-1.0, abs=1e-4)
