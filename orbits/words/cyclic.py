@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any, Self
@@ -14,7 +15,7 @@ class WordError(ValueError):
     """A word whose events cannot follow one another."""
 
 
-class CyclicWord:
+class CyclicWord(ABC):
     """A cyclic list of events with the mode that follows each of them.
 
     Attributes
@@ -29,9 +30,9 @@ class CyclicWord:
     modes: tuple[Any, ...]
     alphabet: Alphabet
 
+    @abstractmethod
     def like(self, events: Sequence[str], modes: Sequence[Any]) -> Self:
         """A word over the same alphabet."""
-        raise NotImplementedError
 
     # ------------------------------------------------------------------ facts
     def __len__(self) -> int:
@@ -41,9 +42,9 @@ class CyclicWord:
         return self.text
 
     @property
+    @abstractmethod
     def text(self) -> str:
         """As it is written in studies."""
-        raise NotImplementedError
 
     def letter(self, place: int) -> Letter:
         """The letter of an event."""

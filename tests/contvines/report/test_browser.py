@@ -167,6 +167,8 @@ def test_other_measures_can_be_chosen(opened):
     opened.wait_for_function(
         "document.getElementById('diagram').layout.yaxis.title.text.startsWith('fastest impact')"
     )
+    assert opened.locator("#y").input_value() == "impact_speed"
+    assert opened.locator("#diagram .ytitle").text_content().startswith("fastest impact")
 
 
 EVERY = ["page_file", "chart_file", "atlas_file", "survey_file"]
