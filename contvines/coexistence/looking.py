@@ -37,7 +37,7 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
             if about.kind == "slow" or (counted.problem is not None and locate(run, counted) is not None):
                 continue
             found.append(about)
-    graph.missing = found
+    graph.missing, graph.looked = found, True
     return found
 
 

@@ -186,7 +186,8 @@ def _run(
             store.require(fingerprint)
             if store.finished:
                 graph = store.graph(problems=plot is not None)
-                say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
+                if graph.looked or not look:
+                    say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
             else:
                 say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
     if graph is None:
@@ -196,8 +197,8 @@ def _run(
             seed = first_orbit(study)
             graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)
         say(f"kept in {target}", quiet)
-        if command == "diagram" and look:
-            _look(graph, study, target)
+    if look and not graph.looked:
+        graph = _look(study, target)
     if not quiet:
         typer.echo(str(graph))
     if command == "diagram" and graph.missing:
@@ -244,21 +245,28 @@ def _check_picture(path: Path) -> None:
     check_picture(path)
 
 
-def _look(graph: Any, study: Any, target: Path) -> None:
-    """A few simulated starts after a diagram; what they reach beside it is kept in the file."""
+def _look(study: Any, target: Path) -> Any:
+    """A few simulated starts after a diagram; what they reach beside it is kept in the file.
+
+    The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
+    """
     from contvines.coexistence.looking import look
     from contvines.coexistence.population import population_of
     from contvines.command.compose import loose, machine
     from contvines.store import Store
 
-    model = machine(study)
-    if getattr(model, "population", None) is None:
-        return
-    fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
-    if look(graph, population_of(model, study.parameter, **fixed)):
-        with Store.open(target, write=True) as store:
-            store.checkpoint(graph)
-            store.tidy()
+    with Store.open(target, write=True) as store:
+        graph = store.graph()
+        model = machine(study)
+        fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
+        with interruptible(f"the diagram is kept in {target}; the same command looks again for what it does not have"):
+            if getattr(model, "population", None) is None:
+                graph.looked = True
+            else:
+                look(graph, population_of(model, study.parameter, **fixed))
+        store.checkpoint(graph)
+        store.tidy()
+    return graph
 
 
 def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:

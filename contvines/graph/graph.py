@@ -73,6 +73,8 @@ class Graph:
         How the run ended, in words.
     complete : bool
         False where branches were left waiting at ``max_branches``.
+    looked : bool
+        Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
     proofs : dict of dict
         By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
     """
@@ -87,6 +89,7 @@ class Graph:
     finished: bool = False
     message: str = ""
     complete: bool = True
+    looked: bool = False
     proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
     attractors: list[Attractor] = field(default_factory=list)
     missing: list[Attractor] = field(default_factory=list)

@@ -66,6 +66,25 @@ def test_killed_at_random_moments(tmp_path, undisturbed):
     assert same_graph(load(path, problems=False), undisturbed)
 
 
+@pytest.mark.parametrize("blow", [signal.SIGKILL, signal.SIGINT])
+def test_stopped_while_it_looks_for_what_the_diagram_does_not_have(tmp_path, undisturbed, blow):
+    path = tmp_path / "l.vines"
+    code = (
+        "import os, sys\nfrom contvines.coexistence import looking\nfrom contvines.command.cli import main\n"
+        f"looking.census = lambda *a: os.kill(os.getpid(), {int(blow)})\nmain(sys.argv[1:])"
+    )
+    done = subprocess.run([sys.executable, "-c", code, *COMMAND[3:], str(path)], capture_output=True, text=True)
+    if blow == signal.SIGINT:
+        assert done.returncode == 130
+        assert f"the diagram is kept in {path}; the same command looks again" in done.stderr
+        assert "Traceback" not in done.stderr
+    stopped = load(path, problems=False)
+    assert stopped.finished and not stopped.looked and not stopped.missing
+    subprocess.run([*COMMAND, str(path)], check=True)
+    assert same_graph(load(path, problems=False), undisturbed)
+    assert undisturbed.looked and undisturbed.missing
+
+
 def test_interrupted_by_ctrl_c_says_how_to_go_on(tmp_path, undisturbed):
     path = tmp_path / "c.vines"
     code = (
