@@ -26,7 +26,7 @@ from .layout import MARGIN
 from .locus import Locus
 from .plane_point import PlanePoint
 from .regions import divide
-from .starts import begin
+from .starts import begin, regular_side
 
 SAME = 1e-7  # points of the plane closer than this part of its sides are one
 LARGEST = 120  # loci; a chart that was cut there says so
@@ -110,6 +110,7 @@ class Charting:
             )
         if not self.queue and not self.chart.loci:
             checked_ends(point.problem, self.over, self.within)
+        point = regular_side(point)
         candidate = Candidate(
             point.problem, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
         )

@@ -24,7 +24,7 @@ from .layout import BRANCH, MARGIN
 from .locus import Locus, Turn
 from .problem import LocusProblem
 from .sides import impossible_side
-from .starts import begin, first_point
+from .starts import begin, first_point, regular_side
 
 UNFOLDED = 1e-7  # an unfolding beyond this (relative to the largest unknown) says that a branch point does not persist
 
@@ -71,6 +71,7 @@ def locus(
     if point.problem is None:
         raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
     within = check_interval(within)
+    point = regular_side(point)
     known = getattr(point.problem, "parameters", {})
     problem = begin(
         point.problem,
