@@ -48,7 +48,9 @@ def test_velocity_graze_and_real_period_doubling_are_those_of_diagrams(graph):
         other = cv.diagram(orbit, over="amplitude", within=(0.6, 1.25), depth=1)
         for label, kind in kinds.items():
             (special,) = [s for s in other.of_kind(kind) if s.label == label]
-            assert special.real and special.problem.word.canonical() == loci[label].problem.base.word.canonical()
+            assert (
+                special.real and special.problem.word.canonical() == loci[label].problem.base.word.canonical()
+            )
             assert loci[label].at(friction) == pytest.approx([special.value], abs=1e-10)
 
 
