@@ -50,6 +50,8 @@ class Examiner:
         self.kind = engine.detection
         # of problems without scales of their own, machines, branches of this sort are not known
         self.exchanges = getattr(problem, "scales", None) is not None and self.kind != "none"
+        # of problems with many unknowns the rows tell eigenvalues only where they are asked for
+        self.many = bool(getattr(problem, "many", False))
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]

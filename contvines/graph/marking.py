@@ -221,7 +221,7 @@ def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bo
     one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
     scales = getattr(problem, "scales", None)
     return one.shape != other.shape or same_vector(
-        one, other, AT_BORDER, None if scales is None else scales.joined()
+        one, other, AT_BORDER, None if scales is None else scales.vector
     )
 
 
