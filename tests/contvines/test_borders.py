@@ -171,6 +171,22 @@ def test_a_margin_that_touches_zero_where_another_one_passes_it(max_step, later)
     assert graph["WG1"].value == pytest.approx(0.5, abs=1e-13) and graph["WG1"].margin_index == 1
 
 
+@pytest.mark.parametrize("max_step", [0.3, 0.03, 0.004])
+@pytest.mark.parametrize("flip, border", [(0.5, 0.501), (0.5, 0.52), (0.437, 0.4371)])
+def test_what_lies_before_a_border_is_found_whatever_is_behind(max_step, flip, border):
+    """The multiplier passes -1 before the border, and jumps back behind it, as one does that passes infinity at a graze."""
+
+    class Coming(Line):
+        def multiplier(self, p):
+            return -1.0 + 3.0 * (p - flip) if p < border else -4.0
+
+    line = Coming("a", 0.0, 1.0, [-1.0], [border])
+    graph = cv.diagram(line, within=(0.0, 1.0), settings={"max_step": max_step})
+    found = [(point.kind, point.value) for point in graph.special.values() if point.kind != "end"]
+    assert [kind for kind, _ in found] == ["period-doubling", "velocity-graze"]
+    assert [value for _, value in found] == pytest.approx([flip, border], abs=1e-12)
+
+
 class Vanishing(ProblemDefaults):
     """x = p, and a length t with t (t - 3 x) = 0: it vanishes at p = 0, where t = 0 is a solution, too, and F_u singular.
 
