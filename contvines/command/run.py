@@ -259,7 +259,9 @@ def _look(study: Any, target: Path) -> Any:
         graph = store.graph()
         model = machine(study)
         fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
-        with interruptible(f"the diagram is kept in {target}; the same command looks again for what it does not have"):
+        with interruptible(
+            f"the diagram is kept in {target}; the same command looks again for what it does not have"
+        ):
             if getattr(model, "population", None) is None:
                 graph.looked = True
             else:
