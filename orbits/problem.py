@@ -25,11 +25,11 @@ from orbits.machines.building import build
 from orbits.machines.path import along
 from orbits.motions import Simulated
 from orbits.orbit import Orbit
-from orbits.protocol import Embedding, Symmetry
+from orbits.protocol import Answers, Embedding, Symmetry
 from orbits.words import Word
 
 
-class OrbitProblem(Simulated):
+class OrbitProblem(Simulated, Answers):
     """Periodic orbits with a given word, against one parameter of their machine.
 
     Parameters
@@ -75,7 +75,7 @@ class OrbitProblem(Simulated):
         self.equations = system
         self.length, self.dimension = system.length, system.dimension
         self.twist, self.shift = system.twist, system.shift
-        self.loose, self.pinned = system.loose, system.pinned
+        self.movable = system.pinned == 2  # symmetric motions without impacts
         self.n_multipliers, self.n_margins = system.n_multipliers, system.n_margins
         self.path, self.data, self.period_shift = system.path, system.data, system.period_shift
         self.flip_kind = "symmetry-breaking" if self.twist < 0.0 else "period-doubling"
@@ -309,10 +309,12 @@ class OrbitProblem(Simulated):
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
         return above("of_point")(self, kind, u, p, margin, bits)
 
-    def population(self, over: str | None = None) -> Any:
+    def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""
         over = over or self.parameter
-        return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
+        return self.model.population(
+            over, **{n: v for n, v in {**self.parameters, **parameters}.items() if n != over}
+        )
 
     @property
     def spelling(self) -> str:

@@ -73,7 +73,9 @@ def test_stopped_while_it_looks_for_what_the_diagram_does_not_have(tmp_path, und
         "import os, sys\nfrom contvines.coexistence import looking\nfrom contvines.command.cli import main\n"
         f"looking.census = lambda *a: os.kill(os.getpid(), {int(blow)})\nmain(sys.argv[1:])"
     )
-    done = subprocess.run([sys.executable, "-c", code, *COMMAND[3:], str(path)], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code, *COMMAND[3:], str(path)], capture_output=True, text=True
+    )
     if blow == signal.SIGINT:
         assert done.returncode == 130
         assert f"the diagram is kept in {path}; the same command looks again" in done.stderr

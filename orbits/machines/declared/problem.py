@@ -20,10 +20,10 @@ from orbits.machines.declared.margins import border_kind
 from orbits.machines.declared.orbit import DeclaredOrbit
 from orbits.machines.declared.section import Section
 from orbits.machines.declared.system import DeclaredSystem
-from orbits.protocol import Embedding, Symmetry
+from orbits.protocol import Answers, Embedding, Symmetry
 
 
-class DeclaredProblem(DeclaredSystem):
+class DeclaredProblem(DeclaredSystem, Answers):
     """Periodic orbits with a given word, against one parameter of a declared machine; the parameters are `DeclaredSystem`'s."""
 
     # ------------------------------------------------------------------ facts
