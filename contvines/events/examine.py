@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
+from .borders import find_border
 from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
-from .kinds import BORDERS
 from .limits import before
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
-from .scan import FLAT, MARGIN
+from .scan import FLAT
 from .segment import Segment
 
 NAMES = ("plus", "minus", "pair")
@@ -21,8 +21,6 @@ FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
-TIED = 1e-9  # margins that differ by less vanish together
-ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
@@ -233,35 +231,12 @@ class Examiner:
         return events
 
     def _borders(self, segment: Segment, real: bool) -> list[Located]:
-        engine = self.engine
-        a, b = engine.margins(segment.a.row), engine.margins(segment.b.row)
-        if not len(a):
+        border = find_border(segment, real)
+        if border is None:
             return []
-        if real:
-            falling = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
-        else:
-            falling = np.arange(len(a)) if (a < MARGIN).any() and not (b < MARGIN).any() else np.zeros(0, int)
-        if not len(falling):
-            return []
-
-        def margin(point: Solved) -> float:
-            return min(float(engine.margins(point.row)[falling].min()), 1.0)
-
-        root = locate(segment, margin, fallback_zero=real)
-        if root is None:
-            return []
-        j = self._which_border(engine.margins(root.point.row), falling)
-        root = root._replace(point=before(segment, root))
-        return [self._located(root, engine.problem.margin_kind(j), j, Role.BORDER)]
-
-    def _which_border(self, margins: np.ndarray, falling: np.ndarray) -> int:
-        """The margin that vanishes. Several may, as when a stick disappears: which one is smallest is then a matter of
-
-        rounding, so those that are as small as the smallest one count as equal, and the order of kinds decides.
-        """
-        tied = falling[margins[falling] <= margins[falling].min() + TIED]
-        kinds = [self.engine.problem.margin_kind(int(j)) for j in tied]
-        return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])
+        kind = self.engine.problem.margin_kind(border.index)
+        root = border.root._replace(point=before(segment, border.root))
+        return [self._located(root, kind, border.index, Role.BORDER)]
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""

@@ -9,12 +9,13 @@ import numpy as np
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
+from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
 from .examine import Examiner, changes
 from .functions import LIMIT, balance, counts, nearest_to_circle
 from .leaps import leap
 from .located import Located, Role
-from .scan import APART, BORDER, DAMPED, HUMP, MARGIN, MEETING, MULTIPLIER, SHALLOW, Scan, Scanner, dips
+from .scan import APART, BORDER, DAMPED, HUMP, MEETING, MULTIPLIER, SHALLOW, Scan, Scanner, dips
 from .segment import Segment
 
 USER, TWICE = (

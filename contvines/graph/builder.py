@@ -13,10 +13,10 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
+from ..continuation.march import MARGIN
 from ..continuation.starts import solve_start
 from ..continuation.status import Status
 from ..events.kinds import BORDERS
-from ..events.scan import MARGIN
 from ..events.watch import AT_BORDER, Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
