@@ -63,7 +63,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         return Bound(march, copy_with(corrector.solve, improve=improve, **sums, **functions))
     from numba import njit
 
-    from ..problems.protocol import kernels_digest
+    from ..problems.kernels import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     compile_ = njit(cache=True, **OPTIONS)  # inlined by force, the loop would take half as long again to compile
