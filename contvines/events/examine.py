@@ -49,7 +49,7 @@ class Examiner:
         problem = engine.problem
         self.kind = engine.detection
         # of problems without scales of their own, machines, branches of this sort are not known
-        self.exchanges = getattr(problem, "scales", None) is not None and self.kind != "none"
+        self.exchanges = problem.scales is not None and self.kind != "none"
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from .functions import NotEvaluable
-from .protocol import Kernels
+from .kernels import Kernels
 
 # solves and hands out the factors (scipy's getrs starts threads for the smallest matrices)
 (FACTORISE_AND_SOLVE,) = get_lapack_funcs(("gesv",), dtype=np.float64)
@@ -48,7 +48,7 @@ def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
 
 def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
-    scales = getattr(data, "scales", None)
+    scales = data.scales
     with np.errstate(all="ignore"):
         try:
             work.residual[:], work.jacobian[:], work.derivative[:] = data.equations(u, p)
@@ -73,7 +73,7 @@ def bordered(
     """
     size = len(work.residual)
     matrix, sides = work.matrix, work.sides
-    scales = getattr(data, "scales", None)
+    scales = data.scales
     matrix[:size, :size] = work.jacobian
     matrix[:size, size] = work.derivative
     matrix[size] = border

@@ -20,7 +20,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, gmres, splu
 
 from .functions import NotEvaluable
-from .protocol import Kernels
+from .kernels import Kernels
 from .sparse_loci import assign, flip, matrix, transpose
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
