@@ -9,6 +9,7 @@ import numpy as np
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
+from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
 from .examine import Examiner, changes
 from .functions import LIMIT, balance, counts, nearest_to_circle
@@ -19,7 +20,6 @@ from .scan import (
     BORDER,
     DAMPED,
     HUMP,
-    MARGIN,
     MEETING,
     MULTIPLIER,
     SHALLOW,
@@ -186,7 +186,7 @@ class Watch(Examiner):
 
     def _closely(self, segment: Segment, real: bool) -> list[Located]:
         """The special points of a segment of a problem with many unknowns, from eigenvalues."""
-        problem = self.engine.problem
+        problem: Any = self.engine.problem
         problem.closely = True
         try:
             a, b = segment.at(0.0), segment.at(1.0)

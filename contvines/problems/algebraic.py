@@ -188,9 +188,11 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return self.conditions.equations(u, p, f, self.values)
         return f.value(u, p), f.jacobian(u, p), f.derivative(u, p)
 
+    inverse: Any = None
+
     def preconditioner_at(self) -> Any:
         """The user's approximation of the inverse of dF/du where the equations were evaluated last, or None."""
-        return getattr(self, "inverse", None)
+        return self.inverse
 
     def raw_spectrum(self, work: Any) -> np.ndarray:
         """Eigenvalues of dF/du, in units of the typical rate; those watched for branch points, where there is no spectrum."""

@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from .abilities import Nearing
 from .functions import NotEvaluable
+from .kernels import Kernels
 from .nearness import distance, nearest
-from .protocol import Kernels
 from .spectra import reference_of, watched
 
 # solves and hands out the factors (scipy's getrs starts threads for the smallest matrices)
@@ -54,7 +55,7 @@ def dense_workspace(n: int, watched: bool = False) -> DenseWork:
 
 def workspace(problem: Any) -> DenseWork:
     """Arrays for a problem."""
-    return dense_workspace(problem.dimension, getattr(problem, "many", False))
+    return dense_workspace(problem.dimension, isinstance(problem, Nearing) and problem.many)
 
 
 def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
@@ -64,7 +65,7 @@ def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
 
 def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
-    scales = getattr(data, "scales", None)
+    scales = data.scales
     with np.errstate(all="ignore"):
         try:
             work.residual[:], work.jacobian[:], work.derivative[:] = data.equations(u, p)
@@ -91,7 +92,7 @@ def bordered(
     """
     size = len(work.residual)
     matrix, sides, rows = work.matrix, work.sides, work.rows
-    scales = getattr(data, "scales", None)
+    scales = data.scales
     units = None if scales is None else scales.vector
     with np.errstate(all="ignore"):
         matrix[:size, :size] = work.jacobian

@@ -20,8 +20,8 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 
 from .factors import Method, SuperLUFactors
 from .functions import NotEvaluable
+from .kernels import Kernels
 from .nearness import distance, nearest_sparse
-from .protocol import Kernels
 from .sparse_loci import assign, flip, matrix, transpose
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
@@ -55,7 +55,7 @@ class SparseWork:
 def workspace(problem: Any) -> SparseWork:
     """Arrays for a problem."""
     # eigenvalues need factors of the very Jacobian, so that those of another one save nothing
-    keep = getattr(problem, "spectrum", "none") == "none"
+    keep = problem.spectrum == "none"
     return SparseWork(np.zeros(problem.dimension), np.zeros(problem.dimension), keep=keep)
 
 
