@@ -10,6 +10,7 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
+from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.attractors.recurrence import settle
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
@@ -96,13 +97,9 @@ class Population:
         return np.array(rows)
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts over the box (Sobol, scrambled by the seed), shape (count, n)."""
-        from scipy.stats import qmc
-
+        """Low-discrepancy starts over the box, shape (count, n)."""
         box = self.box(p)
-        draw = qmc.Sobol(len(box), scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
-        points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
-        return box[:, 0] + points * (box[:, 1] - box[:, 0])
+        return box[:, 0] + low_discrepancy(len(box), count, seed) * (box[:, 1] - box[:, 0])
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion], np.ndarray, np.ndarray]:
         """Simulate all starts and recognise what they settle on.
@@ -243,13 +240,20 @@ class _Sorting:
                 and motion.periods == found.periods
                 and self._same(motion, problem, u)
             ):
-                self.index[here & (self.index < 0)] = k
+                self._assign(here, k, self.images[k], found.symmetric)
                 return
-        side = self._nearer_image(own, image, free) & (not found.symmetric)
-        self.mirrored[here & (self.index < 0) & side] = True
-        self.index[here & (self.index < 0)] = len(self.motions)
+        self._assign(here, len(self.motions), (own, image, free), found.symmetric)
         self.motions.append(Motion(found.kind, word, found.periods, problem, u, state=found.state.copy()))
         self.images.append((own, image, free))
+
+    def _assign(
+        self, here: np.ndarray, k: int, images: tuple[np.ndarray, np.ndarray, bool], symmetric: bool
+    ) -> None:
+        """Give motion k, which has these images, the starts that are `here` and free; each reaches it or its mirror image."""
+        here = here & (self.index < 0)
+        if not symmetric:
+            self.mirrored[here] = self._nearer_image(*images)[here]
+        self.index[here] = k
 
     def _same(self, motion: Motion, problem: Any, u: Any) -> bool:
         if motion.problem is None or problem is None:

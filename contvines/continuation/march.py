@@ -35,6 +35,8 @@ CONTROL_SIZE = 12
 # status codes (contvines.continuation.status)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
 
+MARGIN = -1e-12  # margins below this are negative; above it they may be zeros all along a branch
+
 
 def march(
     data,
@@ -175,6 +177,6 @@ def march(
         h = min(h * factor, control[MAX_STEP])
         if control[STOP_AT_BORDER] > 0.0:
             for j in range(row_margins, row_size):
-                if rows[i - 1, j] < 0.0:
+                if rows[i - 1, j] < MARGIN:
                     return i, h, BORDER
     return i, h, RUNNING

@@ -12,7 +12,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ..continuation.engine import Solved
-from .scan import MARGIN, dips
+from ..continuation.march import MARGIN
+from .scan import dips
 from .segment import Segment
 
 GOLDEN = 0.3819660112501051

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
+from ..problems.protocol import Problem
 from .kinds import condition
 from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
 from .linear import Linearisation
@@ -23,7 +23,7 @@ SINGULAR = 1e-9  # a test below this: the equations are singular
 
 
 def begin(
-    problem: Any,
+    problem: Problem,
     kind: str,
     u: np.ndarray,
     p: float,
@@ -48,9 +48,8 @@ def begin(
         Of the first parameter.
     """
     wanted = condition(problem, kind)
-    smooth = getattr(problem, "smooth_margin", None)
-    if wanted == MARGIN and smooth is not None:
-        index = smooth(index)
+    if wanted == MARGIN:
+        index = problem.smooth_margin(index)
     locus = LocusProblem(problem, kind, over, index, bounds)
     line = Linearisation(problem)
     line.at(u, p)
@@ -103,7 +102,7 @@ def regular_side(point: SpecialPoint) -> SpecialPoint:
     return point
 
 
-def singularity(problem: Any, u: np.ndarray, p: float) -> float:
+def singularity(problem: Problem, u: np.ndarray, p: float) -> float:
     """The test that vanishes where the equations are singular, without its sign."""
     line = Linearisation(problem)
     line.at(u, p)

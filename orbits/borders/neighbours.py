@@ -146,11 +146,13 @@ def grown(
     change = edits[0].change
     if change.grows is Grows.MARGIN:
         found = _beside(other, guess, p, orbit, steady)
-        soft = None if found is not None else _soft_impact(other, guess, p)
-        if soft is None:
+        vanishing = None if found is not None else _vanishing(other, guess, p)
+        if vanishing is None:
             return found
-        # another round still has the impact whose speed vanishes at the border: it grows
-        first, change = soft, replace(change, events=other.word.events[soft : soft + 2], grows=Grows.SPEED)
+        # another round still has what vanishes at the border: it grows
+        first, grows = vanishing
+        events = other.word.events[first : first + 2]
+        change = replace(change, start=first, stop=first, events=events, grows=grows)
     for sizes in ways:
         found = _climb(other, guess, first, change, p, sizes)
         if found and steady and not stable_at(other, found[-1].u, found[-1].p):
@@ -160,13 +162,15 @@ def grown(
     return None
 
 
-def _soft_impact(other: CycleProblem, guess: np.ndarray, p: float) -> int | None:
-    """An impact of vanishing speed; there the equations are singular."""
+def _vanishing(other: CycleProblem, guess: np.ndarray, p: float) -> tuple[int, Grows] | None:
+    """An impact of vanishing speed, or a stick of vanishing length; there the equations are singular."""
     orbit, units = other.orbit(guess, p), other.equations.unit
     for place in range(other.length):
-        speed = abs(orbit.events.rate_post[place]) / units[place, 1]
-        if other.word.letter(place).kind == HIT and speed < NEAR:
-            return place
+        kind = other.word.letter(place).kind
+        if kind == HIT and abs(orbit.events.rate_post[place]) / units[place, 1] < NEAR:
+            return place, Grows.SPEED
+        if kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < NEAR:
+            return place, Grows.GAP
     return None
 
 

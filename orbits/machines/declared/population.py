@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
@@ -108,27 +109,23 @@ class DeclaredPopulation:
         return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts (Sobol, scrambled by the seed) in the box and outside the walls, shape (count, n).
+        """Low-discrepancy starts in the box and outside the walls, shape (count, n).
 
         Raises
         ------
         ValueError
             If the walls leave nearly none of the box.
         """
-        from scipy.stats import qmc
-
         box = self.box(p)
-        draw = qmc.Sobol(len(box), scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
         kept: list[np.ndarray] = []
         drawn = 0
-        size = int(np.ceil(np.log2(max(count, 2))))
         while sum(map(len, kept)) < count:
             if drawn > DRAWS * max(count, 2):
                 raise ValueError(
                     f"the walls of {self.machine.name!r} leave nearly none of the box of starts at {self.parameter} = {p:g}; "
                     "say in the page where starts are drawn: Machine(..., starts={'x': (low, high)})"
                 )
-            points = box[:, 0] + draw.random_base2(size) * (box[:, 1] - box[:, 0])
+            points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn) * (box[:, 1] - box[:, 0])
             drawn += len(points)
             kept.append(points[self._free(points, self.vector(p))])
         return np.concatenate(kept)[:count]

@@ -1,0 +1,92 @@
+"""Borders: where on a segment a branch ceases to be real (or becomes so again), and which margin says so."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..continuation.engine import Engine, Solved
+from ..continuation.march import MARGIN
+from .kinds import BORDERS
+from .locate import Root, locate
+from .segment import Segment
+
+TIED = 1e-9  # margins that differ by less vanish together
+BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
+ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
+
+
+class Border(NamedTuple):
+    """A border of a segment: where it is, and the margin that vanishes there."""
+
+    root: Root
+    index: int
+
+
+def find_border(segment: Segment, real: bool) -> Border | None:
+    """The border of a segment, or None.
+
+    Parameters
+    ----------
+    segment : Segment
+    real : bool
+        Whether its beginning has positive margins: the border is where the first one vanishes; else where all are positive again.
+    """
+    engine = segment.engine
+    a, b = engine.margins(segment.a.row), engine.margins(segment.b.row)
+    if not len(a):
+        return None
+    if real:
+        falling = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
+    else:
+        falling = np.arange(len(a)) if (a < MARGIN).any() and not (b < MARGIN).any() else np.zeros(0, int)
+    if not len(falling):
+        return None
+    root = _located(segment, falling, real)
+    if root is None:
+        return None
+    if real:
+        passing = _passing(segment, root, falling)
+        if 0 < len(passing) < len(falling):
+            again = _located(segment, passing, real)
+            if again is not None and engine.margins(again.point.row)[falling].min() >= MARGIN:
+                root, falling = again, passing
+    return Border(root, _which(engine, engine.margins(root.point.row), falling))
+
+
+def _located(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
+    engine = segment.engine
+
+    def margin(point: Solved) -> float:
+        return min(float(engine.margins(point.row)[chosen].min()), 1.0)
+
+    return locate(segment, margin, fallback_zero=real)
+
+
+def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Those of the margins that are negative just behind a border.
+
+    Of a cycle that repeats itself at the border, as where a stick vanishes in every other round, the margins of the other
+    rounds touch zero there, and come back; that they are negative at the end of the segment is another matter.
+    """
+    here = segment.engine.margins(root.point.row)[falling]
+    for step in BEHIND:
+        point = segment.at(root.position + step)
+        if point is not None:
+            there = segment.engine.margins(point.row)[falling]
+            passing = falling[(there < MARGIN) & (here <= here.min() + np.sqrt(TIED))]
+            if len(passing):
+                return passing
+    return falling
+
+
+def _which(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> int:
+    """The margin that vanishes. Several may, as when a stick disappears: which one is smallest is then a matter of
+
+    rounding, so those that are as small as the smallest one count as equal, and the order of kinds decides.
+    """
+    tied = falling[margins[falling] <= margins[falling].min() + TIED]
+    kinds = [engine.problem.margin_kind(int(j)) for j in tied]
+    return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])
