@@ -221,7 +221,7 @@ def may_be_one(problem: Problem, u: np.ndarray, p: float, point: SpecialPoint) -
     one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
     scales = problem.scales
     return one.shape != other.shape or same_vector(
-        one, other, AT_BORDER, None if scales is None else scales.joined()
+        one, other, AT_BORDER, None if scales is None else scales.vector
     )
 
 

@@ -79,6 +79,14 @@ class Provable(Protocol):
 
 
 @runtime_checkable
+class Nearing(Protocol):
+    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`."""
+
+    many: bool
+    closely: bool
+
+
+@runtime_checkable
 class Doubling(Protocol):
     """In other pieces it has cycles of twice the length."""
 
