@@ -181,6 +181,8 @@ def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> 
     replay = float(np.abs(images - curve.at(between + 2.0 * np.pi * curve.rotation)).max())
     stable = _attracts(here, curve, birth, centre)
     simulated = _simulated(here, curve, birth, centre, radius) if stable else None
+    if stable and simulated is None:  # a displacement shrank for a while, and yet the circle is left
+        stable = None
     amplitude = birth.amplitude(curve.value)
     predicted = float(np.sqrt(2.0) * amplitude)  # rms of 2 Re(r q exp(i phi)) with abs(q) = 1
     return Circle(
