@@ -21,10 +21,11 @@ _HOME = {
     "Branch": ".branches.branch",
     "Embedding": ".problems.protocol",
     "Graph": ".graph.graph",
-    "Kernels": ".problems.protocol",
+    "Kernels": ".problems.kernels",
     "MapProblem": ".problems.maps",
     "MemoryJournal": ".journal",
     "NullJournal": ".journal",
+    "ProblemDefaults": ".problems.protocol",
     "Seed": ".problems.protocol",
     "Settings": ".continuation.settings",
     "SpecialPoint": ".branches.special_point",
@@ -89,6 +90,7 @@ __all__ = [
     "MapProblem",
     "MemoryJournal",
     "NullJournal",
+    "ProblemDefaults",
     "Seed",
     "Settings",
     "SpecialPoint",
@@ -135,7 +137,8 @@ if TYPE_CHECKING:
     from .loci.following import locus
     from .loci.locus import Locus
     from .problems.algebraic import AlgebraicProblem
+    from .problems.kernels import Kernels
     from .problems.maps import MapProblem
-    from .problems.protocol import Embedding, Kernels, Seed, Symmetry
+    from .problems.protocol import Embedding, ProblemDefaults, Seed, Symmetry
     from .problems.registry import register
     from .store import load, resume, save

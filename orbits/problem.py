@@ -7,7 +7,6 @@ breaking (there a multiplier of the half map passes -1), and a classification th
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -25,11 +24,12 @@ from orbits.machines.building import build
 from orbits.machines.path import along
 from orbits.motions import Simulated
 from orbits.orbit import Orbit
-from orbits.protocol import Embedding, Symmetry
+from orbits.protocol import Answers
+from orbits.relatives import Relatives
 from orbits.words import Word
 
 
-class OrbitProblem(Simulated):
+class OrbitProblem(Simulated, Relatives, Answers):
     """Periodic orbits with a given word, against one parameter of their machine.
 
     Parameters
@@ -55,6 +55,7 @@ class OrbitProblem(Simulated):
     """
 
     spectrum = "map"
+    forced = True
 
     def __init__(
         self,
@@ -75,7 +76,7 @@ class OrbitProblem(Simulated):
         self.equations = system
         self.length, self.dimension = system.length, system.dimension
         self.twist, self.shift = system.twist, system.shift
-        self.loose, self.pinned = system.loose, system.pinned
+        self.movable = system.pinned == 2  # symmetric motions without impacts
         self.n_multipliers, self.n_margins = system.n_multipliers, system.n_margins
         self.path, self.data, self.period_shift = system.path, system.data, system.period_shift
         self.flip_kind = "symmetry-breaking" if self.twist < 0.0 else "period-doubling"
@@ -141,36 +142,7 @@ class OrbitProblem(Simulated):
         """Unknowns, shape (N,), from the nodes of the whole cycle."""
         return self.equations.reduce(nodes)
 
-    # ------------------------------------------------------------------ symmetries and larger problems
-    @cached_property
-    def symmetries(self) -> tuple[Symmetry, ...]:
-        """Images of a solution of the full word: the mirror some places on, and a doubled word's shift by its half."""
-        if self.symmetric:
-            return ()
-        found = []
-        places = self._mirror_places() if self.mirrored else 0
-        if places:
-            half = self.sibling(
-                self.word.head(2 * places), 2 * self.periods * places // self.length, symmetric=True
-            )
-            found.append(
-                Symmetry(
-                    "symmetry-breaking",
-                    lambda u: self._rotated(u, places, -1.0),
-                    lambda u: (half, half.reduce(self.expand(u))),
-                )
-            )
-        if self.word.repetitions % 2 == 0 and self.periods % 2 == 0:
-            root = self.sibling(self.word.head(len(self.word) // 2), self.periods // 2, symmetric=False)
-            found.append(
-                Symmetry(
-                    "period-doubling",
-                    lambda u: self._rotated(u, self.length // 2, 1.0),
-                    lambda u: (root, root.reduce(self.expand(u))),
-                )
-            )
-        return tuple(found)
-
+    # ------------------------------------------------------------------ larger and smaller problems
     def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
         """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
         word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u))
@@ -179,65 +151,12 @@ class OrbitProblem(Simulated):
         found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes))
         return found, found.reduce(nodes)
 
-    def _mirror_places(self) -> int:
-        """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
-        mirror, n = self.word.mirror(), self.length
-        for places in range(1, n // 2 + 1):
-            if (
-                n % (2 * places)
-                or (2 * places * self.periods) % n
-                or (2 * places * self.periods // n) % 2 == 0
-            ):
-                continue
-            if self.word.rotate(places) == mirror:
-                return places
-        return 0
-
-    def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
-        """Nodes some places on, at the same phase again, mirrored for sign = -1."""
-        whole = 2.0 * np.pi * self.periods
-        turn = whole * places / self.length
-        nodes = self.expand(u)
-        image = np.roll(nodes, -places, axis=0) * np.r_[1.0, np.full(self.model.node - 1, sign)]
-        image[: self.length - places, 0] -= turn
-        image[self.length - places :, 0] += whole - turn
-        return self.reduce(image)
-
     def sibling(
-        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+        self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> OrbitProblem:
         """The problem of another word of the same machine against the same parameter."""
         own = self.params if params is None else params
         return OrbitProblem(self.model, word, periods, self.parameter, own, symmetric, self.units)
-
-    def offspring(
-        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
-    ) -> list[Embedding]:
-        """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
-        along = np.asarray(tangent[:-1])
-        if kind == "symmetry-breaking" and self.symmetric:
-            full = self.sibling(self.word, self.periods, symmetric=False)
-            image = -along.reshape(self.length, -1)
-            image[:, 0] *= -1.0
-            direction = np.concatenate([along, image.ravel()])
-            return [Embedding(full, full.reduce(self.expand(u)), np.append(direction, tangent[-1]), kind)]
-        if kind == "period-doubling" and not self.symmetric:
-            double = self.sibling(self.word.double(), 2 * self.periods, symmetric=False)
-            nodes = self.expand(u)
-            second = nodes.copy()
-            second[:, 0] += self.shift
-            direction = np.concatenate([along, along])
-            return [
-                Embedding(
-                    double,
-                    double.reduce(np.concatenate([nodes, second])),
-                    np.append(direction, tangent[-1]),
-                    kind,
-                )
-            ]
-        if kind == "branch-point":
-            return [Embedding(self, np.array(u), np.array(tangent), kind)]
-        return []
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
@@ -309,10 +228,12 @@ class OrbitProblem(Simulated):
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
         return above("of_point")(self, kind, u, p, margin, bits)
 
-    def population(self, over: str | None = None) -> Any:
+    def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""
         over = over or self.parameter
-        return self.model.population(over, **{n: v for n, v in self.parameters.items() if n != over})
+        return self.model.population(
+            over, **{n: v for n, v in {**self.parameters, **parameters}.items() if n != over}
+        )
 
     @property
     def spelling(self) -> str:

@@ -47,6 +47,52 @@ class CycleProblem(Protocol):
     def sibling(self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Any: ...
 
 
+class Answers:
+    """What every problem of a machine's motions answers a continuation code alike.
+
+    Its unknowns are counted in units of the machine's own size, its equations are exact to roundoff and smooth between the
+    borders, so that there is nothing to learn, to doubt or to explain.
+    """
+
+    detection = ""
+    scales = None
+    scales_learned = False
+    noise = 0.0
+    movable = False
+    dimension: int
+
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        """Typical sizes of unknowns and parameter, shape (N + 1,)."""
+        return np.ones(self.dimension + 1)
+
+    def check_value(self, name: str, value: float) -> None:
+        """Refuse a value that a parameter cannot have; every value will do."""
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin to follow along a locus where margin `j` vanishes."""
+        return j
+
+    def dead_end(self, point: Any) -> str:
+        """Why no motion was found on the other side of a border; empty where the reason is not known."""
+        return ""
+
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> None:
+        """A measure at every point of a cycle: those of a motion have no order."""
+        return None
+
+    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
+        """Why a branch ends where Newton's method fails."""
+        return ""
+
+    def uncertainty(self) -> float:
+        """Relative accuracy of the equations."""
+        return 0.0
+
+    def check(self, u: np.ndarray, p: float) -> None:
+        """What is wrong with the derivatives at a solution."""
+        return None
+
+
 class Symmetry(NamedTuple):
     """An image of a solution that solves the same problem; `root` reduces a solution that is its own image."""
 

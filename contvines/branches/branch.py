@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..doors import above
+from ..problems.abilities import Provable
 from ..problems.registry import without_problem
 from .ending import Ending
 
@@ -117,7 +118,7 @@ class Branch:
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Names that `measure` knows beside the parameter's own; without a problem only ``norm``."""
-        names = getattr(self.problem, "measure_names", None) or ("norm",)
+        names = ("norm",) if self.problem is None else self.problem.measure_names
         return tuple(str(name) for name in names if name != self.parameter)
 
     def measure(self, name: str) -> np.ndarray:
@@ -162,13 +163,12 @@ class Branch:
         ValueError
             If the problem has no proofs.
         """
-        prove = getattr(self.problem, "prove_branch", None)
-        if prove is None:
+        if not isinstance(self.problem, Provable):
             raise ValueError(
                 f"{self.label}: its problem offers no proofs of branches; machines of orbits with flights in closed form do"
             )
         known = {i: special[label] for i, label in self.marks if special and label in special}
-        return prove(self.points, self.values, [i for i, _ in self.marks], within, known)
+        return self.problem.prove_branch(self.points, self.values, [i for i, _ in self.marks], within, known)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this branch in the JSON of a graph."""

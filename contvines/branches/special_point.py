@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..doors import above
+from ..problems.abilities import Provable, Resolved
 from ..problems.registry import without_problem
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
@@ -123,12 +124,11 @@ class SpecialPoint:
         """
         if self.problem is None:
             raise ValueError(without_problem(self.label))
-        own = getattr(self.problem, "eigenvectors", None)
-        if own is None:
+        if not isinstance(self.problem, Resolved):
             raise ValueError(
                 f"{self.label}: its problem tells no eigenvectors; problems made of your own equations do"
             )
-        return own(self.u, self.value, self.multipliers)
+        return self.problem.eigenvectors(self.u, self.value, self.multipliers)
 
     @property
     def orbit(self) -> Any:
@@ -156,12 +156,11 @@ class SpecialPoint:
         ValueError
             If the problem has no proofs.
         """
-        prove = getattr(self.problem, "prove", None)
-        if prove is None:
+        if not isinstance(self.problem, Provable):
             raise ValueError(
                 f"{self.label}: its problem offers no proofs; machines of orbits with flights in closed form do"
             )
-        return prove(self.kind, self.u, self.value, margin=self.margin_index, **options)
+        return self.problem.prove(self.kind, self.u, self.value, margin=self.margin_index, **options)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this point in the JSON of a graph."""

@@ -11,9 +11,12 @@ The contract, in words:
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
+
+from ..problems.abilities import Sectioned
+from ..problems.protocol import Problem
 
 
 class Section(Protocol):
@@ -27,7 +30,7 @@ class Section(Protocol):
     def step(self, x: np.ndarray) -> np.ndarray: ...
 
 
-def section_of(problem: Any, p: float) -> Section:
+def section_of(problem: Problem, p: float) -> Section:
     """The section of a problem.
 
     Raises
@@ -35,12 +38,11 @@ def section_of(problem: Any, p: float) -> Section:
     ValueError
         If its motions cannot be simulated.
     """
-    make = getattr(problem, "section", None)
-    if make is None or problem.spectrum != "map":
+    if not isinstance(problem, Sectioned) or problem.spectrum != "map":
         raise ValueError(
             f"{type(problem).__name__} has no motions that can be simulated period by period, so no circles; maps and machines have"
         )
-    return make(p)
+    return problem.section(p)
 
 
 def slopes(section: Section, x: np.ndarray, size: float) -> np.ndarray:

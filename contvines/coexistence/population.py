@@ -20,6 +20,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..problems.abilities import Populated
+
 
 class Motion(Protocol):
     """What some starts settle on; see item 3 of the contract."""
@@ -70,12 +72,10 @@ def population_of(thing: Any, over: str | None = None, **parameters: float) -> P
     """
     if hasattr(thing, "settle") and hasattr(thing, "starts"):
         return thing
-    make = getattr(thing, "population", None)
-    if make is None:
-        problem = getattr(thing, "problem", None)  # an orbit
-        make = getattr(problem(over), "population", None) if callable(problem) else None
-    if make is None:
+    if not isinstance(thing, Populated) and hasattr(thing, "problem") and callable(thing.problem):  # an orbit
+        thing = thing.problem(over)
+    if not isinstance(thing, Populated):
         raise ValueError(
             f"{type(thing).__name__} cannot be simulated from many starts: give a machine, one of its orbits, or a map"
         )
-    return make(over, **parameters)
+    return thing.population(over, **parameters)

@@ -76,13 +76,13 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
 
     from contvines.graph.measures import default_measure
     from orbits.design.references import NAMES, reference
+    from orbits.problem import OrbitProblem
 
     shown, over = y or default_measure(graph), x or graph.parameter
     problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)
-    model = getattr(problem, "model", None)
     if (
-        model is None
-        or "damping" not in getattr(model, "parameter_names", ())
+        not isinstance(problem, OrbitProblem)
+        or "damping" not in problem.model.parameter_names
         or shown not in SHOWN
         or over != graph.parameter
     ):
@@ -90,7 +90,7 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
             f"--compare {kinds[0]}: this goes with the displacement of an oscillator ({' or '.join(SHOWN)}) over the parameter; "
             f"here {shown} is drawn over {over}."
         )
-    assert problem is not None
+    model = problem.model
     values = np.linspace(graph.within[0], graph.within[1], POINTS)
     params = np.atleast_2d(problem.values(values))
     for kind in kinds:

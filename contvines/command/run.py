@@ -253,6 +253,7 @@ def _look(study: Any, target: Path) -> Any:
     from contvines.coexistence.looking import look
     from contvines.coexistence.population import population_of
     from contvines.command.compose import loose, machine
+    from contvines.problems.abilities import Populated
     from contvines.store import Store
 
     with Store.open(target, write=True) as store:
@@ -262,7 +263,7 @@ def _look(study: Any, target: Path) -> Any:
         with interruptible(
             f"the diagram is kept in {target}; the same command looks again for what it does not have"
         ):
-            if getattr(model, "population", None) is None:
+            if not isinstance(model, Populated):
                 graph.looked = True
             else:
                 look(graph, population_of(model, study.parameter, **fixed))

@@ -63,10 +63,12 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         return Bound(march, copy_with(corrector.solve, improve=improve, **sums, **functions))
     from numba import njit
 
-    from ..problems.protocol import kernels_digest
+    from ..problems.kernels import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
-    compile_ = njit(cache=True, forceinline=True, **OPTIONS)
+    compile_ = njit(
+        cache=True, **OPTIONS
+    )  # inlined by force, the loop would take half as long again to compile
     sums = {name: compile_(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = compile_(copy_with(corrector.improve, suffix, **sums))
     correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **sums, **functions))
@@ -74,7 +76,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         rule is not BY_ANGLE
     )  # a user's function may change while its loop is kept on disk: compiled in every process
     judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
-    kept = njit(cache=not own, forceinline=True, **OPTIONS)
+    kept = njit(cache=not own, **OPTIONS)
     march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
     return Bound(march, compile_(copy_with(corrector.solve, suffix, improve=improve, **sums, **functions)))
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..interrupts import HELD, OPEN
+from ..problems.protocol import Problem
 from . import corrector
 from . import march as source
 from .binding import bind
@@ -21,12 +22,6 @@ NO_ROW = np.zeros(1)
 def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) -> float:
     """Length of the parameter near p: the interval's, but an interval of silly width does not make neighbours the same."""
     return min(within[1] - within[0], max(scale, abs(p)))
-
-
-def problem_scale(problem: Any, within: tuple[float, float]) -> np.ndarray:
-    """Typical sizes of unknowns and parameter, shape (N + 1,): of a problem that has them, else 1."""
-    own = getattr(problem, "scale_within", None)
-    return np.ones(int(problem.dimension) + 1) if own is None else own(within)
 
 
 class Solved(NamedTuple):
@@ -56,7 +51,7 @@ class Engine:
     settings : Settings
     """
 
-    def __init__(self, problem: Any, within: tuple[float, float], settings: Settings) -> None:
+    def __init__(self, problem: Problem, within: tuple[float, float], settings: Settings) -> None:
         self.problem, self.settings = problem, settings
         self.lower, self.upper = float(within[0]), float(within[1])
         self.within = (self.lower, self.upper)
@@ -66,10 +61,10 @@ class Engine:
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
-        self.detection = str(getattr(problem, "detection", "") or problem.spectrum)
+        self.detection = problem.detection or problem.spectrum
         self.row_size = 2 * self.m + int(problem.n_margins)
-        self.scale, self.noise = problem_scale(problem, self.within), float(getattr(problem, "noise", 0.0))
-        scales = getattr(problem, "scales", None)
+        self.scale, self.noise = problem.scale_within(self.within), float(problem.noise)
+        scales = problem.scales
         self.rate = (
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
         )  # of one raw eigenvalue
@@ -109,9 +104,8 @@ class Engine:
         return math.sqrt(max(self.inner(a, a), 0.0))
 
     def amplitude(self, a: np.ndarray) -> float:
-        """Length of a unit vector as normal forms measure it; 1 where the metric does."""
-        own = getattr(self.problem, "amplitude", None)
-        return 1.0 if own is None else float(own(a))
+        """Length of a unit vector as normal forms measure it."""
+        return self.problem.amplitude(a)
 
     def unit(self, a: np.ndarray) -> np.ndarray:
         """The vector scaled to length 1."""

@@ -30,7 +30,7 @@ class Reach:
 
     def __init__(self, engine: Engine, start: Solved) -> None:
         self.engine, self.start = engine, start
-        self.learned = bool(getattr(engine.problem, "scales_learned", False))
+        self.learned = engine.problem.scales_learned
         # largest distances so far, each twice the one before, and the extremes of the parameter since
         self.doubled = engine.settings.escape
         self.slow = 0  # points in a row that came next to nowhere

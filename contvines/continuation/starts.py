@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..problems.abilities import Started
+from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
 
 
@@ -36,16 +38,19 @@ def check_interval(within: Any) -> tuple[float, float]:
 def problem_and_start(seed: Any, over: str | None, u: Any = None, p: Any = None) -> tuple[Any, Any, float]:
     """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``; u and p win where they are given."""
     if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
-        if over is not None and over != seed.parameter and over in getattr(seed, "parameters", {}):
-            seed = seed.against(over)
-        if over is not None and over != seed.parameter:
-            raise ValueError(f"over = {over!r}, but this problem continues in {seed.parameter!r}")
-        for name, value in (("u", u), ("p", p)):
-            if value is None and not hasattr(seed, f"{name}0"):
+        problem = complete(seed)
+        if over is not None and over != problem.parameter and over in problem.parameters:
+            problem = problem.against(over)
+        if over is not None and over != problem.parameter:
+            raise ValueError(f"over = {over!r}, but this problem continues in {problem.parameter!r}")
+        if u is None or p is None:
+            if not isinstance(problem, Started):
                 raise ValueError(
-                    f"{name} = None: a {type(seed).__name__} has no start of its own; give u and p, or an orbit instead"
+                    f"{'u' if u is None else 'p'} = None: a {type(seed).__name__} has no start of its own; give u and p, or an "
+                    "orbit instead"
                 )
-        return seed, seed.u0 if u is None else u, float(seed.p0 if p is None else p)
+            u, p = (problem.u0 if u is None else u), (problem.p0 if p is None else p)
+        return problem, u, float(p)
     if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
         raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
     if over is None:
@@ -53,6 +58,23 @@ def problem_and_start(seed: Any, over: str | None, u: Any = None, p: Any = None)
     problem = seed.problem(over)
     own_u, own_p = seed.seed(problem)
     return problem, own_u if u is None else u, float(own_p if p is None else p)
+
+
+def complete(problem: Any) -> Problem:
+    """A problem that answers all that it may be asked.
+
+    Raises
+    ------
+    TypeError
+        If it does not.
+    """
+    missing = [name for name in MEMBERS if not hasattr(problem, name)]
+    if missing:
+        raise TypeError(
+            f"{type(problem).__name__} does not say its {', '.join(missing)}; derive it from contvines.ProblemDefaults, which "
+            "answers what a problem has nothing to say on"
+        )
+    return problem
 
 
 def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = None) -> Solved:

@@ -10,6 +10,7 @@ import numpy as np
 from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
+from ..problems.protocol import Problem
 from . import march as source
 from .chunk import Chunk
 from .closing import Closing
@@ -194,7 +195,7 @@ class Point(NamedTuple):
 
 @hinting
 def trace(
-    problem: Any,
+    problem: Problem,
     within: tuple[float, float],
     u: np.ndarray | None = None,
     p: float | None = None,

@@ -51,7 +51,7 @@ def find_border(segment: Segment, real: bool) -> Border | None:
         passing = _passing(segment, root, falling)
         if 0 < len(passing) < len(falling):
             again = _located(segment, passing, real)
-            if again is not None and abs(again.position - root.position) < BEHIND[0]:
+            if again is not None and engine.margins(again.point.row)[falling].min() >= MARGIN:
                 root, falling = again, passing
     return Border(root, _which(engine, engine.margins(root.point.row), falling))
 

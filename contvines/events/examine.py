@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
+from ..problems.abilities import Nearing
 from .borders import find_border
 from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
-from .limits import before
+from .limits import one_sided
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
 from .scan import FLAT
@@ -22,6 +23,8 @@ REACHED = 1e-4  # distance from the stability boundary at which a located multip
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
+CLOSE = 1e-6  # distance from a border up to which the rest of a segment is looked at (in the metric)
+DEEPEST = 10  # parts of parts of a segment that are looked at
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -47,7 +50,9 @@ class Examiner:
         problem = engine.problem
         self.kind = engine.detection
         # of problems without scales of their own, machines, branches of this sort are not known
-        self.exchanges = getattr(problem, "scales", None) is not None and self.kind != "none"
+        self.exchanges = problem.scales is not None and self.kind != "none"
+        # of problems with many unknowns the rows tell eigenvalues only where they are asked for
+        self.many = isinstance(problem, Nearing) and problem.many
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -55,14 +60,21 @@ class Examiner:
 
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""
+        borders = self._borders(segment, real)
+        if borders and depth < DEEPEST:
+            # behind a border multipliers may come back from infinity, and what they say of both ends together is nothing
+            short = borders[0].position - CLOSE / segment.length
+            last = segment.at(short) if short > 0.0 else None
+            if last is not None or not short > 0.0:
+                part = [] if last is None else self.before(segment, short, last, real, depth + 1)
+                return part + borders
         events = self._meetings(segment)
         if events:
             # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
             short = (1.0 - BESIDE) * min(e.position for e in events)
             last = segment.at(short) if short > 0.0 else None
             if last is not None:
-                part = self.examine(Segment(self.engine, segment.a, last), real, depth)
-                return events + [e._replace(position=short * e.position) for e in part]
+                return events + self.before(segment, short, last, real, depth)
         a, b = segment.a, segment.b
         met = [e.position for e in events]
         folds = self._fold(segment, met)
@@ -90,7 +102,7 @@ class Examiner:
                     else:
                         crossings.append(self._located(root, "branch-point", k))
         outside = (after - before) @ np.array([1, 1, 2])
-        if discarded and outside != 0 and depth < 10:
+        if discarded and outside != 0 and depth < DEEPEST:
             middle = segment.at(0.5)
             if middle is not None:
                 return self.both(segment, 0.5, middle, real, depth + 1)
@@ -104,7 +116,7 @@ class Examiner:
             root = self._determinant(segment)
             if root is not None and not _near(root.position, met + [e.position for e in folds]):
                 events.append(self._located(root, "branch-point", 0))
-        return events + self._borders(segment, real)
+        return events + borders
 
     def _exchange(self, segment: Segment) -> Located | None:
         """A branch point where one multiplier leaves the circle while another enters; see :func:`balance`."""
@@ -235,7 +247,7 @@ class Examiner:
         if border is None:
             return []
         kind = self.engine.problem.margin_kind(border.index)
-        root = border.root._replace(point=before(segment, border.root))
+        root = border.root._replace(point=one_sided(segment, border.root))
         return [self._located(root, kind, border.index, Role.BORDER)]
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
@@ -251,11 +263,15 @@ class Examiner:
                 events.append(self._located(root, "user", index, role, name))
         return events
 
+    def before(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
+        """The special points of the first part of a segment."""
+        part = self.examine(Segment(self.engine, segment.a, middle), real, depth)
+        return [e._replace(position=s * e.position) for e in part]
+
     def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
         """The special points of a segment from its two parts."""
-        parts = (Segment(self.engine, segment.a, middle), Segment(self.engine, middle, segment.b))
-        first, second = (self.examine(part, real, depth) for part in parts)
-        return [e._replace(position=s * e.position) for e in first] + [
+        second = self.examine(Segment(self.engine, middle, segment.b), real, depth)
+        return self.before(segment, s, middle, real, depth) + [
             e._replace(position=s + (1.0 - s) * e.position) for e in second
         ]
 

@@ -27,7 +27,7 @@ POLES = 2  # multipliers that grow without bound, at most
 UNBOUNDED = 1e15  # stands for a multiplier that does
 
 
-def before(segment: Segment, root: Root) -> Solved:
+def one_sided(segment: Segment, root: Root) -> Solved:
     """The point at a border, its tangent and multipliers replaced by their limits where they are rounding."""
     point = root.point
     return point._replace(tangent=_tangent(segment, root), row=_row(segment, root))
@@ -91,7 +91,8 @@ def _apart(one: np.ndarray, other: np.ndarray) -> float:
     """Largest difference of two polynomials, as a part of their largest coefficient."""
     if not (np.isfinite(one).all() and np.isfinite(other).all()):
         return np.inf
-    return float(np.abs(one - other).max() / max(np.abs(one).max(), np.abs(other).max()))
+    gap = float(np.abs(one - other).max())
+    return gap / float(max(np.abs(one).max(), np.abs(other).max())) if gap > 0.0 else 0.0
 
 
 def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:

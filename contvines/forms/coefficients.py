@@ -24,6 +24,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..problems.abilities import Evaluable
+from ..problems.protocol import Problem
 from .taylor import Line, along_line
 
 NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
@@ -60,7 +62,7 @@ class Forms:
         A few digits only, for scanning.
     """
 
-    def __init__(self, problem: Any, u: np.ndarray, p: float, rough: bool = False) -> None:
+    def __init__(self, problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> None:
         self.rough = rough
         self.problem, self.u, self.p = problem, np.array(u, dtype=float), float(p)
         self.n = len(self.u)
@@ -89,7 +91,7 @@ class Forms:
         """Of J: those of an equilibrium, in the user's own unit of time."""
         return np.asarray(np.linalg.eigvals(self.J), dtype=complex)
 
-    def _jacobian(self, problem: Any, work: Any, u: np.ndarray) -> np.ndarray | None:
+    def _jacobian(self, problem: Problem, work: Any, u: np.ndarray) -> np.ndarray | None:
         residual = problem.kernels.linearise(problem.data, np.ascontiguousarray(u), self.p, work)
         if not residual < 1e300:
             return None
@@ -139,7 +141,7 @@ class Forms:
 
     def _reach(self, direction: np.ndarray) -> float:
         """Size of the largest entry of a direction where some unknown changes by its typical size."""
-        scales = getattr(self.problem, "scales", None)
+        scales = self.problem.scales
         if scales is None:
             return max(float(np.sqrt(np.mean(self.u**2))), 1.0)
         parts = np.abs(direction).reshape(-1, self.n)
@@ -152,7 +154,7 @@ class Forms:
 
         They are found with unknowns and rows in units of their scales.
         """
-        scales = getattr(self.problem, "scales", None)
+        scales = self.problem.scales
         units, rows = (1.0, 1.0) if scales is None else (scales.unknowns, scales.rows)
         left, _, right = np.linalg.svd(self.closed_by(factor) * units / np.reshape(rows, (-1, 1)))
         v, w = right[-1].conj() * units, left[:, -1].conj() / rows
@@ -160,8 +162,7 @@ class Forms:
 
     def unit(self, vector: np.ndarray) -> np.ndarray:
         """A direction with length one over the unknowns, of a cycle over its first point."""
-        own = getattr(self.problem, "amplitude", np.linalg.norm)
-        return vector / (float(own(vector)) or np.nan)
+        return vector / (self.problem.amplitude(vector) or np.nan)
 
     def chain(self, factor: float) -> np.ndarray:
         """The null vector and the next one of a double multiplier's Jordan chain, shape (N, 2)."""
@@ -177,7 +178,7 @@ class Forms:
         NaN where they cannot be evaluated.
         """
         moved = self.whole + (here if following is None else np.append(here, self._carrier @ following))
-        if hasattr(self.open, "residuals"):  # no derivatives are asked for
+        if isinstance(self.open, Evaluable):  # no derivatives are asked for
             with np.errstate(all="ignore"):
                 try:
                     return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n]

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..problems.protocol import Problem
 from .coefficients import Forms
 
 
@@ -37,7 +38,7 @@ def strong_resonance(multiplier: complex) -> str:
     return next((n for n, place in STRONG.items() if abs(angle - place) < RESONANT), "")
 
 
-def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
+def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
     """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
 
     Parameters
@@ -49,7 +50,7 @@ def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pi
         Raw multipliers there (of a flow they are computed here).
     """
     flow = problem.spectrum == "flow"
-    if getattr(problem.kernels, "matrix", None) is None:
+    if problem.kernels.matrix is None:
         return Pitch(None, None, "")
     try:
         forms = Forms(problem, u, p)
@@ -73,23 +74,18 @@ def pair_form(problem: Any, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pi
     return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
 
 
-def cubic_form(problem: Any, u: np.ndarray, p: float, flip: bool) -> float | None:
-    """The cubic coefficient at a flip or pitchfork of a problem that says how long critical vectors are; else None.
+def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float | None:
+    """The cubic coefficient at a flip or pitchfork of a problem with a spectrum and the whole Jacobian; else None.
 
     Parameters
     ----------
     problem : Problem
-        With ``amplitude``: the length of a direction that is to be one.
     u, p
         The point.
     flip : bool
         Critical multiplier -1.
     """
-    if (
-        not hasattr(problem, "amplitude")
-        or problem.spectrum == "none"
-        or getattr(problem.kernels, "matrix", None) is None
-    ):
+    if problem.spectrum == "none" or problem.kernels.matrix is None:
         return None
     factor = -1.0 if flip else (0.0 if problem.spectrum == "flow" else 1.0)
     try:

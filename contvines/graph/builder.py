@@ -19,6 +19,7 @@ from ..continuation.status import Status
 from ..events.kinds import BORDERS
 from ..events.watch import AT_BORDER, Watch
 from ..interrupts import listening, take
+from ..problems.protocol import Problem
 from .leaving import leave
 from .marking import mark, may_be_one, origin_index
 from .pending import Origin, Pending
@@ -27,7 +28,7 @@ from .run import Run
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
-def begin(run: Run, problem: Any, u: Any, p: float) -> None:
+def begin(run: Run, problem: Problem, u: Any, p: float) -> None:
     """Put the start into the queue.
 
     Raises
@@ -213,16 +214,17 @@ def tie_borders(run: Run) -> None:
         point = graph.special.get(label)
         if point is None or point.kind not in BORDERS or not point.real:
             continue
-        alike = getattr(point.problem, "same_motion", None)
         for other in list(graph.special.values()):
-            if alike is None or other is point:
+            if other is point:
                 break  # only those with an earlier label
             near = abs(other.value - point.value) <= 1e-9 * run.unit(point.value)
             if not (near and other.kind in BORDERS and other.real and other.branch != point.branch):
                 continue
             if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):
                 continue  # its branch was reached through the other one: this is the far end of a very short branch
-            if other.problem is not None and alike(point.u, point.value, other.problem, other.u):
+            if other.problem is not None and point.problem.same_motion(
+                point.u, point.value, other.problem, other.u
+            ):
                 run.merge(label, other.label)
                 run.connect(other.label, other.branch, point.branch)
                 break
@@ -242,11 +244,10 @@ def both_ways(
         return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
     def ending(half: HalfBranch) -> Ending:
-        explain = getattr(pending.problem, "explain_end", None)
-        why = None
-        if explain is not None and half.status in DEAD:
-            why = explain(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
-        return replace(Ending.of(half.status, half.end), text=why or "")
+        why = ""
+        if half.status in DEAD:
+            why = pending.problem.explain_end(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
+        return replace(Ending.of(half.status, half.end), text=why)
 
     def beginning(reason: Reason) -> Ending:
         return Ending(reason, pending.p, pending.point, pending.source)

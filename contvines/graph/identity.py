@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from typing import Any
 
 import numpy as np
 
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
+from ..problems.protocol import Problem
 
 SAME = 1e-6
 
@@ -39,7 +39,7 @@ class Register:
         for key in sorted(keys, key=repr):
             self.by_key.setdefault(key, []).append((branch, engine))
 
-    def find(self, problem: Any, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
+    def find(self, problem: Problem, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
         """The known branch on which a solution lies, or None.
 
         Where a branch passes the parameter value it is interpolated, solved there and compared.

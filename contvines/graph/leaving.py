@@ -14,6 +14,7 @@ from ..events.kinds import BORDERS
 from ..events.located import Role
 from ..forms.criticality import cubic_form
 from ..interrupts import OPEN
+from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
 from ..switching.normal_forms import criticality, crossing_speed
@@ -167,9 +168,8 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     else:
         met = [watch.symmetries[event.index]]
     symmetry = met[0].symmetry
-    root = getattr(symmetry, "root", None)
-    if root is not None:
-        problem, u = root(point.u)
+    if symmetry.root is not None:
+        problem, u = symmetry.root(point.u)
         run.queue.append(
             Pending(
                 problem,
@@ -215,8 +215,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     if branch.real:
         seeds = _seeds(run, leaving)
         if not seeds:
-            why = getattr(point.problem, "dead_end", None)
-            run.remark(point.label, why(leaving) if why is not None else "")
+            run.remark(point.label, point.problem.dead_end(leaving))
         for seed in seeds:
             persistence = bool(seed["persistence"])
             note = seed["note"] or ("persistence" if persistence else "nonsmooth fold")
@@ -285,12 +284,12 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
     record: dict[str, Any] = {
         "problems": [dict(seed.problem.describe()) for seed in seeds],
         "p": [float(seed.p) for seed in seeds],
-        "note": [str(getattr(seed, "note", "")) for seed in seeds],
-        "persistence": [bool(getattr(seed, "persistence", True)) for seed in seeds],
+        "note": [str(seed.note) for seed in seeds],
+        "persistence": [bool(seed.persistence) for seed in seeds],
     }
     for i, seed in enumerate(seeds):
         record[f"u{i}"] = np.asarray(seed.u, dtype=float)
-        if getattr(seed, "tangent", None) is not None:
+        if seed.tangent is not None:
             record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
     if known is None:
         run.journal.record(key, record)
@@ -299,9 +298,9 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
             "problem": seed.problem,
             "u": seed.u,
             "p": seed.p,
-            "tangent": getattr(seed, "tangent", None),
-            "note": str(getattr(seed, "note", "")),
-            "persistence": bool(getattr(seed, "persistence", True)),
+            "tangent": seed.tangent,
+            "note": str(seed.note),
+            "persistence": bool(seed.persistence),
         }
         for seed in seeds
     ]
@@ -321,5 +320,5 @@ def _rebuilt(record: Any) -> list[Any] | None:
 class _Same:
     """The point in its own problem."""
 
-    def __init__(self, problem: Any, u: np.ndarray, tangent: np.ndarray, kind: str) -> None:
+    def __init__(self, problem: Problem, u: np.ndarray, tangent: np.ndarray, kind: str) -> None:
         self.problem, self.u, self.tangent, self.kind = problem, u, tangent, kind

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ..problems.protocol import Problem
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -27,7 +29,10 @@ class Limits:
 
     @classmethod
     def of(
-        cls, stop: Mapping[str, Any] | None, bounds: Mapping[str, tuple[float, float]] | None, problem: Any
+        cls,
+        stop: Mapping[str, Any] | None,
+        bounds: Mapping[str, tuple[float, float]] | None,
+        problem: Problem,
     ) -> Limits:
         """From what a user gives.
 
@@ -47,8 +52,8 @@ class Limits:
         """
         functions, pairs = dict(stop or {}), {}
         for name, pair in (bounds or {}).items():
-            known = getattr(problem, "measure_names", None)
-            if known is not None and name not in known:
+            known = problem.measure_names
+            if name not in known:
                 raise ValueError(f"bounds: there is no measure {name!r}; choose from {', '.join(known)}")
             try:
                 low, high = (
@@ -67,7 +72,7 @@ class Limits:
             functions |= {f"{name} = {end:g}": (name, end) for end in (low, high) if math.isfinite(end)}
         return cls(functions, pairs)
 
-    def outside(self, problem: Any, u: np.ndarray, p: float) -> str:
+    def outside(self, problem: Problem, u: np.ndarray, p: float) -> str:
         """A sentence on the first bound beyond which a solution lies; empty if it lies within all."""
         for name, (low, high) in self.bounds.items():
             value = float(problem.measures((name,), np.atleast_2d(u), np.array([p]))[name][0])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
 from ..forms.criticality import pair_form
 from ..interrupts import OPEN
+from ..problems.protocol import Problem
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
 from .identity import same_form, same_vector
@@ -208,31 +208,30 @@ def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
     return None
 
 
-def may_be_one(problem: Any, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
+def may_be_one(problem: Problem, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
     """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
 
     Only problems of one kind tell: those that can compare motions, and others where their forms have as many entries.
     """
     if type(point.problem) is not type(problem):
         return True
-    alike = getattr(problem, "same_motion", None)
+    alike = problem.same_motion(u, p, point.problem, point.u)
     if alike is not None:
-        return bool(alike(u, p, point.problem, point.u))
+        return alike
     one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
-    scales = getattr(problem, "scales", None)
+    scales = problem.scales
     return one.shape != other.shape or same_vector(
-        one, other, AT_BORDER, None if scales is None else scales.joined()
+        one, other, AT_BORDER, None if scales is None else scales.vector
     )
 
 
 def _doubt(engine: Engine, special: SpecialPoint) -> None:
     """Carry the accuracy of the equations into that of the location, and look whether given derivatives are right here."""
-    uncertainty, check = (getattr(engine.problem, name, None) for name in ("uncertainty", "check"))
-    if uncertainty is not None:
-        special.location_error = max(
-            special.location_error, float(uncertainty()) * engine.parameter_unit(special.value)
-        )
-    wrong = None if check is None or special.kind == "end" else check(special.u, special.value)
+    problem = engine.problem
+    special.location_error = max(
+        special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
+    )
+    wrong = None if special.kind == "end" else problem.check(special.u, special.value)
     if wrong is not None:
         special.remarks = (*special.remarks, str(wrong))
         special.location_error = float("inf")

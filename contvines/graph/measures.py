@@ -16,10 +16,11 @@ def default_measure(graph: Graph) -> str:
     Motions without impacts have no velocity B there; where none of the graph has, the largest |w| is shown.
     """
     for branch in graph.branches.values():
-        names = list(getattr(branch.problem, "measure_names", ()) or ())
+        if branch.problem is None:
+            continue
+        names, wanted = list(branch.problem.measure_names), branch.problem.default_measure
         if not names:
             continue
-        wanted = getattr(branch.problem, "default_measure", None)
         others = [n for n in names if n not in ("norm", graph.parameter)]
         choice = [n for n in (wanted, "max_abs_w", *others) if n in names]
         return next((str(n) for n in choice if _shown(graph, n)), choice[0] if choice else names[0])

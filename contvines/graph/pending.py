@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
 from ..continuation.engine import Solved
+from ..problems.protocol import Problem
 
 
 class Origin(StrEnum):
@@ -47,7 +47,7 @@ class Pending:
     first_step : float or None
     """
 
-    problem: Any
+    problem: Problem
     u: np.ndarray
     p: float
     tangent: np.ndarray | None = None

@@ -15,6 +15,7 @@ from ..continuation.engine import Engine, parameter_unit
 from ..continuation.settings import Settings
 from ..events.located import Located
 from ..events.watch import Watch
+from ..problems.protocol import Problem
 from .graph import Graph, Switch
 from .identity import Register
 from .limits import NO_LIMITS, Limits
@@ -90,7 +91,7 @@ class Run:
             return engine.parameter_unit(p)
         return parameter_unit(self.graph.within, p)
 
-    def engine(self, problem: Any) -> tuple[Engine, Watch]:
+    def engine(self, problem: Problem) -> tuple[Engine, Watch]:
         """Engine and watch of a problem, made once."""
         if id(problem) not in self.engines:
             engine = Engine(problem, self.graph.within, self.settings)

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from ..continuation.binding import OPTIONS, copy_with
-from ..problems.protocol import Kernels, kernels_digest
+from ..problems.kernels import Kernels, kernels_digest
+from ..problems.protocol import Problem
 from . import kernels as source
 from . import probing
 
@@ -32,7 +33,7 @@ _interpreted: dict[tuple[Any, ...], Kernels] = {}
 _addresses: dict[tuple[Any, ...], np.ndarray] = {}
 
 
-def locus_kernels(problem: Any) -> tuple[Kernels, np.ndarray]:
+def locus_kernels(problem: Problem) -> tuple[Kernels, np.ndarray]:
     """Kernels of the loci of a problem, and the addresses of the problem's own; made once per process."""
     kernels = problem.kernels
     given = {name: getattr(kernels, name) for name in NAMES}

@@ -15,6 +15,7 @@ from ..events.kinds import kind_of
 from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..journal import NullJournal
+from ..problems.protocol import Problem
 from .chart import Chart
 from .codimension_two import find
 from .coefficients_at import coefficients
@@ -68,11 +69,7 @@ class Charting:
             (bounds, within),
             model=dict(graph.model),
             settings={**settings.to_dict(), "virtual": virtual},
-            units={
-                name: unit
-                for name, unit in getattr(graph, "units", {}).items()
-                if name in (graph.parameter, over)
-            },
+            units={name: unit for name, unit in graph.units.items() if name in (graph.parameter, over)},
         )
         self.queue: deque[tuple[Candidate, int]] = deque()
         self.numbers: dict[str, int] = {}
@@ -99,7 +96,7 @@ class Charting:
         """Queue the locus of a special point of the graph."""
         if point.problem is None:
             raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
-        value = getattr(point.problem, "parameters", {}).get(self.over)
+        value = point.problem.parameters.get(self.over)
         if value is None:
             begin(point.problem, point.kind, point.u, point.value, self.over)  # says why
             return
@@ -262,10 +259,8 @@ class Charting:
             region.attractors = self.witness(problem, region.at)
         self.chart.regions = regions
 
-    def witness(self, problem: Any, place: tuple[float, float]) -> list[dict[str, Any]]:
+    def witness(self, problem: Problem, place: tuple[float, float]) -> list[dict[str, Any]]:
         """What is stable at a place, by simulation; empty where the problem cannot be simulated."""
-        if getattr(problem, "witness", None) is None:
-            return []
         key = f"region/{place[0]!r}/{place[1]!r}"
         known = self.journal.recall(key)
         if known is None:

@@ -19,7 +19,7 @@ def coefficients(point: PlanePoint) -> dict[str, float]:
     problem's own period), "omega" its frequency, where the kind itself leaves them open.
     """
     problem, kind = point.problem, point.kind
-    if getattr(problem.kernels, "matrix", None) is None or point.margins:
+    if problem.kernels.matrix is None or point.margins:
         return {}
     try:
         forms = Forms(problem, point.u, point.value[0])

@@ -24,7 +24,7 @@ class References:
     def __init__(self, plane: Plane, locus: LocusProblem, near: References | None = None) -> None:
         problem, maps = plane.problem, plane.problem.spectrum == "map"
         self.plus: Null = plane.first.null_vectors(near=None if near is None else near.plus)
-        flips = maps and getattr(problem, "pinned", 0) != 2
+        flips = maps and not problem.movable
         before = None if near is None else near.minus
         self.minus: Null | None = plane.first.null_vectors(True, before) if flips else None
         self.reference = locus.reference

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..problems.protocol import Problem
 from .linear import Linearisation
 from .locus import Locus
 from .plane_point import PlanePoint
@@ -38,7 +39,7 @@ AMPLITUDES = (0.05, 0.02, 0.1, 0.005)  # of the doubled cycle at which its fold 
 class Candidate(NamedTuple):
     """A special point at (p, q) from which a locus may be traced; ``index`` is that of the margin at a border."""
 
-    problem: Any
+    problem: Problem
     kind: str
     u: np.ndarray
     p: float

@@ -20,6 +20,7 @@ from ..events.located import Located, Role
 from ..events.watch import Watch
 from ..interrupts import listening
 from ..journal import NullJournal
+from ..problems.protocol import Problem
 from .layout import BRANCH, MARGIN
 from .locus import Locus, Turn
 from .problem import LocusProblem
@@ -71,7 +72,7 @@ def locus(
     if point.problem is None:
         raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
     within = check_interval(within)
-    known = getattr(point.problem, "parameters", {})
+    known = point.problem.parameters
     problem = begin(
         point.problem,
         point.kind,
@@ -108,12 +109,10 @@ def locus(
     return found
 
 
-def checked_ends(problem: Any, over: str, within: tuple[float, float]) -> None:
+def checked_ends(problem: Problem, over: str, within: tuple[float, float]) -> None:
     """Refuse an interval whose ends are no sensible values of the parameter, where the problem can tell."""
-    check = getattr(problem, "check_value", None)
-    if check is not None:
-        for value in within:
-            check(over, value)
+    for value in within:
+        problem.check_value(over, value)
 
 
 def trace_locus(

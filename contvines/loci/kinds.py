@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..events.kinds import CODIMENSION_TWO
+from ..problems.protocol import Problem
 from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
 
 #: kind of a point of codimension two -> prefix of its label
@@ -22,7 +23,7 @@ CONDITIONS = {
 }
 
 
-def condition(problem: Any, kind: str) -> int:
+def condition(problem: Problem, kind: str) -> int:
     """What is followed for a special point of this kind, seen in this problem.
 
     A symmetry breaking or period doubling is a multiplier -1 where the problem says so (``flip_kind``), else a branch point
@@ -52,7 +53,7 @@ class Look(NamedTuple):
     value: float = 0.0
 
 
-def looks(problem: Any, condition: int) -> list[Look]:
+def looks(problem: Problem, condition: int) -> list[Look]:
     """What is looked for along a locus with this condition; borders are found by the margins themselves."""
     spectrum, m = problem.spectrum, int(problem.n_multipliers)
     half = problem.flip_kind == "symmetry-breaking"

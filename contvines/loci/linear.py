@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..interrupts import HELD
+from ..problems.protocol import Problem
 
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
 
@@ -29,7 +30,7 @@ class Linearisation:
         With the optional kernels of the protocol.
     """
 
-    def __init__(self, problem: Any) -> None:
+    def __init__(self, problem: Problem) -> None:
         self.problem, self.kernels, self.data = problem, problem.kernels, problem.data
         self.size = int(problem.dimension)
         self.work, self.other = problem.workspace(), problem.workspace()

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..problems.protocol import ProblemDefaults
+from ..problems.protocol import Problem, ProblemDefaults
 from .binding import locus_kernels
 from .kinds import condition
 from .layout import BRANCH, FLIP, MARGIN, PAIR
@@ -75,7 +75,7 @@ class LocusProblem(ProblemDefaults):
 
     def __init__(
         self,
-        problem: Any,
+        problem: Problem,
         kind: str,
         over: str,
         index: int = 0,
@@ -85,7 +85,7 @@ class LocusProblem(ProblemDefaults):
         masked: Sequence[int] = (),
     ) -> None:
         kernels = problem.kernels
-        names = list(getattr(problem, "parameters", {}))
+        names = list(problem.parameters)
         if over == problem.parameter:
             raise ValueError(
                 f"over = {over!r} is the parameter of the diagram itself; name another one: "
@@ -95,13 +95,13 @@ class LocusProblem(ProblemDefaults):
             raise ValueError(
                 f"over = {over!r}: the problem has no such parameter; it has {', '.join(names) or 'none by name'}"
             )
-        if getattr(kernels, "transpose", None) is None:
+        if kernels.transpose is None:
             raise ValueError(
                 f"{type(problem).__name__} has no kernels for loci (assign, flip, transpose, column)"
             )
         self.base, self.kind, self.over, self.index = problem, kind, over, int(index)
         self.condition = condition(problem, kind)
-        if self.condition == FLIP and getattr(problem, "pinned", 0) == 2:
+        if self.condition == FLIP and problem.movable:
             raise ValueError(
                 "symmetric motions without impacts may be moved as a whole; their symmetry breaking is not isolated and "
                 "has no locus"
@@ -158,9 +158,6 @@ class LocusProblem(ProblemDefaults):
         column = problem.kernels.column
         tests = self.dimension - n
         scales = np.ones(n + 3)
-        own = getattr(problem, "scale", None)
-        if own is not None:
-            scales[:n] = own
         return Work(
             residual=np.zeros(self.dimension),
             base=self._place(base),
@@ -190,9 +187,8 @@ class LocusProblem(ProblemDefaults):
         scale = np.ones(self.dimension + 1)
         if self.compiled:
             return scale
-        own = getattr(self.base, "scale_within", None)
-        if own is not None and np.isfinite(self.bounds).all():
-            typical = own(self.bounds)
+        if np.isfinite(self.bounds).all():
+            typical = self.base.scale_within(self.bounds)
             largest = float(typical[:-1].max())
             # an unknown that is zero all along the branch has shown no size of its own
             scale[: self.size] = np.where(typical[:-1] < UNSEEN * largest, largest, typical[:-1])

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
+from ..problems.protocol import Problem
 from .kinds import condition
 from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
 from .linear import Linearisation
@@ -19,7 +18,7 @@ ZERO = 1e-9  # margins below this at a border vanish there, all of them all alon
 
 
 def begin(
-    problem: Any,
+    problem: Problem,
     kind: str,
     u: np.ndarray,
     p: float,
@@ -44,9 +43,8 @@ def begin(
         Of the first parameter.
     """
     wanted = condition(problem, kind)
-    smooth = getattr(problem, "smooth_margin", None)
-    if wanted == MARGIN and smooth is not None:
-        index = smooth(index)
+    if wanted == MARGIN:
+        index = problem.smooth_margin(index)
     locus = LocusProblem(problem, kind, over, index, bounds)
     line = Linearisation(problem)
     line.at(u, p)

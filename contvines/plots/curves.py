@@ -140,9 +140,8 @@ def _columns(branch: Any, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray
     """A measure of some solutions, shape (m, 1), or (m, n) where each point of an n-cycle has its own."""
     if name == branch.parameter:
         return np.asarray(p, dtype=float)[:, None]
-    each = getattr(branch.problem, "at_each_point", None)
-    if each is not None:
-        found = each(name, u, p)
+    if branch.problem is not None:
+        found = branch.problem.at_each_point(name, u, p)
         if found is not None:
             return np.asarray(found, dtype=float)
     return np.asarray(branch.measure_of(name, u, p), dtype=float)[:, None]

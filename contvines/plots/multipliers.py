@@ -52,7 +52,7 @@ def plot_multipliers(
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
     if axes is not None and len(np.atleast_1d(np.asarray(axes, dtype=object))) != 2:
         raise ValueError("axes: the multipliers need two axes, for example plt.subplots(1, 2)[1]")
-    flow = getattr(branch.problem, "spectrum", "map") == "flow"
+    flow = branch.problem is not None and branch.problem.spectrum == "flow"
     with styled(style):
         if axes is None:
             size = figsize or (8.6, 4.0)

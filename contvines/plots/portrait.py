@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..problems.abilities import Drawable
 from .figures import new_axes, styled
 
 if TYPE_CHECKING:
@@ -25,9 +26,10 @@ def plot_portrait(
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
     """
-    draw = getattr(orbit, "plot", None)
-    if callable(draw):
-        drawn: Any = draw(axes=axes, style=style) if axes is not None or style is not None else draw()
+    if isinstance(orbit, Drawable):
+        drawn: Any = (
+            orbit.plot(axes=axes, style=style) if axes is not None or style is not None else orbit.plot()
+        )
         return drawn if hasattr(drawn, "savefig") else drawn.get_figure()
     points = np.atleast_2d(np.asarray(getattr(orbit, "points", getattr(orbit, "u", orbit)), float))
     with styled(style):

@@ -7,7 +7,7 @@ import numpy as np
 
 def angles_of(branch: Any) -> tuple[str, ...]:
     """Names of the measures of a branch that are angles (radians, modulo 2 pi), as its problem says."""
-    return tuple(getattr(branch.problem, "angles", ()))
+    return () if branch.problem is None else tuple(branch.problem.angles)
 
 
 def broken(xs: np.ndarray, ys: np.ndarray, turning: tuple[bool, bool]) -> tuple[np.ndarray, np.ndarray]:

@@ -14,6 +14,7 @@ from .breaks import find_break
 from .checks import disagreement
 from .derivatives import Differentiated
 from .functions import NotEvaluable
+from .nearness import side
 from .parameters import ParameterSet
 from .pieces import Pieces
 from .protocol import ProblemDefaults
@@ -36,6 +37,12 @@ class CallableProblem(ProblemDefaults):
         Scale of each unknown, as far as the user has given it.
     scales : Scales or None
         None until they have been learned.
+    reference
+        A matrix relative to which eigenvalues are watched for branch points where there is no spectrum.
+    many : bool
+        Whether they are watched only where a cheaper number asks for it; see :mod:`.nearness`.
+    closely : bool
+        Whether they are just now.
     trouble : str
         Why the equations could not be evaluated the last time that happened.
     """
@@ -45,8 +52,11 @@ class CallableProblem(ProblemDefaults):
     u0: np.ndarray
     given_scale: np.ndarray | None = None
     scales: Scales | None = None
-    reference: np.ndarray | None = None
+    reference: Any = None
+    many = False
+    closely = False
     trouble = ""
+    _side: tuple[Any, np.ndarray] | None = None
 
     given: dict[str, Any]
     pieces: Pieces
@@ -129,7 +139,21 @@ class CallableProblem(ProblemDefaults):
         scales = self.scales
         if scales is None:
             scales = self.scales = above("learn")(self, within, self.given_scale)
-        return scales.joined()
+        return scales.vector
+
+    def sizes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Typical sizes of equations and unknowns, 1 as long as they are not known."""
+        scales = self.scales
+        if scales is None:
+            return np.ones(self.dimension), np.ones(self.dimension)
+        return scales.rows, scales.unknowns
+
+    @property
+    def side(self) -> np.ndarray:
+        """The right-hand side that is watched, shape (N + 1,)."""
+        if self._side is None or self._side[0] is not self.scales:
+            self._side = self.scales, side(self.sizes()[0])
+        return self._side[1]
 
     def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown or the parameter changes by its scale."""

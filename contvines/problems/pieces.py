@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from .abilities import Doubling
 from .functions import NotEvaluable, UserFunction
 from .parameters import ParameterSet
 from .protocol import Seed
@@ -125,10 +126,9 @@ class Pieces:
         """
         j = point.margin_index
         seeds = []
-        doubled = getattr(problem, "doubled_with", None)
         candidates = [(problem.with_pieces(self.turned(j)), point.u, False)]
-        if doubled is not None:
-            candidates.append((doubled(self.turned(j, 2)), np.tile(point.u, 2), True))
+        if isinstance(problem, Doubling):
+            candidates.append((problem.doubled_with(self.turned(j, 2)), np.tile(point.u, 2), True))
         for other, u, flip in candidates:
             tangent = _inward(other, u, point.value, j)
             if tangent is None:

@@ -36,66 +36,34 @@ The contract, in words:
 5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
    vector which are the same for solutions that are one and the same thing. ``root(u, p)`` returns the smaller problem
    and its unknowns for a solution that only repeats a shorter one (a cycle run through twice), else None.
+   ``same_motion(u, p, other, v)`` tells whether a solution of another problem is this one where ``canonical`` cannot (None:
+   neither can it).
 6. ``offspring`` hands out the larger problem in which a special point is a branch point, ``beyond`` the solutions
-   on the other side of a border.
+   on the other side of a border; where there are none, ``dead_end`` says why.
+7. ``parameters`` are all parameters by name, and ``against`` hands out the problem against another one. ``check_value``
+   refuses a value that a parameter cannot have, with a ValueError.
+8. ``scale_within`` returns typical sizes of unknowns and parameter, ``amplitude`` the length of a direction of the unknowns
+   as normal forms measure it. Equations without a scale of their own (``scales``, learned or given) have residuals of order 1.
+9. ``movable`` solutions are not isolated: they may be shifted as a whole. ``smooth_margin`` names the margin to follow along
+   a locus where that of a border jumps.
+10. ``uncertainty`` is the relative accuracy of the equations; ``check`` a sentence on derivatives that disagree with them;
+   ``explain_end`` one on why Newton's method fails at the end of a branch. ``at_each_point`` has a measure at each point of a
+   cycle, shape (m, n), or None.
 
-Satisfied by structure: nothing has to be imported or inherited. :class:`ProblemDefaults` is a convenience.
+Satisfied by structure: nothing has to be imported or inherited; :class:`ProblemDefaults` answers what a problem has nothing to
+say on. What only some problems can is in :mod:`contvines.problems.abilities`.
 """
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Kernels:
-    """The functions of a problem (see the contract above).
-
-    Parameters
-    ----------
-    linearise, bordered, inspect : callable
-        All three compiled by numba in nopython mode, or all three plain Python.
-    compiled : bool
-        Whether they are compiled.
-    digest : str
-        Identifies their sources, the files they call included; part of the name under which the compiled
-        continuation loop is cached on disk. Empty: taken from the files that define the three functions.
-    assign, flip, transpose, matrix : callable, optional
-    column : int
-        For loci against a second parameter; see the contract.
-    """
-
-    linearise: Callable[..., float]
-    bordered: Callable[..., float]
-    inspect: Callable[..., None]
-    compiled: bool = False
-    digest: str = ""
-    assign: Callable[..., None] | None = None
-    flip: Callable[..., None] | None = None
-    transpose: Callable[..., None] | None = None
-    column: int = -1
-    matrix: Callable[..., np.ndarray] | None = None
-
-
-def kernels_digest(kernels: Any) -> str:
-    """A short digest of the sources of some kernels: their own ``digest``, else of the files that define them."""
-    if getattr(kernels, "digest", ""):
-        return str(kernels.digest)
-    digest = hashlib.blake2b(digest_size=8)
-    for kernel in (kernels.linearise, kernels.bordered, kernels.inspect):
-        code = getattr(kernel, "py_func", kernel).__code__
-        digest.update(f"{code.co_filename}:{code.co_name}".encode())
-        try:
-            with open(code.co_filename, "rb") as source:
-                digest.update(source.read())
-        except OSError:
-            digest.update(code.co_code)
-    return digest.hexdigest()
+from .kernels import Kernels as Kernels
+from .scales import Scales
 
 
 @dataclass(frozen=True)
@@ -158,41 +126,83 @@ class Seed:
 class Problem(Protocol):
     """The protocol; see the contract at the top of this module."""
 
-    dimension: int
-    parameter: str
-    spectrum: str
-    flip_kind: str
-    n_multipliers: int
-    n_margins: int
-    kernels: Any
-    data: Any
-    period_shift: np.ndarray | None
-    symmetries: Sequence[Any]
-    measure_names: Sequence[str]
-
+    # the equations
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def parameter(self) -> str: ...
+    @property
+    def parameters(self) -> Mapping[str, float]: ...
+    @property
+    def kernels(self) -> Any: ...
+    @property
+    def data(self) -> Any: ...
     def workspace(self) -> Any: ...
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Any: ...
+    def check_value(self, name: str, value: float) -> None: ...
 
-    def margin_kind(self, j: int) -> str: ...
+    # sizes
+    @property
+    def scales(self) -> Scales | None: ...
+    @property
+    def scales_learned(self) -> bool: ...
+    @property
+    def noise(self) -> float: ...
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray: ...
+    def amplitude(self, direction: np.ndarray) -> float: ...
 
+    # spectrum and margins
+    @property
+    def spectrum(self) -> str: ...
+    @property
+    def detection(self) -> str: ...
+    @property
+    def flip_kind(self) -> str: ...
+    @property
+    def movable(self) -> bool: ...
+    @property
+    def n_multipliers(self) -> int: ...
+    @property
+    def n_margins(self) -> int: ...
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray: ...
+    def margin_kind(self, j: int) -> str: ...
+    def smooth_margin(self, j: int) -> int: ...
 
+    # what is one solution, and what it is part of
+    @property
+    def period_shift(self) -> np.ndarray | None: ...
+    @property
+    def symmetries(self) -> Sequence[Any]: ...
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]: ...
+    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool | None: ...
+    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None: ...
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> Sequence[Any]: ...
-
     def beyond(self, point: Any) -> Sequence[Any]: ...
+    def dead_end(self, point: Any) -> str: ...
 
-    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]: ...
-
+    # for people
+    @property
+    def measure_names(self) -> Sequence[str]: ...
+    @property
+    def default_measure(self) -> str: ...
+    @property
+    def angles(self) -> Sequence[str]: ...
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]: ...
-
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None: ...
     def describe(self) -> dict[str, Any]: ...
-
     def orbit(self, u: np.ndarray, p: float) -> Any: ...
+    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str: ...
+    def uncertainty(self) -> float: ...
+    def check(self, u: np.ndarray, p: float) -> str | None: ...
 
+    # by other means
     def replay(self, u: np.ndarray, p: float) -> float | None: ...
+    def witness(self, p: float) -> list[dict[str, Any]]: ...
 
-    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None: ...
+
+MEMBERS = tuple(name for name in vars(Problem) if not name.startswith("_"))
 
 
 @dataclass(frozen=True)
@@ -205,20 +215,47 @@ class Solution:
 
 
 class ProblemDefaults:
-    """Answers of a problem without symmetries, margins and larger problems."""
+    """Answers of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1."""
 
     parameter = "p"
     spectrum = "none"
     detection = ""
     flip_kind = "period-doubling"
+    movable = False
     n_multipliers = 0
     n_margins = 0
     dimension = 0
     period_shift: np.ndarray | None = None
     symmetries: tuple[Symmetry, ...] = ()
+    scales: Scales | None = None
+    scales_learned = False
+    noise = 0.0
+    default_measure = ""
+    angles: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        return {}
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Any:
+        raise ValueError(
+            f"{parameter} cannot vary: a {type(self).__name__} has the one parameter {self.parameter!r}"
+        )
+
+    def check_value(self, name: str, value: float) -> None:
+        """Every value will do."""
+
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        return np.ones(self.dimension + 1)
+
+    def amplitude(self, direction: np.ndarray) -> float:
+        return float(np.linalg.norm(direction[: self.dimension]))
 
     def margin_kind(self, j: int) -> str:
         raise IndexError(f"this problem has no margins, so there is no margin {j}")
+
+    def smooth_margin(self, j: int) -> int:
+        return j
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         return np.asarray(spectrum, dtype=complex)
@@ -231,8 +268,17 @@ class ProblemDefaults:
     def beyond(self, point: Any) -> list[Seed]:
         return []
 
+    def dead_end(self, point: Any) -> str:
+        return ""
+
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
         return (type(self).__name__, self.dimension), np.asarray(u, dtype=float)
+
+    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool | None:
+        return None
+
+    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None:
+        return None
 
     @property
     def measure_names(self) -> tuple[str, ...]:
@@ -250,14 +296,26 @@ class ProblemDefaults:
                 raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
         return result
 
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
+        return None
+
     def describe(self) -> dict[str, Any]:
         return {"name": type(self).__name__, "factory": None}
 
     def orbit(self, u: np.ndarray, p: float) -> Any:
         return Solution(self.parameter, float(p), np.array(u))
 
+    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
+        return ""
+
+    def uncertainty(self) -> float:
+        return 0.0
+
+    def check(self, u: np.ndarray, p: float) -> str | None:
+        return None
+
     def replay(self, u: np.ndarray, p: float) -> float | None:
         return None
 
-    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None:
-        return None
+    def witness(self, p: float) -> list[dict[str, Any]]:
+        return []

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .functions import NotEvaluable
+from .scales import Scales
 
 
 class MapSection:
@@ -77,6 +78,7 @@ class SimulatedFlow:
     node: int
     u0: np.ndarray
     residuals: Any
+    scales: Scales | None
 
     def witness(self, p: float, starts: int = 12) -> list[dict[str, Any]]:
         """What starts round u0 settle on: equilibria, each once, oscillations, or nothing within reach; none without a flow.
@@ -86,7 +88,7 @@ class SimulatedFlow:
         if self.spectrum != "flow" or self.node > LARGEST or self.node != len(self.u0):
             return []
         middle = np.asarray(self.u0, dtype=float)
-        scales = getattr(self, "scales", None)
+        scales = self.scales
         size = np.maximum(np.abs(middle), 1.0 if scales is None else scales.unknowns)
         generator = np.random.default_rng(7)
         found: list[dict[str, Any]] = []

@@ -9,6 +9,7 @@ import numpy as np
 from ..graph.shortening import short_word
 from ..plots.chart import COLORS
 from ..plots.style import MARKS, PLAIN, axis_label
+from ..problems.abilities import Animated
 from .numbers import plain_label, rounded, shortened
 
 if TYPE_CHECKING:
@@ -123,5 +124,4 @@ def _motions(locus: Locus) -> dict[str, Any]:
 
 
 def _scene(orbit: Any) -> dict[str, Any] | None:
-    draw = getattr(orbit, "scene", None)
-    return None if draw is None else rounded(draw(SAMPLES))
+    return rounded(orbit.scene(SAMPLES)) if isinstance(orbit, Animated) else None

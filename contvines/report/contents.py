@@ -10,6 +10,7 @@ from ..graph.measures import default_measure
 from ..graph.proving import mark, told
 from ..graph.shortening import short_word
 from ..plots.style import MARKS, PLAIN, axis_label
+from ..problems.abilities import Animated
 from .numbers import plain_label, rounded, shortened
 
 if TYPE_CHECKING:
@@ -138,10 +139,7 @@ def _orbits(graph: Graph) -> dict[str, Any]:
 
 
 def _scene(orbit: Any, samples: int) -> dict[str, Any] | None:
-    draw = getattr(orbit, "scene", None)
-    if draw is None:
-        return None
-    return rounded(draw(samples))
+    return rounded(orbit.scene(samples)) if isinstance(orbit, Animated) else None
 
 
 def _pairs(values: Any) -> list[list[float]]:

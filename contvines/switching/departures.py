@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
+from ..problems.protocol import Problem
 
 KERNEL = 4  # null vectors that are followed at most
 EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
@@ -41,7 +41,7 @@ class Departure:
         The solutions are a continuous family, moved into one another by a continuous symmetry: none of them is isolated.
     """
 
-    problem: Any
+    problem: Problem
     origin: Solved
     ahead: Solved
     back: Solved | None

@@ -1,41 +1,58 @@
-"""One orbit, one form: modulo rotation of the word, whole forcing periods, the mirror image and repetition."""
+"""One orbit, one form: modulo rotation of the word, whole forcing periods, the mirror image and repetition.
+
+Nodes are those of a cycle, shape (l, n): the phase and the states at each event, of a self-excited machine (``forced`` False) the
+duration before it and the states.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 
-from orbits.words import Word
+from orbits.words.cyclic import CyclicWord
 
-SAME = 1e-7  # nodes closer than this are one node
+SAME = 1e-7  # nodes closer than this are one node, unless the caller knows the size of the machine better
+
+AnyWord = TypeVar("AnyWord", bound=CyclicWord)
 
 
-def root_orbit(word: Word, periods: int, nodes: np.ndarray) -> tuple[Word, int, np.ndarray]:
+def size_of_one(nodes: np.ndarray) -> float:
+    """Distance below which nodes (L, n + 1) are one, of a machine whose states have any size."""
+    return SAME * (1.0 + float(np.abs(nodes[:, 1:]).max()))
+
+
+def root_orbit(
+    word: AnyWord, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SAME
+) -> tuple[AnyWord, int, np.ndarray]:
     """The shortest orbit of which this one is a repetition: its word, periods and nodes (l, n)."""
-    for times in range(min(word.repetitions, periods), 1, -1):
-        if word.repetitions % times or periods % times:
+    most = min(word.repetitions, periods) if forced else word.repetitions
+    for times in range(most, 1, -1):
+        if word.repetitions % times or (forced and periods % times):
             continue
         length = len(word) // times
-        step = 2.0 * np.pi * (periods // times)
         shifted = nodes[length:].copy()
-        shifted[:, 0] -= step
-        if np.max(np.abs(shifted - nodes[:-length])) < SAME:
-            return word.head(length), periods // times, nodes[:length]
+        if forced:
+            shifted[:, 0] -= 2.0 * np.pi * (periods // times)
+        if np.max(np.abs(shifted - nodes[:-length])) < same:
+            return word.head(length), periods // times if forced else periods, nodes[:length]
     return word, periods, nodes
 
 
-def is_symmetric(word: Word, periods: int, nodes: np.ndarray, tolerance: float = SAME) -> bool:
+def is_symmetric(
+    word: CyclicWord, periods: int, nodes: np.ndarray, same: float = SAME, *, forced: bool = True
+) -> bool:
     """Whether the orbit equals its mirror image after half its period."""
     if not len(word):
         return True
-    if not (word.mirror_symmetric_halves and periods % 2 == 1):
+    if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)):
         return False
     half = len(word) // 2
     image = -nodes[:half]
-    image[:, 0] = nodes[:half, 0] + np.pi * periods
-    return bool(np.max(np.abs(image - nodes[half:])) < tolerance)
+    image[:, 0] = nodes[:half, 0] + (np.pi * periods if forced else 0.0)
+    return bool(np.max(np.abs(image - nodes[half:])) < same)
 
 
 @cache
@@ -45,20 +62,31 @@ def _direction(size: int) -> np.ndarray:
 
 
 def canonical(
-    word: Word, periods: int, nodes: np.ndarray, mirror: bool = True
+    word: CyclicWord,
+    periods: int,
+    nodes: np.ndarray,
+    mirror: bool = True,
+    *,
+    forced: bool = True,
+    same: float = SAME,
 ) -> tuple[Hashable, np.ndarray]:
     """Key (word and periods) and vector of the orbit's canonical form.
 
-    The vector lists cos Psi, sin Psi and the other unknowns of each node, in that one of the rotations (and mirror
-    images, where the machine has them) with the canonical word whose projection on a fixed direction is largest.
+    The vector lists cosine and sine of the phase (or the duration) and the other unknowns of each node, in that one of the rotations
+    (and mirror images, where the machine has them) with the canonical word whose projection on a fixed direction is largest.
     """
-    word, periods, nodes = root_orbit(word, periods, nodes)
+    word, periods, nodes = root_orbit(word, periods, nodes, forced=forced, same=same)
     target = word.canonical(mirror)
-    flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
+    image: float | np.ndarray = -1.0  # half a forcing period on cosine and sine change their signs, too
+    if forced:
+        flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
+    else:
+        flat, image = nodes, np.r_[1.0, np.full(nodes.shape[1] - 1, -1.0)]
     direction = _direction(flat.size)
     best, best_score = flat.ravel(), -np.inf
     for mirrored, place in word.readings(mirror):
-        vector = (-1.0 if mirrored else 1.0) * np.roll(flat, -place, axis=0).ravel()
+        turned = np.roll(flat, -place, axis=0)
+        vector = (image * turned if mirrored else turned).ravel()
         score = float(direction @ vector)
         if score > best_score + 1e-12:
             best, best_score = vector, score

@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from orbits.machines.base import Model
 from orbits.machines.path import along
+
+
+class RestKernels(NamedTuple):
+    """What a continuation and `newton` call; a state without events has no loci, so that what they need is not there."""
+
+    linearise: Any
+    bordered: Any
+    inspect: Any
+    newton: Any
+    examine: Any
+    compiled: bool = False
+    digest: str = "stuck"
+    assign: None = None
+    flip: None = None
+    transpose: None = None
+    column: int = -1
+    matrix: None = None
 
 
 class RestEquations:
@@ -30,15 +46,7 @@ class RestEquations:
     @property
     def kernels(self) -> Any:
         """In plain Python: three equations need no compiler."""
-        return SimpleNamespace(
-            linearise=_linearise,
-            bordered=_bordered,
-            inspect=_inspect,
-            newton=_newton,
-            examine=_examine,
-            compiled=False,
-            digest="stuck",
-        )
+        return KERNELS
 
     def workspace(self) -> tuple[np.ndarray, ...]:
         """Residual, Jacobian and derivative with respect to the parameter."""
@@ -127,3 +135,6 @@ def _examine(data: RestEquations, u: np.ndarray, p: float, work: tuple, row: np.
     residual = _linearise(data, u, p, work)
     _inspect(data, u, p, work, row)
     return residual
+
+
+KERNELS = RestKernels(_linearise, _bordered, _inspect, _newton, _examine)

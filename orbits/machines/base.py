@@ -275,7 +275,8 @@ class Model:
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
         """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.
 
-        Powers of two, so that nothing is rounded; 1 where the machine's equations have no unit to choose.
+        They are exactly as large as the machine: whatever is compared with a number is then the same in every unit, but for
+        rounding. 1 where the machine's equations have no unit to choose.
         """
         return 1.0, 1.0
 

@@ -85,8 +85,10 @@ def follow(
         raise SimulationError(
             f"the motion of {model.name!r} left the range of numbers: give parameters and a start of moderate size"
         )
-    if begin[MODE] == 0.0 and begin[RATE] == 0.0 and model.frictionless(params):
-        begin[MODE] = 1.0  # without friction nothing sticks, not even at the instant at which nothing pushes
+    if begin[MODE] == 0.0 and begin[W] not in engine.walls(params) and model.frictionless(params):
+        begin[MODE] = (
+            1.0  # off the walls nothing rests without friction, not even at the instant at which nothing pushes
+        )
     return Trajectory(model, params, engine, begin, state, codes, modes, rows, status)
 
 

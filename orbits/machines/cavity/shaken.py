@@ -21,7 +21,7 @@ class Shaken(Model):
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
         left, right = (float(wall) for wall in self.walls(params))
         sizes = min(left, -right), float(self.column(params, "frequency"))  # a far wall may be out of reach
-        length, rate = (2.0 ** round(math.log2(size)) if 0.0 < size < math.inf else 1.0 for size in sizes)
+        length, rate = (size if 0.0 < size < math.inf else 1.0 for size in sizes)
         return length, rate
 
     @classmethod

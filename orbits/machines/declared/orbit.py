@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
 from orbits.cycles.margins import Margin
 from orbits.doors import above
-from orbits.machines.declared import identity
 from orbits.machines.declared.deviation import deviation
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import margin_name, per_node
@@ -71,7 +71,8 @@ class DeclaredOrbit:
     @cached_property
     def symmetric(self) -> bool:
         """Whether the orbit equals its mirror image after half its period."""
-        return identity.is_symmetric(self.word, self.periods, self.nodes, self.machine.forced)
+        same, forced = size_of_one(self.nodes), self.machine.forced
+        return len(self.word) > 0 and is_symmetric(self.word, self.periods, self.nodes, same, forced=forced)
 
     @cached_property
     def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
@@ -146,7 +147,8 @@ class DeclaredOrbit:
 
     def root(self) -> DeclaredOrbit:
         """The shortest orbit of which this one is a repetition."""
-        return self._with(*identity.root(self.word, self.periods, self.nodes, self.machine.forced))
+        same, forced = size_of_one(self.nodes), self.machine.forced
+        return self._with(*root_orbit(self.word, self.periods, self.nodes, forced=forced, same=same))
 
     def repeat(self, times: int) -> DeclaredOrbit:
         """The same orbit, written `times` times."""

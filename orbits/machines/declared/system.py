@@ -10,9 +10,9 @@ import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
+from orbits.cycles.identity import canonical, size_of_one
 from orbits.machines.declared import flights, loci
 from orbits.machines.declared.engine import variables_of
-from orbits.machines.declared.identity import canonical
 from orbits.machines.declared.machine import Machine
 from orbits.machines.declared.margins import fill_margins, per_node
 from orbits.words.of_pages import PageWord
@@ -110,6 +110,7 @@ class DeclaredSystem:
         self.machine, self.word, self.periods = machine, word, int(periods)
         self.parameter, self.params = parameter, np.array(params, dtype=float)
         self.symmetric, self.forced = bool(symmetric), machine.forced
+        self.mirrored = word.alphabet.mirror is not None
         self.index = machine.parameter_names.index(parameter)
         self.size, self.contacts = machine.size, len(machine.contacts)
         whole = max(1, len(word))
@@ -271,13 +272,12 @@ class DeclaredSystem:
         return np.array(nodes[: self.length], dtype=float, order="C").ravel()
 
     # ------------------------------------------------------------------ identity and other words
-    def sibling(
-        self, word: PageWord, periods: int, symmetric: bool, params: np.ndarray | None = None
-    ) -> Self:
+    def sibling(self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Self:
         """The same for another word of the machine, against the same parameter."""
         given = self.params if params is None else params
         return type(self)(self.machine, word, periods, self.parameter, given, symmetric)
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
         """Key and vector that are equal for one orbit in all its descriptions."""
-        return canonical(self.word, self.periods, self.expand(u), self.forced)
+        nodes = self.expand(u)
+        return canonical(self.word, self.periods, nodes, forced=self.forced, same=size_of_one(nodes))

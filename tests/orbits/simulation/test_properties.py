@@ -41,6 +41,9 @@ amplitudes = st.one_of(st.floats(0.01, 20.0), st.floats(1e-4, 0.3))
 @example(
     Absorber(restitution=1.0, friction=0.0, gravity=1.0), {"phase": 0.0, "w": 0.0, "w_rate": 0.0}, 1.0
 )  # at rest at the very instant at which nothing pushes
+@example(
+    Absorber(restitution=1.0, friction=0.0, gravity=1.0), {"phase": 0.0, "w": -1.0, "w_rate": 0.0}, 1.0
+)  # ... and at the wall against which it is pushed next
 def test_every_run_is_a_motion(machine, start, amplitude):
     run = simulate(machine, start, periods=25, events=12000, amplitude=amplitude)
     assert np.all(np.abs(run.rows[:, 2]) <= 1.0)

@@ -1,0 +1,93 @@
+"""What some problems can beside the protocol, each a small protocol of its own; ``isinstance`` tells whether a problem can."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+
+@runtime_checkable
+class Started(Protocol):
+    """Has a start of its own: unknowns and the value of the parameter."""
+
+    @property
+    def u0(self) -> np.ndarray: ...
+    @property
+    def p0(self) -> float: ...
+
+
+@runtime_checkable
+class Evaluable(Protocol):
+    """Its equations can be evaluated without their derivatives."""
+
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+@runtime_checkable
+class Sectioned(Protocol):
+    """Its motions can be simulated period by period; see :mod:`contvines.circles.section`."""
+
+    def section(self, p: float) -> Any: ...
+
+
+@runtime_checkable
+class Populated(Protocol):
+    """Many starts can be simulated; see :mod:`contvines.coexistence.population`."""
+
+    def population(self, over: str | None = None, **parameters: Any) -> Any: ...
+
+
+@runtime_checkable
+class Resolved(Protocol):
+    """Tells the eigenvectors that belong to multipliers, as columns."""
+
+    def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray: ...
+
+
+@runtime_checkable
+class Drawable(Protocol):
+    """Of what ``orbit`` returned: draws itself."""
+
+    def plot(self, **options: Any) -> Any: ...
+
+
+@runtime_checkable
+class Animated(Protocol):
+    """Of what ``orbit`` returned: has a motion, for the page of a report."""
+
+    def scene(self, samples: int) -> dict[str, Any]: ...
+
+
+@runtime_checkable
+class Provable(Protocol):
+    """Special points and branches can be proved."""
+
+    def prove(
+        self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
+    ) -> Any: ...
+
+    def prove_branch(
+        self,
+        points: np.ndarray,
+        values: np.ndarray,
+        marks: Sequence[int] = (),
+        within: tuple[float, float] | None = None,
+        special: Mapping[int, Any] | None = None,
+    ) -> Any: ...
+
+
+@runtime_checkable
+class Nearing(Protocol):
+    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`."""
+
+    many: bool
+    closely: bool
+
+
+@runtime_checkable
+class Doubling(Protocol):
+    """In other pieces it has cycles of twice the length."""
+
+    def doubled_with(self, pieces: Any) -> Any: ...

@@ -1,0 +1,130 @@
+"""The problems of larger and smaller words that a problem's solutions are related to: by mirror image, doubling and repetition.
+
+The same for every machine: closed form or declared, forced or self-excited.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from orbits.protocol import Embedding, Symmetry
+from orbits.words.cyclic import CyclicWord
+
+
+class Relatives:
+    """Images, larger and smaller problems of the problem of a word.
+
+    Attributes
+    ----------
+    word, periods, length, symmetric : the word, forcing periods of the whole cycle, unknown nodes, whether on half the word
+    forced : bool
+        Else the period is unknown, and the first entry of a node is a duration, not a phase.
+    mirrored : bool
+        Whether the machine has a mirror image.
+    shift : float
+        Phase from the first node to the one after the last.
+    """
+
+    word: Any
+    periods: int
+    length: int
+    symmetric: bool
+    forced: bool
+    mirrored: bool
+    shift: float
+
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """Nodes of the whole cycle, from the unknowns."""
+        raise TypeError("a problem says how unknowns and nodes go together")
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """Unknowns, from the nodes of the whole cycle."""
+        raise TypeError("a problem says how unknowns and nodes go together")
+
+    def sibling(
+        self, word: CyclicWord, periods: int, symmetric: bool, params: np.ndarray | None = None
+    ) -> Self:
+        """The problem of another word of the same machine against the same parameter."""
+        raise TypeError("a problem says how it is made for another word")
+
+    @property
+    def symmetries(self) -> tuple[Symmetry, ...]:
+        """Images of a solution of the full word: the mirror some places on, and a doubled word's shift by its half."""
+        return self._images
+
+    @cached_property
+    def _images(self) -> tuple[Symmetry, ...]:
+        if self.symmetric or not len(self.word):
+            return ()
+        found = []
+        places = self._mirror_places() if self.mirrored else 0
+        if places:
+            periods = 2 * self.periods * places // self.length if self.forced else 1
+            half = self.sibling(self.word.head(2 * places), periods, symmetric=True)
+            found.append(
+                Symmetry(
+                    "symmetry-breaking",
+                    lambda u: self._rotated(u, places, -1.0),
+                    lambda u: (half, half.reduce(self.expand(u))),
+                )
+            )
+        if self.word.repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
+            periods = self.periods // 2 if self.forced else 1
+            root = self.sibling(self.word.head(len(self.word) // 2), periods, symmetric=False)
+            found.append(
+                Symmetry(
+                    "period-doubling",
+                    lambda u: self._rotated(u, self.length // 2, 1.0),
+                    lambda u: (root, root.reduce(self.expand(u))),
+                )
+            )
+        return tuple(found)
+
+    def _mirror_places(self) -> int:
+        """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
+        mirror, n = self.word.mirror(), self.length
+        for places in range(1, n // 2 + 1):
+            if n % (2 * places):
+                continue
+            times = n // (2 * places)
+            if self.forced and (self.periods % times or (self.periods // times) % 2 == 0):
+                continue
+            if self.word.rotate(places) == mirror:
+                return places
+        return 0
+
+    def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
+        """Nodes some places on, at the same phase again, their states times `sign`."""
+        nodes = self.expand(u)
+        image = np.roll(nodes, -places, axis=0) * np.r_[1.0, np.full(nodes.shape[1] - 1, sign)]
+        if self.forced:
+            turn = self.shift * places / self.length
+            image[: self.length - places, 0] -= turn
+            image[self.length - places :, 0] += self.shift - turn
+        return self.reduce(image)
+
+    def offspring(
+        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
+    ) -> list[Embedding]:
+        """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
+        along = np.asarray(tangent[:-1])
+        if kind == "symmetry-breaking" and self.symmetric and len(self.word):
+            full = self.sibling(self.word, self.periods, symmetric=False)
+            image = -along.reshape(self.length, -1)
+            image[:, 0] *= -1.0
+            direction = np.concatenate([along, image.ravel()])
+            return [Embedding(full, full.reduce(self.expand(u)), np.append(direction, tangent[-1]), kind)]
+        if kind == "period-doubling" and not self.symmetric and len(self.word):
+            periods = 2 * self.periods if self.forced else 1
+            double = self.sibling(self.word.double(), periods, symmetric=False)
+            nodes = self.expand(u)
+            second = nodes.copy()
+            second[:, 0] += self.shift
+            direction = np.append(np.concatenate([along, along]), tangent[-1])
+            return [Embedding(double, double.reduce(np.concatenate([nodes, second])), direction, kind)]
+        if kind == "branch-point":
+            return [Embedding(self, np.array(u), np.array(tangent), kind)]
+        return []

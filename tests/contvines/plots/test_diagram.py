@@ -1,0 +1,171 @@
+"""The diagram: what is drawn, marked, labelled, and what the legend says of it."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+from contvines.events.kinds import PREFIXES
+from contvines.plots import plot_diagram
+from contvines.plots.style import LINES, MARKS
+from contvines.problems.protocol import ProblemDefaults
+from tests.contvines import fakes
+
+
+@pytest.fixture
+def graph():
+    return fakes.pitchfork_graph()
+
+
+def dashes(state):
+    """How matplotlib itself notes the dashes of a line drawn in the style of a state."""
+    return mpl.lines.Line2D([], [], linestyle=LINES[state], linewidth=1.5)._unscaled_dash_pattern[1]
+
+
+def test_line_styles_say_stable_unstable_virtual(graph):
+    axes = plot_diagram(graph).axes[0]
+    curves = [line for line in axes.lines if len(line.get_xdata()) > 1]
+    seen = {}
+    for curve in curves:
+        seen.setdefault(curve._unscaled_dash_pattern[1], []).append(curve)
+    stable = seen[None]
+    lengths = {len(c.get_xdata()) for c in stable}
+    assert 21 in lengths and max(lengths) >= 31  # the lower half of B1, all of B2 and what makes it round
+    (unstable,) = seen[dashes("unstable")]
+    assert unstable.get_xdata()[0] == 0.0 and unstable.get_xdata()[-1] == 1.0
+    # a virtual branch is dotted throughout, whatever its multipliers say
+    assert {x for c in seen[dashes("virtual")] for x in c.get_xdata()} == set(graph.branches["B3"].values)
+
+
+def test_special_points_are_marked_labelled_and_explained(graph):
+    axes = plot_diagram(graph, ends=True).axes[0]
+    texts = {t.get_text() for t in axes.texts}
+    assert {"BP1", "VG1", "EP1", "B1", "B2", "B3"} <= texts
+    legend = {t.get_text() for t in axes.get_legend().get_texts()}
+    assert legend == {
+        "stable", "unstable", "virtual (beyond a border)", "branch point", "velocity graze", "end of the interval",
+    }  # fmt: skip
+    marks = {
+        (float(m.get_xdata()[0]), float(m.get_ydata()[0])) for m in axes.lines if len(m.get_xdata()) == 1
+    }
+    assert (0.0, 0.0) in marks
+
+
+def test_labels_do_not_cover_one_another(graph):
+    figure = plot_diagram(graph)
+    figure.canvas.draw()
+    boxes = [t.get_window_extent() for t in figure.axes[0].texts]
+    for i, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
+
+
+def impactless(words, values):
+    """The fake graph, its branches with these words and a measure B that is `values` times u on each."""
+
+    class Problem(ProblemDefaults):
+        measure_names, default_measure = ("B", "max_abs_w"), "B"
+
+        def __init__(self, B):
+            self.B = B
+
+        def measures(self, names, u, p):
+            known = {"B": self.B * u[:, 0], "max_abs_w": u[:, 0] + 2}
+            return {name: known[name] for name in names}
+
+    graph = fakes.pitchfork_graph()
+    for branch, word, value in zip(graph.branches.values(), words, values, strict=True):
+        branch.problem, branch.description = (
+            Problem(value),
+            {
+                **branch.description,
+                "word": word,
+                "impacts": sum(letter in "LR" for letter in word),
+            },
+        )
+    return graph
+
+
+def test_branches_without_the_measure_are_named_in_the_legend():
+    axes = plot_diagram(impactless(("LR", "", "tt"), (1.0, np.nan, np.nan))).axes[0]
+    assert "not drawn: B2, B3 (no impacts)" in {t.get_text() for t in axes.get_legend().get_texts()}
+
+
+def test_where_no_branch_has_the_measure_another_is_drawn():
+    axes = plot_diagram(impactless(("ss", "", "tt"), (np.nan,) * 3)).axes[0]
+    assert axes.get_ylabel() == "largest $|w|$"
+    assert not any("not drawn" in t.get_text() for t in axes.get_legend().get_texts())
+
+
+def test_labels_keep_out_of_the_legend(graph):
+    for y in ("norm", "p"):
+        figure = plot_diagram(graph, y=y, ends=True)
+        figure.canvas.draw()
+        legend = figure.axes[0].get_legend().get_window_extent()
+        texts = [t for t in figure.axes[0].texts if t.get_window_extent().overlaps(legend)]
+        assert not texts
+
+
+def test_a_legend_that_would_cover_curves_stands_beside_them(graph):
+    branch = graph.branches["B1"]  # a zigzag over the whole picture leaves no room
+    branch.points = np.where(np.arange(len(branch)) % 2, 2.0, 0.0)[:, None]
+    figure = plot_diagram(graph)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    legend = axes.get_legend().get_window_extent()
+    assert legend.x0 >= axes.get_window_extent().x1 - 1
+    assert legend.x1 <= figure.bbox.x1
+
+
+def test_every_kind_has_a_mark():
+    assert set(MARKS) == set(PREFIXES)
+
+
+def test_an_unfinished_graph_says_so():
+    axes = plot_diagram(fakes.pitchfork_graph(finished=False)).axes[0]
+    assert "unfinished" in [axes.get_title(loc=loc) for loc in ("left", "center", "right")]
+
+
+def test_an_unknown_measure_is_refused_with_those_that_can_be_had(graph):
+    with pytest.raises(ValueError, match="B1 has no measure 'speed'; choose one of norm, p"):
+        plot_diagram(graph, y="speed")
+
+
+def test_chosen_labels_only(graph):
+    axes = plot_diagram(graph, labels=["BP1"]).axes[0]
+    assert [t.get_text() for t in axes.texts] == ["BP1"]
+    with pytest.raises(ValueError, match="the graph has no 'LP7'"):
+        plot_diagram(graph, labels=["LP7"])
+    with pytest.raises(ValueError, match="give True, False or a list"):
+        plot_diagram(graph, labels="BP1")
+
+
+def test_colours_may_stand_for_stability_or_words(graph):
+    axes = plot_diagram(graph, color="stability").axes[0]
+    by_dash = {}
+    for line in axes.lines:
+        if len(line.get_xdata()) > 1:
+            by_dash.setdefault(line._unscaled_dash_pattern[1], set()).add(line.get_color())
+    assert all(len(colors) == 1 for colors in by_dash.values())
+    assert len(set.union(*by_dash.values())) == 3
+    for branch, word in zip(graph.branches.values(), ("LR", "tt", "LR"), strict=True):
+        branch.description = {**branch.description, "word": word}
+    axes = plot_diagram(graph, color="word", words=True).axes[0]
+    assert {"LR", "tt"} <= {t.get_text() for t in axes.texts}
+    assert {"LR", "tt"} <= {t.get_text() for t in axes.get_legend().get_texts()}
+    with pytest.raises(ValueError, match="color = 'kind' is unknown; choose one of branch, word, stability"):
+        plot_diagram(graph, color="kind")
+
+
+def test_two_graphs_on_the_same_axes(graph):
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots()
+    plot_diagram(graph, axes=axes)
+    plot_diagram(fakes.pitchfork_graph(), y="u0", axes=axes, name="second")
+    plot_diagram(fakes.pitchfork_graph(), axes=axes)
+    names = {t.get_text() for t in axes.texts}
+    assert "BP1" in names and any(n.startswith("second ") for n in names)
+    legend = [t.get_text() for t in axes.get_legend().get_texts()]
+    assert len(legend) == len(set(legend))
+    colors = {line.get_color() for line in axes.lines if len(line.get_xdata()) > 1}
+    assert len(colors) >= 6
+    plt.close(figure)

@@ -1,0 +1,70 @@
+"""The protocol is complete: every kind of problem answers all of it, and what does not is refused with a sentence."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+import orbits
+from contvines.loci.problem import LocusProblem
+from contvines.problems.protocol import MEMBERS, Problem
+from orbits.machines.declared.problem import DeclaredProblem
+from orbits.problem import OrbitProblem
+
+
+def checked_by_pyright(
+    a: cv.AlgebraicProblem, b: cv.MapProblem, c: LocusProblem, d: OrbitProblem, e: DeclaredProblem
+) -> list[Problem]:
+    """Never called: the type checker compares the signatures."""
+    return [a, b, c, d, e]
+
+
+def oscillator(state, phase, p, contact):
+    x, v = state
+    return v, p.forcing * orbits.symbols.cos(phase) - 0.1 * v - x
+
+
+def problems():
+    circle = cv.AlgebraicProblem(lambda u, p: u**2 + p.a**2 - p.r, [1.0], {"a": 0.0, "r": 1.0})
+    model = orbits.Absorber(restitution=0.9, friction=0.1, gravity=0.1)
+    params = model.vector({"amplitude": 0.01})
+    page = orbits.Machine(
+        name="oscillator",
+        states=("x", "v"),
+        parameters={"forcing": 1.0, "frequency": 1.2, "gap": 9.0, "restitution": 0.9},
+        phase_rate="frequency",
+        motion=oscillator,
+        contacts=[orbits.Wall("R", lambda state, phase, p: p.gap - state.x, {"v": -1.0}, "restitution")],
+    )
+    return [
+        circle,
+        LocusProblem(circle, "fold", "r"),
+        cv.MapProblem(lambda x, p: p * x * (1.0 - x), [0.5], 2.0),
+        OrbitProblem(model, orbits.Word((), ()), 1, "amplitude", params),
+        OrbitProblem(model, orbits.Word.parse("LR"), 1, "amplitude", params),
+        page.orbit("").problem("frequency"),
+    ]
+
+
+@pytest.mark.parametrize("problem", problems(), ids=lambda problem: type(problem).__name__)
+def test_every_kind_of_problem_answers_all(problem):
+    missing = [name for name in MEMBERS if not hasattr(problem, name)]
+    assert not missing
+    assert problem.scale_within((0.0, 1.0)).shape == (problem.dimension + 1,)
+    direction = np.ones(problem.dimension)
+    assert problem.amplitude(3.0 * direction) == pytest.approx(3.0 * problem.amplitude(direction))
+
+
+def test_a_problem_that_does_not_answer_all_is_refused_before_work():
+    class Line:
+        dimension, parameter, kernels = 1, "p", None
+
+    with pytest.raises(TypeError, match=r"Line does not say its .*spectrum.*contvines\.ProblemDefaults"):
+        cv.diagram(Line(), within=(0.0, 1.0))
+
+
+def test_one_parameter_cannot_be_replaced():
+    class Line(cv.ProblemDefaults):
+        dimension = 1
+
+    with pytest.raises(ValueError, match="gravity cannot vary: a Line has the one parameter 'p'"):
+        Line().against("gravity")
