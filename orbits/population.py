@@ -231,7 +231,7 @@ class _Sorting:
             orbit = found.orbit.root()
             problem = orbit.problem(self.population.parameter)
             u = orbit.seed(problem)[0]
-            word = orbit.word.text
+            word = orbit.spelling
         elif found.kind == "stuck":
             problem, u = self._stuck()
         for k, motion in enumerate(self.motions):
