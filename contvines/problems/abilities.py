@@ -26,6 +26,15 @@ class Evaluable(Protocol):
 
 
 @runtime_checkable
+class Rough(Protocol):
+    """May be given a rough start: its equations can be evaluated without their derivatives, and the lengths over which they bend are known."""
+
+    @property
+    def lengths(self) -> np.ndarray: ...
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+@runtime_checkable
 class Sectioned(Protocol):
     """Its motions can be simulated period by period; see :mod:`contvines.circles.section`."""
 

@@ -10,6 +10,7 @@ from scipy.linalg import get_lapack_funcs
 
 from .abilities import Nearing
 from .functions import NotEvaluable
+from .interpreted import assign, inspect
 from .kernels import Kernels
 from .nearness import distance, nearest
 from .spectra import reference_of, watched
@@ -143,24 +144,9 @@ def nearest_eigenvalues(data: Any, work: DenseWork) -> np.ndarray:
     return nearest(watched(work.jacobian, data.reference))
 
 
-def inspect(data: Any, u: np.ndarray, p: float, work: DenseWork, row: np.ndarray) -> None:
-    """Raw spectrum of the linearisation, then the margins of problems that have any."""
-    spectrum = data.raw_spectrum(work)
-    m = 2 * len(spectrum)
-    row[0:m:2] = spectrum.real
-    row[1:m:2] = spectrum.imag
-    if len(row) > m:
-        row[m:] = data.margins(u, p)
-
-
 def matrix(data: Any, work: DenseWork) -> np.ndarray:
     """F_u as it stands in a workspace."""
     return work.jacobian.copy()
-
-
-def assign(data: Any, other: Any, value: float) -> None:
-    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
-    data.values.assign(other.parameter, value)
 
 
 def flip(data: Any, work: DenseWork, sign: float) -> None:

@@ -16,20 +16,21 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, gmres, splu
+from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, splu
 
 from .factors import Method, SuperLUFactors
 from .functions import NotEvaluable
+from .interpreted import assign, inspect
 from .kernels import Kernels
+from .matrix_free import iterate
 from .nearness import distance, nearest_sparse
-from .sparse_loci import assign, flip, matrix, transpose
+from .sparse_loci import flip, matrix, transpose
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
 ENOUGH = 1e-9  # ... at which it will do
 SMALL = 1e-8  # size of the last row where the bordered matrix is factorised
 NEARLY = 1e-11  # ... with the factors of an earlier Jacobian
 CLOSE, SWEEPS = 1e-2, 8  # refinement with those has to gain two digits each time, so many times at most
-KRYLOV = 1e-11  # relative residual of GMRES
 EIGENVALUES = 1e-8  # relative accuracy of the leading eigenvalues
 
 
@@ -204,32 +205,6 @@ def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np
     return np.full_like(sides, np.nan), 0.0
 
 
-def _iterate(data: Any, work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
-    """GMRES on the bordered system."""
-    n = len(border)
-    inverse = data.preconditioner_at()
-
-    def applied(x: np.ndarray) -> np.ndarray:
-        x = x.reshape(-1)
-        return np.append(work.jacobian @ x[:-1] + work.derivative * x[-1], border @ x)
-
-    def precondition(x: np.ndarray) -> np.ndarray:
-        x = x.reshape(-1)
-        return np.append(inverse @ x[:-1], x[-1] / max(float(np.abs(border).max()), 1e-300))
-
-    operator = LinearOperator((n, n), matvec=applied, dtype=float)  # type: ignore[call-arg]
-    near = None if inverse is None else LinearOperator((n, n), matvec=precondition, dtype=float)  # type: ignore[call-arg]
-    result = np.zeros_like(sides)
-    for k in range(2):
-        if np.any(sides[:, k]):
-            found, _ = gmres(
-                operator, sides[:, k], M=near, rtol=KRYLOV, atol=0.0, restart=min(n, 80), maxiter=40
-            )
-            gap = np.linalg.norm(applied(found) - sides[:, k]) / np.linalg.norm(sides[:, k])
-            result[:, k] = found if gap < 1e-4 else np.nan
-    return result, 1.0
-
-
 def bordered(
     data: Any, work: SparseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
@@ -238,7 +213,7 @@ def bordered(
     sides[:-1, 0] = -work.residual
     sides[-1] = n, 1.0
     if not sp.issparse(work.jacobian):
-        solution, sign = _iterate(data, work, border, sides)
+        solution, sign = iterate(data, work, border, sides)
     else:
         work.eliminated = None
         found = _eliminate(work, border, sides)
@@ -338,16 +313,6 @@ def eigenvectors(matrix: Any, values: np.ndarray) -> np.ndarray:
             vector /= np.linalg.norm(vector)
         columns.append(vector)
     return np.array(columns).T.reshape(n, len(columns))
-
-
-def inspect(data: Any, u: np.ndarray, p: float, work: SparseWork, row: np.ndarray) -> None:
-    """Raw spectrum of the linearisation, then the margins of problems that have any."""
-    spectrum = data.raw_spectrum(work)
-    m = 2 * len(spectrum)
-    row[0:m:2] = spectrum.real
-    row[1:m:2] = spectrum.imag
-    if len(row) > m:
-        row[m:] = data.margins(u, p)
 
 
 KERNELS = Kernels(
