@@ -1,11 +1,17 @@
 """`contvines basins`: which start reaches which motion."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from contvines.command.run import StudyArgument
+
+ENDS = {
+    "leaves": "leaves the plane",
+    "long": "cut where it was very long",
+    "breaks": "cut where the motion is not continuous",
+}
 
 
 def basins(
@@ -18,6 +24,14 @@ def basins(
         ),
     ] = None,
     points: Annotated[int, typer.Option("--points", help="Starts across and up.")] = 200,
+    saddles: Annotated[
+        Path | None,
+        typer.Option(
+            "--saddles",
+            metavar="FILE.vines",
+            help="Grow the stable manifolds of this graph's unstable motions.",
+        ),
+    ] = None,
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the plane in colours.")
     ] = None,
@@ -40,7 +54,8 @@ def basins(
     asked = checked_study(study)
     fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
     population = population_of(machine(asked), asked.parameter, **fixed)
-    found = contvines.basins(population, at=at, plane=plane, points=points)
+    graph: Any = None if saddles is None else contvines.load(saddles)
+    found = contvines.basins(population, at=at, plane=plane, points=points, saddles=graph)
     if json:
         from contvines.export import json_text
 
@@ -58,6 +73,10 @@ def basins(
             typer.echo(f"  uncertainty exponent of the boundary: {exponent:.2f} +- {error:.2f}")
         except ValueError:
             pass
+        for curve in found.manifolds:
+            typer.echo(
+                f"  stable manifold of {curve.word} on {curve.branch}: {len(curve.points)} points, {ENDS[curve.ended]}"
+            )
     if plot is not None:
         from contvines.plots.figures import save_figure
 
