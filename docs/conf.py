@@ -1,5 +1,8 @@
 """The documentation as a site: `sphinx-build -W docs docs/_build` with the extra `docs` installed; it runs the notebooks."""
 
+import os
+import sys
+
 project = "contvines"
 author = "The contvines developers"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc"]
@@ -17,6 +20,9 @@ myst_enable_extensions = ["dollarmath"]
 suppress_warnings = ["myst.xref_missing"]  # links to the repository's own files stay links to files
 
 # notebooks are pages of Markdown whose cells the build runs; a cell that fails, fails the build
+os.environ["PATH"] = os.pathsep.join(
+    [os.path.dirname(sys.executable), os.environ.get("PATH", "")]
+)  # cells call `contvines`
 nb_execution_mode = "auto"
 nb_execution_in_temp = True
 nb_execution_timeout = 240

@@ -37,6 +37,7 @@ lead(
         "of_orbit": "orbits.proofs.subjects:of_orbit",
         "of_point": "orbits.proofs.subjects:of_point",
         "Orbit": "orbits.orbit:Orbit",
+        "orbit_page": "orbits.plots.page:page",
         "OrbitProblem": "orbits.problem:OrbitProblem",
         "Population": "orbits.population:Population",
         "portrait": "orbits.plots.portrait:portrait",

@@ -39,7 +39,7 @@ class Simulated:
             start = None if i == 0 else self.model.random_start(params, generator)
             motion = find_attractor(self.model, start, max_period=12, patience=1, **named)
             word = motion.word
-            text = None if word is None else word.canonical().text
+            text = None if word is None else word.spelled()
             key = (text or "", int(motion.periods), motion.kind)
             found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
         return [found[key] for key in sorted(found)]

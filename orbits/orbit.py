@@ -41,6 +41,9 @@ class Orbit(Solution):
         """Prove that the orbit exists, is real or virtual, stable or unstable; see `orbits.proofs.subjects.of_orbit`."""
         return above("of_orbit")(self, bits, **parameters)
 
+    def _repr_html_(self) -> str:
+        return above("orbit_page")(self)
+
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
         return above("portrait")(self, **options)

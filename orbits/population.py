@@ -82,7 +82,7 @@ class Population:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the coordinates in which starts are given: phase, w, w_rate, and v, v_rate of the coupled machine."""
-        return ("phase", "w", "w_rate", "v", "v_rate")[: 3 if self.engine.state <= V else 5]
+        return ("phase", *self.engine.coordinates)
 
     def box(self, p: float) -> np.ndarray:
         """Smallest and largest coordinate of the starts, shape (n, 2): the cavity, and the velocities its walls can give."""
@@ -91,7 +91,7 @@ class Population:
         left, right = (float(wall) for wall in self.model.walls(params))
         rate = SPEEDS * max(1.0, shaking)
         rows = [[0.0, 2.0 * np.pi], [right, left], [-rate, rate]]
-        if len(self.names) > 3:
+        if self.model.moving_cavity:
             reach = 2.0 * max(1.0, shaking)
             rows += [[-reach, reach], [-reach, reach]]
         return np.array(rows)
@@ -205,7 +205,7 @@ class _Sorting:
             skip(self.engine, state, self.params, state[TURNS] + LATE, 10**9)
         if exponent > SIGMAS * error:
             kind = "chaotic"
-        elif exponent > -SIGMAS * error and self.model.node == 4:
+        elif exponent > -SIGMAS * error and self.model.moving_cavity:
             kind = "quasi-periodic"  # two incommensurate frequencies need four dimensions of states
         else:
             kind = "slow"
@@ -231,7 +231,7 @@ class _Sorting:
             orbit = found.orbit.root()
             problem = orbit.problem(self.population.parameter)
             u = orbit.seed(problem)[0]
-            word = orbit.word.text
+            word = orbit.spelling
         elif found.kind == "stuck":
             problem, u = self._stuck()
         for k, motion in enumerate(self.motions):

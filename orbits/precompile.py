@@ -21,6 +21,7 @@ from orbits.elimination import by_address
 from orbits.machines.catalogue import model_class, usual
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
+from orbits.multipliers.periodic_schur import multipliers_of, multipliers_of_two
 
 
 def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
@@ -63,9 +64,14 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
     except OSError:
         return None
     helpers[name] = process
-    if usual(name)[0].node > 2:
+    if _is_slow(usual(name)[0].node):
         helpers[periodic_multipliers.__name__] = process
     return process
+
+
+def _is_slow(node: int) -> bool:
+    """Whether multipliers of nodes of this size need the periodic Schur form, which takes seconds to compile."""
+    return multipliers_of(node) is not multipliers_of_two
 
 
 def compile_as(digest: str, name: str, *more: str) -> None:
@@ -92,7 +98,7 @@ def compile_now(name: str, *more: str) -> None:
         module, _, function = place.partition(":")
         getattr(importlib.import_module(module), function)()
     n = model.node
-    if n > 2:
+    if _is_slow(n):
         factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]

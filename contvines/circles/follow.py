@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..branches.special_point import SpecialPoint
-from ..continuation.engine import Engine
-from ..continuation.settings import Settings
-from ..forms.coefficients import Forms
-from ..forms.criticality import strong_resonance
 from ..interrupts import listening
 from .averages import rotation_number
+from .birth import Birth, born
 from .circle import Circle, Circles
 from .invariance import Curve, Frame, first_harmonic, solve
-from .section import Section, section_of, slopes
+from .section import Section, section_of
 
 FEWEST, MOST = 17, 129  # points of a circle
 SMOOTH = 1e-7  # the last harmonics of a circle that has enough points, relative to the first
@@ -34,38 +31,6 @@ RETURNS = 3000  # of a simulation that is compared with a circle
 PATIENCE = 6000  # returns at most until it settles
 LONGEST = 200  # periods of a locked motion
 DISPLACED = 1e-3  # relative displacement whose growth or decay says whether a circle is stable
-
-
-class Birth(NamedTuple):
-    """The normal form on the section.
-
-    size : float
-        Amplitude on the section per amplitude of the normal form.
-    """
-
-    p: float
-    coefficient: float
-    growth: float
-    rotation: float
-    vector: np.ndarray
-    frame: Frame
-    centre: np.ndarray
-    size: float
-
-    def value(self, amplitude: float) -> float:
-        """The parameter at which the circle has this amplitude, to lowest order."""
-        return self.p - self.coefficient * (amplitude / self.size) ** 2 / self.growth
-
-    def amplitude(self, value: float) -> float:
-        """The amplitude at a parameter value; 0 on the other side."""
-        square = -self.growth * (value - self.p) / self.coefficient
-        return self.size * float(np.sqrt(max(square, 0.0)))
-
-    def curve(self, amplitude: float, count: int) -> Curve:
-        """The circle of an amplitude, to first order."""
-        phases = 2.0 * np.pi * np.arange(count) / count
-        points = self.centre + 2.0 * amplitude * np.real(np.exp(1j * phases)[:, None] * self.vector)
-        return Curve(points, self.rotation, self.value(amplitude))
 
 
 @listening()
@@ -95,7 +60,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
     if count < 1:
         raise ValueError(f"count = {count} must be a whole number of at least 1")
-    birth = _born(point)
+    birth = born(point)
     side = 1.0 if birth.value(1.0) > point.value else -1.0
     if to is not None and not (to - point.value) * side > 0.0:
         raise ValueError(
@@ -124,79 +89,6 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         ended,
         beyond,
     )
-
-
-# ---------------------------------------------------------------------- the normal form
-def _born(point: SpecialPoint) -> Birth:
-    problem, u, p = point.problem, point.u, float(point.value)
-    multiplier, growth = _crossing(point)
-    full = complex(np.asarray(problem.to_multipliers(np.array([multiplier])))[0])
-    resonance = strong_resonance(full)
-    if resonance:
-        raise ValueError(
-            f"{point.label} is at the strong resonance {resonance}: no single circle is born there; move a second parameter"
-        )
-    forms = Forms(problem, u, p)
-    found, _ = forms.lyapunov(multiplier)
-    if not abs(found.value) > 2.0 * found.error:
-        raise ValueError(
-            f"{point.label}: its first Lyapunov coefficient is zero within its error, so no side is known"
-        )
-    if growth == 0.0:
-        raise ValueError(f"{point.label}: the multipliers only touch the unit circle there")
-    section = section_of(problem, p)
-    centre = section.through(u)
-    size = float(np.linalg.norm(centre)) or 1.0
-    matrix = slopes(section, centre, 1e-6 * size)
-    values, right = np.linalg.eig(matrix)
-    place = int(np.argmin(np.abs(values - full)))
-    vector = right[:, place] / np.linalg.norm(right[:, place])
-    left = np.linalg.inv(right)[place].conj()
-    left = left / np.vdot(left, vector).conj()
-    q, _ = forms.null(multiplier / abs(multiplier))
-    h = 1e-6 * (float(np.linalg.norm(u)) or 1.0)
-    image = sum(
-        unit * (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)
-        for unit, part in ((1.0, np.real(q)), (1j, np.imag(q)))
-    )
-    frame = Frame(left, size, max(abs(p), 1e-3))
-    turns = float(np.angle(full)) / (2.0 * np.pi)
-    return Birth(p, found.value, growth, turns, vector, frame, centre, float(np.abs(np.vdot(left, image))))
-
-
-def _crossing(point: SpecialPoint) -> tuple[complex, float]:
-    """The raw critical multiplier, and d(log abs)/dp along the cycles."""
-    problem, p = point.problem, float(point.value)
-    unit = max(abs(p), 1e-3)
-    engine = Engine(problem, (p - unit, p + unit), Settings())
-
-    def critical(value: float, near: complex | None) -> Any:
-        solved = engine.at_value(point.u, value)
-        if solved is None:
-            return None
-        upper = engine.spectrum(solved.row)
-        upper = upper[upper.imag > 0.0]
-        distance = np.abs(np.abs(upper) - 1.0) if near is None else np.abs(upper - near)
-        return complex(upper[np.argmin(distance)]) if len(upper) and distance.min() < 0.1 else None
-
-    here = critical(p, None)
-    if here is None:
-        raise ValueError(f"{point.label} has no complex pair of multipliers on the unit circle")
-    for step in (
-        1e-5 * unit,
-        1e-6 * unit,
-        1e-7 * unit,
-        1e-8 * unit,
-    ):  # a fold, or the end of the pair, may be near
-        rates = []
-        for width in (step, 0.5 * step):
-            ends = [critical(p + sign * width, here) for sign in (1.0, -1.0)]
-            if None in ends:
-                break
-            rates.append(np.log(abs(ends[0] / ends[1])) / (2.0 * width))
-        if len(rates) == 2 and abs(rates[1] - rates[0]) <= 0.02 * abs(rates[1]):
-            return here, float((4.0 * rates[1] - rates[0]) / 3.0)
-    raise ValueError(f"{point.label}: its cycle cannot be followed to both sides")
 
 
 # ---------------------------------------------------------------------- from circle to circle
@@ -289,6 +181,8 @@ def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> 
     replay = float(np.abs(images - curve.at(between + 2.0 * np.pi * curve.rotation)).max())
     stable = _attracts(here, curve, birth, centre)
     simulated = _simulated(here, curve, birth, centre, radius) if stable else None
+    if stable and simulated is None:  # a displacement shrank for a while, and yet the circle is left
+        stable = None
     amplitude = birth.amplitude(curve.value)
     predicted = float(np.sqrt(2.0) * amplitude)  # rms of 2 Re(r q exp(i phi)) with abs(q) = 1
     return Circle(

@@ -21,7 +21,7 @@ MOST = 4_000_000  # points of a picture
 CONFIDENCE = 1.96  # standard errors of a 95 % interval
 
 
-@dataclass
+@dataclass(repr=False)
 class Basins:
     """A plane of starts coloured by what they reach.
 
@@ -55,6 +55,17 @@ class Basins:
     mirrored: np.ndarray
     attractors: list[Attractor] = field(default_factory=list)
     manifolds: list[Manifold] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        return above("basins_table")(self)
+
+    def _repr_html_(self) -> str:
+        return above("basins_page")(self)
+
+    def __repr__(self) -> str:
+        rows, columns = self.index.shape
+        found = ", ".join(f"{a.name} {a.share:.1%}" for a in self.attractors)
+        return f"Basins({self.axes[0]} x {self.axes[1]}, {columns} x {rows} starts at {self.parameter} = {self.value:.10g}: {found})"
 
     def interval(self, k: int) -> tuple[float, float]:
         """A 95 % interval (Wilson's) of the share of attractor `k` in the plane, its points taken as draws from it."""

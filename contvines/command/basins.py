@@ -61,6 +61,20 @@ def basins(
 
         typer.echo(json_text(found.to_dict()))
     else:
+        typer.echo(str(found))
+    if plot is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(plot)
+    asked = checked_study(study)
+    fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
+    population = population_of(machine(asked), asked.parameter, **fixed)
+    found = contvines.basins(population, at=at, plane=plane, points=points)
+    if json:
+        from contvines.export import json_text
+
+        typer.echo(json_text(found.to_dict()))
+    else:
         across, up = found.axes
         typer.echo(f"{found.index.size} starts in the plane {across}, {up} at {found.parameter} = {at:.10g}")
         for k, about in enumerate(found.attractors):

@@ -13,10 +13,8 @@ import numpy as np
 
 def correction_size(step: np.ndarray, u: np.ndarray, p: float, scale: np.ndarray) -> float:
     """Largest entry of a correction, relative to scale + abs(unknown); infinity where it is not finite."""
-    n = len(u)
-    size = max(
-        float((np.abs(step[:n]) / (scale[:n] + np.abs(u))).max()), abs(float(step[n])) / (scale[n] + abs(p))
-    )
+    part = step[:-1] / (scale[:-1] + np.abs(u))
+    size = max(float(np.maximum.reduce(np.abs(part))), abs(float(step[-1])) / (float(scale[-1]) + abs(p)))
     return size if size - size == 0.0 else math.inf
 
 

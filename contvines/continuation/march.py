@@ -59,6 +59,8 @@ def march(
 ):
     """Fill rows first, first + 1, ... of the chunk arrays with points of the branch.
 
+    In one piece: every part of a step reads and changes the same score of local numbers.
+
     Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
 
     Each step is judged, and the next one chosen, by ``judge`` (:mod:`contvines.continuation.step_rule`). At the ends of the

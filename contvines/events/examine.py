@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
+from ..problems.abilities import Nearing
 from .borders import find_border
 from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
 from .limits import one_sided
@@ -50,6 +51,8 @@ class Examiner:
         self.kind = engine.detection
         # of problems without scales of their own, machines, branches of this sort are not known
         self.exchanges = problem.scales is not None and self.kind != "none"
+        # of problems with many unknowns the rows tell eigenvalues only where they are asked for
+        self.many = isinstance(problem, Nearing) and problem.many
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]

@@ -54,6 +54,8 @@ def mark_segments(
 ):
     """Fill `flags` (n - 1,), bits per segment, and `smallest` (n,), the smallest margin (infinity without margins).
 
+    In one piece: one pass over the chunk, in which each segment's tests share the differences of rows.
+
     Parameters
     ----------
     points, values, slopes, rows, signs : ndarray

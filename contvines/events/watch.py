@@ -15,7 +15,19 @@ from .examine import Examiner, changes
 from .functions import LIMIT, balance, counts, nearest_to_circle
 from .leaps import leap
 from .located import Located, Role
-from .scan import APART, BORDER, DAMPED, HUMP, MEETING, MULTIPLIER, SHALLOW, Scan, Scanner, dips
+from .scan import (
+    APART,
+    BORDER,
+    DAMPED,
+    HUMP,
+    MEETING,
+    MULTIPLIER,
+    SHALLOW,
+    SINGULAR,
+    Scan,
+    Scanner,
+    dips,
+)
 from .segment import Segment
 
 USER, TWICE = (
@@ -23,6 +35,10 @@ USER, TWICE = (
     512,
 )  # beside the bits of a scan: a user function changes its sign; a real multiplier may do so twice
 AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
+REACH, EDGE = (
+    1.5,
+    0.9,
+)  # lengths of a segment within which the distance to a singular matrix, continued, may be zero
 BESIDE = 0.02  # part of the segment next to a branch point that is left out
 
 
@@ -75,7 +91,11 @@ class Watch(Examiner):
             size = np.abs(part).max(axis=1)
             far = (size[:-1] > APART) & (size[1:] > APART)
             flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
-        if self.exchanges:
+        close: set[int] = set()
+        if self.many:
+            close = set(self._near_singular(chunk).tolist())
+            flags[list(close)] |= SINGULAR
+        elif self.exchanges:
             sums = balance(self.engine.spectrum(chunk.rows), self.kind)
             flags[changes(np.nan_to_num(sums))] |= MULTIPLIER
             flags[self._twice(chunk)] |= TWICE
@@ -90,7 +110,9 @@ class Watch(Examiner):
                 self.engine, chunk.solved(i, float(signs[i])), chunk.solved(i + 1, float(signs[i + 1]))
             )
             split = self._split(segment, bits)
-            if split is not None:
+            if i in close:
+                found = self._closely(segment, real)
+            elif split is not None:
                 s, middle = split
                 plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
@@ -140,6 +162,41 @@ class Watch(Examiner):
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
         return before_stop(sorted(found, key=lambda e: e.position))
+
+    def _near_singular(self, chunk: Chunk) -> np.ndarray:
+        """Segments, of a problem with many unknowns, in which an even number of branch points may lie: where the signs at the ends are
+
+        the same, but the distances to a singular matrix, continued from before and from behind, reach zero.
+        """
+        distance, signs = chunk.rows[:, 0], without_zeros(chunk.signs)
+        steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
+        lengths = np.sqrt((steps**2) @ self.engine.weights)
+        falls, rises = distance[:-1] - distance[1:], distance[1:] - distance[:-1]
+        with np.errstate(all="ignore"):
+            ahead = np.where(
+                falls > 0.0, distance[1:] * lengths / falls, np.inf
+            )  # zero behind the segment's end
+            back = np.where(rises > 0.0, distance[:-1] * lengths / rises, np.inf)  # ... before its beginning
+        # at the ends of a chunk there is only one side to tell: its zero has to lie well inside
+        before, behind = np.append(np.inf, ahead[:-1]) / lengths, np.append(back[1:], np.inf) / lengths
+        inside = (before < REACH) & (behind < REACH)
+        if len(lengths) > 1:
+            inside[0], inside[-1] = behind[0] < EDGE, before[-1] < EDGE
+        return np.flatnonzero((signs[:-1] == signs[1:]) & inside)
+
+    def _closely(self, segment: Segment, real: bool) -> list[Located]:
+        """The special points of a segment of a problem with many unknowns, from eigenvalues."""
+        problem: Any = self.engine.problem
+        problem.closely = True
+        try:
+            a, b = segment.at(0.0), segment.at(1.0)
+            if a is None or b is None:
+                return []
+            a = a._replace(tangent=segment.a.tangent, sign=segment.a.sign)
+            b = b._replace(tangent=segment.b.tangent, sign=segment.b.sign)
+            return self.examine(Segment(self.engine, a, b), real=real)
+        finally:
+            problem.closely = False
 
     def _twice(self, chunk: Chunk) -> np.ndarray:
         """Segments in which a real multiplier may pass the circle and come back: the parabola through its distances does."""

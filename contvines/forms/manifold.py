@@ -144,6 +144,8 @@ class Reduction:
         for line, size in zip(lines, sizes):
             r = self.radius / (size * max(float(np.abs(self.vectors).max()), 1e-300))
             samples = self._rest(np.outer(r * nodes, self.real @ line))
+            if not np.isfinite(samples).all():
+                raise ValueError("the equations cannot be evaluated near the special point")
             values.append(weights @ samples / r**degree)
         table = powers(lines @ self.real.T, wanted)
         return np.linalg.lstsq(table, np.array(values).astype(complex), rcond=None)[0]
@@ -151,8 +153,6 @@ class Reduction:
     # ------------------------------------------------------------------ what balances it
     def _balance(self, degree: int) -> None:
         wanted, left = monomials(self.m, degree), self._left_over(degree)
-        if not np.isfinite(left).all():
-            raise ValueError("the equations cannot be evaluated near the special point")
         table = substitution(self.linear, degree, self.forms.flow)
         diagonal = np.abs(table - np.diag(np.diag(table))).max() == 0.0
         groups = [[b] for b in range(len(wanted))] if diagonal else [list(range(len(wanted)))]

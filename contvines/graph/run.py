@@ -152,7 +152,7 @@ class Run:
         return replace(ending, point=into)
 
     def remark(self, label: str, sentence: str) -> None:
-        """Add a sentence to the remarks on a special point."""
+        """Add a sentence to the remarks on a special point, if there is one."""
         special = self.graph.special[label]
-        if sentence not in special.remarks:
+        if sentence and sentence not in special.remarks:
             special.remarks = (*special.remarks, sentence)

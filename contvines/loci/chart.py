@@ -67,6 +67,9 @@ class Chart:
     def __str__(self) -> str:
         return above("chart_table")(self)
 
+    def _repr_html_(self) -> str:
+        return above("chart_page")(self)
+
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
         return (

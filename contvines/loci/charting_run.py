@@ -27,9 +27,10 @@ from .layout import MARGIN
 from .locus import Locus
 from .plane_point import PlanePoint
 from .regions import divide
-from .starts import begin
+from .starts import begin, regular_side
 
 SAME = 1e-7  # points of the plane closer than this part of its sides are one
+END = 1e-5  # of them: a locus ends there
 LARGEST = 120  # loci; a chart that was cut there says so
 
 
@@ -107,6 +108,7 @@ class Charting:
             )
         if not self.queue and not self.chart.loci:
             checked_ends(point.problem, self.over, self.within)
+        point = regular_side(point)
         candidate = Candidate(
             point.problem, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
         )
@@ -194,6 +196,9 @@ class Charting:
         near = np.abs((values - place) / unit).max(axis=1)
         if not near.min() < 0.2:
             return False
+        repeats = size > len(candidate.u) and size % len(candidate.u) == 0
+        if repeats and min(near[0], near[-1]) < END:
+            return False  # a doubled motion ends where it is the motion itself, which goes on
         form = candidate.problem.canonical(candidate.u, candidate.p)
         engine = self.forms.setdefault(locus.label, Engine(locus.problem, self.within, self.settings))
         gaps = values[:, 1] - candidate.q

@@ -11,6 +11,7 @@ from .locus import Locus
 from .plane import Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
+from .starts import SINGULAR
 
 COSTLY = ("quadratic", "cubic", "lyapunov")
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
@@ -18,6 +19,7 @@ ENDING = 1e-8  # a locus that ends at a resonance ends this close to it
 CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
 APART = 1e-5  # a pair is complex if its imaginary part exceeds this
 DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
+FEW = 4  # places at which a border is asked whether its equations are singular
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
 
 
@@ -28,6 +30,8 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     points, values = locus.branch.points, locus.branch.values
     places = [Place(U[: problem.size], float(U[problem.size]), float(q)) for U, q in zip(points, values)]
     wanted = looks(plane.problem, problem.condition)
+    if problem.condition == MARGIN and _singular(plane, places):
+        return []  # nothing can be told from equations that are singular all along
     found: list[tuple[int, PlanePoint]] = []
     costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COSTLY}
     at: References | None = None
@@ -67,6 +71,13 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
                 found.append((i, point))
     found += _at_borders(locus, plane, places)
     return sorted((pair for pair in found if not _at_end(locus, pair[1])), key=lambda pair: pair[0])
+
+
+def _singular(plane: Plane, places: list[Place]) -> bool:
+    """Whether the equations are singular at a few places of a border, and so at all of them."""
+    few = places[:: max(1, len(places) // FEW)]
+    tests = [abs(plane.first.null_vectors().test) for place in few if plane.at(place) < 1e300]
+    return bool(tests) and float(np.median(tests)) < SINGULAR
 
 
 def _at_end(locus: Locus, point: PlanePoint) -> bool:

@@ -25,7 +25,7 @@ from .layout import BRANCH, MARGIN
 from .locus import Locus, Turn
 from .problem import LocusProblem
 from .sides import impossible_side
-from .starts import begin, first_point
+from .starts import begin, first_point, regular_side
 
 UNFOLDED = 1e-7  # an unfolding beyond this (relative to the largest unknown) says that a branch point does not persist
 
@@ -72,6 +72,8 @@ def locus(
     if point.problem is None:
         raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
     within = check_interval(within)
+    point = regular_side(point)
+    assert point.problem is not None
     known = point.problem.parameters
     problem = begin(
         point.problem,

@@ -7,6 +7,9 @@ import numpy as np
 from ..branches.branch import Branch
 from .linear import Linearisation
 from .problem import LocusProblem
+from .starts import SINGULAR
+
+STEP = 1e-6  # along the motions, relative to the parameter and to each unknown
 
 
 def impossible_side(problem: LocusProblem, branch: Branch) -> int:
@@ -18,14 +21,14 @@ def impossible_side(problem: LocusProblem, branch: Branch) -> int:
     place = 2 * int(at.n_multipliers) + problem.index
     line.at(u, p)
     start = line.row()[place]
-    step = 1e-6 * (1.0 + abs(p))
     null = line.null_vectors()
+    if abs(null.test) < SINGULAR:
+        return 0
     b, c = null.left, null.right
     x, s = line.solve(-line.slope, b, c)
     v, g = line.null(b, c)
-    if g == 0.0:
-        return 0
     direction = x - (s / g) * v  # du/dp along the motions themselves
+    step = STEP * min(1.0 + abs(p), float((1.0 + np.abs(u)).min() / max(np.abs(direction).max(), 1e-300)))
     line.at(u + step * direction, p + step)
     rise = line.row()[place] - start
     along = branch.tangents[i]

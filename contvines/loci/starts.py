@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..problems.protocol import Problem
@@ -15,6 +18,8 @@ from .probing import pair_of
 from .problem import LocusProblem
 
 ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
+MET = 1e-7  # margins below this are those of a border that is met from its other side
+SINGULAR = 1e-9  # a test below this: the equations are singular
 
 
 def begin(
@@ -69,6 +74,39 @@ def begin(
         pair_of(row, int(problem.n_multipliers), problem.spectrum == "flow", nearest, found)
         locus.reference = float(found[1])
     return locus
+
+
+def regular_side(point: SpecialPoint) -> SpecialPoint:
+    """A border as the motion on its other side has it, where its own equations are singular; else the point itself.
+
+    A stick that shrinks to nothing leaves two events at one place, and equations that are singular all along the border. The motion behind it has
+    no such stick, and grazes there.
+    """
+    problem = point.problem
+    if condition(problem, point.kind) != MARGIN or singularity(problem, point.u, point.value) >= SINGULAR:
+        return point
+    outward = -point.tangent if point.index == 0 else point.tangent
+    p = float(point.value)
+    for seed in problem.beyond(replace(point, tangent=outward)):
+        other = seed.problem
+        wide = abs(seed.p - p) + 1e-6 * (1.0 + abs(p))
+        solved = Engine(other, (p - wide, p + wide), Settings()).at_value(np.asarray(seed.u, dtype=float), p)
+        if solved is None or singularity(other, solved.u, p) < SINGULAR:
+            continue
+        line = Linearisation(other)
+        line.at(solved.u, p)
+        zero = np.flatnonzero(np.abs(line.row()[2 * int(other.n_multipliers) :]) < MET)
+        if len(zero):
+            j = int(zero[0])
+            return replace(point, problem=other, u=solved.u, kind=other.margin_kind(j), margin_index=j)
+    return point
+
+
+def singularity(problem: Problem, u: np.ndarray, p: float) -> float:
+    """The test that vanishes where the equations are singular, without its sign."""
+    line = Linearisation(problem)
+    line.at(u, p)
+    return abs(line.null_vectors().test)
 
 
 def _critical_pair(spectrum: NDArray[np.complex128], flow: bool) -> float:

@@ -10,7 +10,8 @@ import numpy as np
 from ..graph.shortening import short_word
 from .basins import COLORS
 from .diagram import plot_diagram
-from .figures import new_figure, settle, styled
+from .figures import freeze, new_figure, settle, styled
+from .picture import lay_out_again
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -56,6 +57,8 @@ def plot_atlas(
         draw_shares(lower, graph)
         lower.set_xlabel(axis_label(graph.parameter, unit=graph.units.get(graph.parameter)))
         settle(figure)
+        freeze(figure)
+        lay_out_again(upper)
     return figure
 
 

@@ -73,6 +73,7 @@ def place_labels(
     anchors = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
     ground = _Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
     boxes, leaders, written, left_out = list(taken or ()), [], [], 0
+    widths = _widths({label.text for label in labels}, size)
     marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors]
     for i in sorted(range(len(labels)), key=lambda i: (not labels[i].kept, labels[i].near, labels[i].rank)):
         label, (ax, ay) = labels[i], anchors[i]
@@ -80,7 +81,7 @@ def place_labels(
             np.isfinite(ax + ay) and frame.x0 - 1 <= ax <= frame.x1 + 1 and frame.y0 - 1 <= ay <= frame.y1 + 1
         ):
             continue
-        width, height = (0.6 * size * len(label.text) + 2) * unit, 1.2 * size * unit
+        width, height = (widths[label.text] + 2) * unit, 1.2 * size * unit
         others = np.delete(anchors, i, axis=0)
         best: tuple[float, float, float, Box, int] | None = None
         for radius in RADII[:2] if label.near else RADII:
@@ -131,6 +132,15 @@ def grouped(axes: Axes, labels: list[Label], near: float = 9.0) -> list[Label]:
         text = ", ".join(names) if len(names) <= 3 else f"{', '.join(names[:2])} +{len(names) - 2}"
         found.append(Label(text, first.x, first.y, first.color, first.rank, first.kept, first.near))
     return found
+
+
+def _widths(texts: set[str], size: float) -> dict[str, float]:
+    """How wide texts are, in points, in the font in which they will be written."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextToPath
+
+    font, measure = FontProperties(size=size), TextToPath()
+    return {text: float(measure.get_text_width_height_descent(text, font, False)[0]) for text in texts}
 
 
 class _Ground:

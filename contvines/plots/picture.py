@@ -27,6 +27,13 @@ if TYPE_CHECKING:
 TEXT = 0.85  # size of labels in units of font.size
 
 
+def lay_out_again(axes: Axes) -> None:
+    """Place the labels of all graphs on these axes anew, after something else has changed their size."""
+    for picture in getattr(axes, "contvines_pictures", []):
+        if picture.axes is axes and picture.options[0] is not False:
+            picture.lay_out()
+
+
 class Picture:
     """One graph on some axes: its curves, marks and labels, which are laid out again when the limits change."""
 
@@ -44,7 +51,7 @@ class Picture:
         self.tint: dict[str, str] = {}
         self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
         self.written: list[Any] = []
-        self.options: tuple[Any, bool, Any] = (True, False, [])
+        self.options: tuple[Any, bool, Any] = (False, False, [])  # no labels yet
         if (remark := undrawn(graph, x, y)) != "":
             self.key.remarks.append(remark)
 
@@ -170,17 +177,17 @@ class Picture:
 
     def follow_zoom(self) -> None:
         """Lay out again when the limits of the axes change."""
-
-        def again(_: Any) -> None:
-            import matplotlib as mpl
-
-            labels, words, _ = self.options
-            with mpl.rc_context(self.rc):
-                self.refine()
-                self.write_labels(labels, words, hold_legend(self.axes))
-
         for change in ("xlim_changed", "ylim_changed"):
-            self.axes.callbacks.connect(change, again)
+            self.axes.callbacks.connect(change, lambda _: self.lay_out())
+
+    def lay_out(self) -> None:
+        """Refine curves and write labels anew for the limits and the size that the axes have now."""
+        import matplotlib as mpl
+
+        labels, words, _ = self.options
+        with mpl.rc_context(self.rc):
+            self.refine()
+            self.write_labels(labels, words, hold_legend(self.axes))
 
     def _named(self, label: str) -> str:
         return f"{self.before}{label}{self.after}"

@@ -14,7 +14,12 @@ if TYPE_CHECKING:
 
 
 def plot_portrait(
-    orbit: Any, *, axes: "Axes | None" = None, style: "str | Mapping[str, Any] | None" = None
+    orbit: Any,
+    *,
+    axes: "Axes | None" = None,
+    figsize: tuple[float, float] | None = None,
+    style: "str | Mapping[str, Any] | None" = None,
+    **options: Any,
 ) -> "Figure":
     """Draw an orbit: its own `plot()` where it has one, else the points of a cycle or the entries of a vector.
 
@@ -22,18 +27,19 @@ def plot_portrait(
     ----------
     orbit : what `SpecialPoint.orbit` or `Branch.orbit(i)` returned.
     axes : Axes, optional
-        Drawn on (an orbit draws its phase portrait alone there); without, a new figure.
+        Drawn on (an orbit draws its phase portrait alone there); without, a new figure of `figsize` inches.
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
+    **options
+        For the orbit's own `plot()`.
     """
     if isinstance(orbit, Drawable):
-        drawn: Any = (
-            orbit.plot(axes=axes, style=style) if axes is not None or style is not None else orbit.plot()
-        )
+        given = {"axes": axes, "figsize": figsize, "style": style, **options}
+        drawn: Any = orbit.plot(**{name: value for name, value in given.items() if value is not None})
         return drawn if hasattr(drawn, "savefig") else drawn.get_figure()
     points = np.atleast_2d(np.asarray(getattr(orbit, "points", getattr(orbit, "u", orbit)), float))
     with styled(style):
-        figure, axes = new_axes(axes, figsize=(4.6, 4.0))
+        figure, axes = new_axes(axes, figsize=figsize or (4.6, 4.0))
         if points.shape[0] > 1 and points.shape[1] == 2:
             axes.plot(*points.T, "o", color="#0b3c6f")
             axes.set_xlabel("$x_1$")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -85,6 +86,17 @@ def label_of(survey: Survey, name: str) -> str:
     return axis_label(name, unit=unit)
 
 
+def _upright(axes: Axes, label: str) -> str:
+    """A label that goes upward, on as many lines as the height of the axes asks for."""
+    from matplotlib import rcParams
+    from matplotlib.font_manager import FontProperties
+
+    settings: Any = rcParams
+    size = FontProperties(size=settings["axes.labelsize"]).get_size_in_points()
+    height = axes.get_window_extent().height / axes.get_figure(root=True).dpi * 72.0  # type: ignore[union-attr]
+    return textwrap.fill(label, max(12, int(height / (0.56 * size))))
+
+
 def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
     x, values = survey.plan.axes[over], survey.columns[name]
     if survey.plan.samples:
@@ -97,7 +109,7 @@ def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
     else:
         axes.plot(x, values, "o-", color=BLUE, markersize=3.5)
     axes.set_xlabel(label_of(survey, over))
-    axes.set_ylabel(label_of(survey, name))
+    axes.set_ylabel(_upright(axes, label_of(survey, name)))
 
 
 def _quantiles(values: np.ndarray, shares: tuple[float, ...]) -> np.ndarray:
@@ -120,7 +132,7 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     shown = np.ma.masked_invalid(values.T)
     colours = axes.pcolormesh(x, y, shown, cmap="viridis", shading="nearest", rasterized=True)
     bar = figure.colorbar(colours, ax=axes)
-    bar.set_label(label_of(survey, name) + (", worst sample" if survey.plan.samples else ""))
+    bar.set_label(_upright(axes, label_of(survey, name) + (", worst sample" if survey.plan.samples else "")))
     known = shown.compressed()
     if min(shown.shape) > 1 and known.size and known.max() > known.min():
         lines = axes.contour(x, y, shown, levels=7, colors="white", linewidths=1.0)
@@ -130,7 +142,7 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
         axes.plot(x[lost[:, 0]], y[lost[:, 1]], "x", color=RED, label="failed", linestyle="none")
         axes.legend(loc="best")
     axes.set_xlabel(label_of(survey, along[0]))
-    axes.set_ylabel(label_of(survey, along[1]))
+    axes.set_ylabel(_upright(axes, label_of(survey, along[1])))
     axes.grid(False)
 
 
@@ -143,5 +155,5 @@ def _samples(survey: Survey, name: str, figsize: tuple[float, float] | None) -> 
     for panel, (parameter, values) in zip(panels, drawn.items()):
         panel.plot(values, survey.columns[name], "o", color=BLUE, markersize=3.5)
         panel.set_xlabel(label_of(survey, parameter))
-    panels[0].set_ylabel(label_of(survey, name))
+    panels[0].set_ylabel(_upright(panels[0], label_of(survey, name)))
     return figure

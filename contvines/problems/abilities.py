@@ -26,6 +26,15 @@ class Evaluable(Protocol):
 
 
 @runtime_checkable
+class Rough(Protocol):
+    """May be given a rough start: its equations can be evaluated without their derivatives, and the lengths over which they bend are known."""
+
+    @property
+    def lengths(self) -> np.ndarray: ...
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+@runtime_checkable
 class Sectioned(Protocol):
     """Its motions can be simulated period by period; see :mod:`contvines.circles.section`."""
 
@@ -76,6 +85,14 @@ class Provable(Protocol):
         within: tuple[float, float] | None = None,
         special: Mapping[int, Any] | None = None,
     ) -> Any: ...
+
+
+@runtime_checkable
+class Nearing(Protocol):
+    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`."""
+
+    many: bool
+    closely: bool
 
 
 @runtime_checkable

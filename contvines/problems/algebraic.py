@@ -12,6 +12,7 @@ from .callables import CallableProblem
 from .conditions import Conditions
 from .derivatives import Differentiated
 from .images import image_map, images_of, smallest_image
+from .nearness import NEAREST
 from .outputs import Outputs
 from .parameters import ParameterSet
 from .pieces import Pieces
@@ -138,6 +139,8 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
                 self.n_multipliers = self.node - self.conditions.count
         elif dense and self.dimension <= WATCHED:
             self.n_multipliers, self.detection = self.dimension, "real"
+        elif self.functions.structure != "operator":
+            self.n_multipliers, self.detection, self.many = NEAREST, "real", True
         if not dense and self.conditions is not None:
             raise ValueError(
                 "conditions need a Jacobian that is an array; put them into F, with an unknown each"
@@ -196,10 +199,12 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         if not self.n_multipliers:
             return np.zeros(0)
         if self.detection == "real":
+            if self.many:
+                if self.closely:
+                    return self.algebra.nearest_eigenvalues(self, work)
+                return np.full(NEAREST, self.algebra.distance_to_singular(self, work), dtype=complex)
             if self.reference is None:
-                rows = np.ones(self.dimension) if self.scales is None else self.scales.rows
-                units = np.ones(self.dimension) if self.scales is None else self.scales.unknowns
-                self.reference = reference_of(work.jacobian, rows, units)
+                self.reference = reference_of(work.jacobian, *self.sizes())
             return watched(work.jacobian, self.reference)
         rate = 1.0 if self.scales is None else self.scales.rate
         return self._eigenvalues(work) / rate

@@ -14,12 +14,16 @@ from .breaks import find_break
 from .checks import disagreement
 from .derivatives import Differentiated
 from .functions import NotEvaluable
+from .nearness import side
 from .parameters import ParameterSet
 from .pieces import Pieces
 from .protocol import ProblemDefaults
 from .scales import Scales
 
 NOTICED = 1e-13  # noise of the unknowns below this is roundoff
+ROUNDING = (
+    64 * 2.0**-53
+)  # relative accuracy of a value that is found to roundoff; brackets may be narrower than that
 WORST = 1e-4  # more noise than this is not believed
 
 
@@ -36,6 +40,12 @@ class CallableProblem(ProblemDefaults):
         Scale of each unknown, as far as the user has given it.
     scales : Scales or None
         None until they have been learned.
+    reference
+        A matrix relative to which eigenvalues are watched for branch points where there is no spectrum.
+    many : bool
+        Whether they are watched only where a cheaper number asks for it; see :mod:`.nearness`.
+    closely : bool
+        Whether they are just now.
     trouble : str
         Why the equations could not be evaluated the last time that happened.
     """
@@ -45,8 +55,11 @@ class CallableProblem(ProblemDefaults):
     u0: np.ndarray
     given_scale: np.ndarray | None = None
     scales: Scales | None = None
-    reference: np.ndarray | None = None
+    reference: Any = None
+    many = False
+    closely = False
     trouble = ""
+    _side: tuple[Any, np.ndarray] | None = None
 
     given: dict[str, Any]
     pieces: Pieces
@@ -129,7 +142,21 @@ class CallableProblem(ProblemDefaults):
         scales = self.scales
         if scales is None:
             scales = self.scales = above("learn")(self, within, self.given_scale)
-        return scales.joined()
+        return scales.vector
+
+    def sizes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Typical sizes of equations and unknowns, 1 as long as they are not known."""
+        scales = self.scales
+        if scales is None:
+            return np.ones(self.dimension), np.ones(self.dimension)
+        return scales.rows, scales.unknowns
+
+    @property
+    def side(self) -> np.ndarray:
+        """The right-hand side that is watched, shape (N + 1,)."""
+        if self._side is None or self._side[0] is not self.scales:
+            self._side = self.scales, side(self.sizes()[0])
+        return self._side[1]
 
     def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown or the parameter changes by its scale."""
@@ -170,12 +197,12 @@ class CallableProblem(ProblemDefaults):
 
     # ------------------------------------------------------------------ what is wrong
     def uncertainty(self) -> float:
-        """Relative accuracy of what was evaluated last: of derivatives by differences, and of noisy equations."""
-        errors = self.functions.errors
+        """Relative accuracy of what was evaluated last: of derivatives by differences, of noisy equations, and of rounding."""
+        errors, least = self.functions.errors, max(self.noise, ROUNDING)
         if self.scales is None or not errors.any():
-            return self.noise
+            return least
         scale = self.scales.unknowns[: len(errors)]
-        return max(float((errors * scale).max() / self.scales.rows.max()), self.noise)
+        return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
         """Why a branch ends where Newton's method fails, as far as that can be told; else an empty string.

@@ -9,6 +9,8 @@ import numpy as np
 
 from .parameters import ParameterSet
 
+FLOAT = np.dtype(np.float64)
+
 
 class NotEvaluable(ArithmeticError):
     """A user's function could not be evaluated; the message is a sentence with the function's own words."""
@@ -56,6 +58,8 @@ class UserFunction:
             If f raises, or returns complex numbers for real ones, or no numbers at all.
         """
         value = self.raw(u, p)
+        if type(value) is np.ndarray and value.dtype == FLOAT:
+            return value.flatten()
         try:
             result = np.array(value)
             if result.dtype.kind == "c":
@@ -78,6 +82,8 @@ def as_matrix(given: Any, n: int) -> Any:
     NotEvaluable
         If it is none, or has another shape.
     """
+    if type(given) is np.ndarray and given.dtype == FLOAT and given.shape == (n, n):
+        return given.copy()
     if hasattr(given, "tocsc") or hasattr(given, "matvec"):
         if given.shape != (n, n):
             raise NotEvaluable(f"jacobian returns shape {given.shape}; ({n}, {n}) is needed")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -33,8 +34,9 @@ class Scales:
     rate: float = 1.0
     noise: float = 0.0
 
-    def joined(self) -> np.ndarray:
-        """Scales of (u, p) as one vector."""
+    @cached_property
+    def vector(self) -> np.ndarray:
+        """Scales of (u, p)."""
         return np.append(self.unknowns, self.parameter)
 
     def head(self, n: int) -> Scales:

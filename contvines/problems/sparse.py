@@ -16,31 +16,38 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, gmres, splu
+from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, splu
 
+from .factors import Method, SuperLUFactors
 from .functions import NotEvaluable
+from .interpreted import assign, inspect
 from .kernels import Kernels
-from .sparse_loci import assign, flip, matrix, transpose
+from .matrix_free import iterate
+from .nearness import distance, nearest_sparse
+from .sparse_loci import flip, matrix, transpose
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
 ENOUGH = 1e-9  # ... at which it will do
 SMALL = 1e-8  # size of the last row where the bordered matrix is factorised
-KRYLOV = 1e-11  # relative residual of GMRES
+NEARLY = 1e-11  # ... with the factors of an earlier Jacobian
+CLOSE, SWEEPS = 1e-2, 8  # refinement with those has to gain two digits each time, so many times at most
 EIGENVALUES = 1e-8  # relative accuracy of the leading eigenvalues
 
 
 @dataclass
 class SparseWork:
-    """F, F_u, F_p and the factors of F_u, made when they are first needed."""
+    """F, F_u, F_p and the factors of F_u, made when they are first needed; `near` are those of the Jacobian before, if they are kept."""
 
     residual: np.ndarray
     derivative: np.ndarray
     jacobian: Any = None
     factors: Any = None
+    near: Any = None
+    keep: bool = True
     failed: bool = False
-    ordering: str = ""
-    options: dict[str, Any] = field(default_factory=dict)
+    method: Method = field(default_factory=Method)
+    eliminated: Any = None  # factors, border, F_u^-1 F_p and Schur complement of the last block elimination
+    distance: float = 1.0
 
     def __getitem__(self, i: int) -> np.ndarray:
         return (self.residual, self.derivative)[i]
@@ -48,7 +55,9 @@ class SparseWork:
 
 def workspace(problem: Any) -> SparseWork:
     """Arrays for a problem."""
-    return SparseWork(np.zeros(problem.dimension), np.zeros(problem.dimension))
+    # eigenvalues need factors of the very Jacobian, so that those of another one save nothing
+    keep = problem.spectrum == "none"
+    return SparseWork(np.zeros(problem.dimension), np.zeros(problem.dimension), keep=keep)
 
 
 def row_sizes(work: SparseWork, scale: np.ndarray) -> np.ndarray:
@@ -67,6 +76,8 @@ def linearise(data: Any, u: np.ndarray, p: float, work: SparseWork) -> float:
             data.trouble = str(error)
             return math.inf
         work.residual[:], work.derivative[:] = residual, derivative
+        if work.keep and work.factors is not None and work.factors.dear:
+            work.near = work.factors
         work.factors, work.failed = None, False
         total = float(derivative.sum())
         if sp.issparse(jacobian):
@@ -79,39 +90,12 @@ def linearise(data: Any, u: np.ndarray, p: float, work: SparseWork) -> float:
 
 
 # ---------------------------------------------------------------------- factors
-def _parity(order: np.ndarray) -> int:
-    """0 for an even permutation, 1 for an odd one."""
-    n = len(order)
-    graph = sp.csr_matrix((np.ones(n, dtype=np.int8), (np.arange(n), order)), shape=(n, n))
-    return (n - connected_components(graph, directed=False)[0]) % 2
-
-
-def _sign(factors: Any) -> float:
-    """Sign of the determinant."""
-    diagonal = factors.U.diagonal()
-    if not (diagonal != 0.0).all():
-        return 0.0
-    odd = int((diagonal < 0.0).sum()) + _parity(factors.perm_r) + _parity(factors.perm_c)
-    return -1.0 if odd % 2 else 1.0
-
-
 def _factorise(work: SparseWork) -> Any:
-    """Factors of F_u, or None where it is singular; the ordering that fills in less is found out once."""
+    """Factors of F_u, or None where it is singular."""
     if work.factors is None and not work.failed:
-        matrix = work.jacobian
+        work.near = None  # two sets of factors are never kept at once
         try:
-            if work.ordering:
-                work.factors = splu(matrix, permc_spec=work.ordering)
-            else:
-                pattern = matrix.copy()
-                pattern.data[:] = 1.0
-                symmetric = (pattern != pattern.T).nnz == 0
-                tries = {
-                    name: splu(matrix, permc_spec=name)
-                    for name in (("MMD_AT_PLUS_A", "COLAMD") if symmetric else ("COLAMD",))
-                }
-                work.ordering = min(tries, key=lambda name: tries[name].nnz)
-                work.factors = tries[work.ordering]
+            work.factors = work.method.factorise(work.jacobian)
         except RuntimeError:
             work.failed = True
     return work.factors
@@ -133,10 +117,41 @@ def _product(work: SparseWork, border: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def _eliminate(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float] | None:
-    """Block elimination with refinement; None where that is not accurate."""
+    """Block elimination with refinement, if that will do with the factors of an earlier Jacobian; None where it is not accurate."""
+    if work.factors is None and work.near is not None:
+        found = _refined(work, work.near, border, sides, CLOSE, SWEEPS, NEARLY)
+        if found is not None:
+            return found
     factors = _factorise(work)
-    if factors is None:
-        return None
+    return None if factors is None else _refined(work, factors, border, sides, 0.5, 4, ENOUGH)
+
+
+def _refined(
+    work: SparseWork,
+    factors: Any,
+    border: np.ndarray,
+    sides: np.ndarray,
+    shrink: float,
+    sweeps: int,
+    enough: float,
+) -> tuple[np.ndarray, float] | None:
+    """Block elimination with factors of F_u, or of a matrix that is nearly that, and iterative refinement.
+
+    Parameters
+    ----------
+    work, factors, border, sides
+    shrink : float
+        The residual has to shrink by this factor each time.
+    sweeps : int
+        At most so many times.
+    enough : float
+        Relative residual that will do.
+
+    Returns
+    -------
+    (ndarray, float) or None
+        Solutions and sign of the determinant. That of F_u is the sign of the factors: refinement would not converge otherwise.
+    """
     with np.errstate(all="ignore"):
         columns = factors.solve(np.column_stack([sides[:-1, 0], work.derivative]))
         column = columns[:, 1]
@@ -152,22 +167,21 @@ def _eliminate(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple
         size[size == 0.0] = 1.0
         scale = float(np.abs(work.jacobian.data).max(initial=0.0))
         before = math.inf
-        for _ in range(4):
+        for _ in range(sweeps):
             rest = sides - _product(work, border, x)
             rough = np.abs(rest).max(axis=0) / np.maximum(size, scale * np.abs(x).max(axis=0))
             error = float(rough.max())
-            if not error > REFINED:
-                break
-            if not error < 0.5 * before:
+            if not error > REFINED or not error < shrink * before:
                 break
             before = error
             more = factors.solve(rest[:-1])
             low = (rest[-1] - border[:-1] @ more) / corner
             x[-1] += low
             x[:-1] += more - np.outer(column, low)
-        if not error < ENOUGH:
+        if not error < enough:
             return None
-    return x, _sign(factors) * math.copysign(1.0, corner)
+    work.eliminated = factors, border.copy(), column, corner
+    return x, factors.sign * math.copysign(1.0, float(x[-1, 1]))
 
 
 def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
@@ -181,40 +195,14 @@ def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np
         if shift:
             matrix = (matrix + shift * sp.identity(len(border), format="csc")).tocsc()
         try:
-            factors = splu(matrix, permc_spec=work.ordering or "COLAMD")
+            factors = SuperLUFactors(matrix, work.method.ordering or "COLAMD")
         except RuntimeError:
             continue
         x = factors.solve(scaled)
         rest = scaled - matrix @ x
         more = factors.solve(rest)
-        return (x + more if np.isfinite(more).all() else x), (0.0 if shift else _sign(factors))
+        return (x + more if np.isfinite(more).all() else x), (0.0 if shift else factors.sign)
     return np.full_like(sides, np.nan), 0.0
-
-
-def _iterate(data: Any, work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
-    """GMRES on the bordered system."""
-    n = len(border)
-    inverse = data.preconditioner_at()
-
-    def product(x: np.ndarray) -> np.ndarray:
-        x = x.reshape(-1)
-        return np.append(work.jacobian @ x[:-1] + work.derivative * x[-1], border @ x)
-
-    def precondition(x: np.ndarray) -> np.ndarray:
-        x = x.reshape(-1)
-        return np.append(inverse @ x[:-1], x[-1] / max(float(np.abs(border).max()), 1e-300))
-
-    operator = LinearOperator((n, n), matvec=product, dtype=float)  # type: ignore[call-arg]
-    near = None if inverse is None else LinearOperator((n, n), matvec=precondition, dtype=float)  # type: ignore[call-arg]
-    result = np.zeros_like(sides)
-    for k in range(2):
-        if np.any(sides[:, k]):
-            found, _ = gmres(
-                operator, sides[:, k], M=near, rtol=KRYLOV, atol=0.0, restart=min(n, 80), maxiter=40
-            )
-            gap = np.linalg.norm(product(found) - sides[:, k]) / np.linalg.norm(sides[:, k])
-            result[:, k] = found if gap < 1e-4 else np.nan
-    return result, 1.0
 
 
 def bordered(
@@ -225,8 +213,9 @@ def bordered(
     sides[:-1, 0] = -work.residual
     sides[-1] = n, 1.0
     if not sp.issparse(work.jacobian):
-        solution, sign = _iterate(data, work, border, sides)
+        solution, sign = iterate(data, work, border, sides)
     else:
+        work.eliminated = None
         found = _eliminate(work, border, sides)
         solution, sign = _direct(work, border, sides) if found is None else found
     step[:], tangent[:] = solution[:, 0], solution[:, 1]
@@ -234,6 +223,27 @@ def bordered(
 
 
 # ---------------------------------------------------------------------- eigenvalues
+def distance_to_singular(data: Any, work: SparseWork) -> float:
+    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.nearness`. Without refinement: it is a rough number."""
+    if work.eliminated is None:
+        return work.distance
+    factors, border, column, corner = work.eliminated
+    with np.errstate(all="ignore"):
+        image = factors.solve(data.side[:-1])
+        last = -float(border[:-1] @ image) / corner
+        image = np.append(image - column * last, last)
+        work.distance = distance(image, None if data.scales is None else data.scales.vector)
+    return work.distance
+
+
+def nearest_eigenvalues(data: Any, work: SparseWork) -> np.ndarray:
+    """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
+    if data.reference is None:
+        rows, units = data.sizes()
+        data.reference = sp.diags_array(rows / units) if _factorise(work) is None else work.jacobian
+    return nearest_sparse(_factorise(work), data.reference)
+
+
 def leading(work: SparseWork, count: int, shift: float) -> np.ndarray:
     """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
 
@@ -303,16 +313,6 @@ def eigenvectors(matrix: Any, values: np.ndarray) -> np.ndarray:
             vector /= np.linalg.norm(vector)
         columns.append(vector)
     return np.array(columns).T.reshape(n, len(columns))
-
-
-def inspect(data: Any, u: np.ndarray, p: float, work: SparseWork, row: np.ndarray) -> None:
-    """Raw spectrum of the linearisation, then the margins of problems that have any."""
-    spectrum = data.raw_spectrum(work)
-    m = 2 * len(spectrum)
-    row[0:m:2] = spectrum.real
-    row[1:m:2] = spectrum.imag
-    if len(row) > m:
-        row[m:] = data.margins(u, p)
 
 
 KERNELS = Kernels(

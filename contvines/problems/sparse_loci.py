@@ -10,11 +10,6 @@ import scipy.sparse as sp
 LARGEST = 300  # unknowns up to which a dense matrix is made for normal forms
 
 
-def assign(data: Any, other: Any, value: float) -> None:
-    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
-    data.values.assign(other.parameter, value)
-
-
 def flip(data: Any, work: Any, sign: float) -> None:
     """Nothing: what has a sparse Jacobian is no map."""
 

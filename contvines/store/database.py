@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..interrupts import HELD
-from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, damaged, pending
+from .header import APPLICATION_ID, VERSION, StoreError, check_header, damaged, pending
 from .packing import digest_of, packed, split, unpacked
+from .publishing import publish
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -62,7 +63,7 @@ class Store:
                 db.execute("COMMIT")
             finally:
                 db.close()
-            _publish(draft, path)
+            publish(draft, path)
         except FileExistsError:
             raise StoreError(f"{path}: this file exists already; choose another name with -o.") from None
         except (sqlite3.Error, OSError) as error:
@@ -318,41 +319,6 @@ class Store:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def _publish(draft: Path, path: Path) -> None:
-    """Give a whole file its name; fails, rather than clobbers, if someone else was first.
-
-    The log that a killed run has left, of a file that is gone, must not be taken for that of the new one.
-    """
-    if path.exists():
-        raise FileExistsError
-    orphans = [(path.with_name(path.name + tail), draft.with_name(draft.name + tail)) for tail in TAILS]
-    orphans = [(log, aside) for log, aside in orphans if _renamed(log, aside)]
-    try:
-        try:
-            os.link(draft, path)
-        except FileExistsError:
-            raise
-        except OSError:  # a file system without links
-            if path.exists():
-                raise FileExistsError from None
-            os.rename(draft, path)
-    except BaseException:
-        for log, aside in orphans:  # they belong to the file of who was first
-            _renamed(aside, log)
-        raise
-    for _, aside in orphans:
-        with suppress(OSError):
-            aside.unlink()
-
-
-def _renamed(old: Path, new: Path) -> bool:
-    try:
-        os.rename(old, new)
-    except OSError:
-        return False
-    return True
 
 
 def _same_arrays(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.machines.states import state_of
-from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS, V
+from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS
 from orbits.simulation.driver import collect
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
@@ -101,7 +101,7 @@ class _Tally:
         self.found, self.state = found, found.state.copy()
         self.begin = self._time()
         self.impacts, self.contacts, self.moving = 0, 0, True
-        self.q1 = 0.0 if found.machine.state > V else np.nan
+        self.q1 = 0.0 if found.machine.moving_cavity else np.nan
         self.w = self.speed = 0.0
         frequency = float(found.params[found.model.parameter_names.index("frequency")])
         self.per_period = int(np.ceil(min(200.0, PER_OSCILLATION * max(1.0, 1.0 / frequency))))
@@ -145,6 +145,6 @@ class _Tally:
             reach = np.append(reach, run.sample().w)
         left, right = found.machine.walls(found.params)
         self.w = min(max(left, -right), max(self.w, float(np.abs(reach).max())))
-        if found.machine.state > V:
+        if found.machine.moving_cavity:
             self.q1 = max(self.q1, run.peak_cavity(per_period))
         self.moving = run.status in (TIME_REACHED, EVENTS_FULL) and self._time() > time

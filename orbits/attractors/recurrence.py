@@ -147,7 +147,7 @@ def settle(
 
 def _comes_to_rest(engine: Machine, params: np.ndarray, state: np.ndarray) -> bool:
     """Wait, with the absorber stuck, until its oscillator has settled; False if it slips meanwhile."""
-    if engine.state <= V:
+    if not engine.moving_cavity:
         return True  # its cavity moves as prescribed
     length = 64.0
     while state[TURNS] < LONGEST:
@@ -285,7 +285,7 @@ def _attractor(
     residual: float = 0.0,
     multipliers: np.ndarray | None = None,
 ) -> Attractor:
-    width = 4 if engine.state > 6 else 2
+    width = engine.node
     codes = np.empty(0, np.int8) if codes is None else codes
     modes = np.empty(0, np.int8) if modes is None else modes
     nodes = np.empty((0, width)) if nodes is None else nodes

@@ -19,14 +19,17 @@ CREEPS = (
 )
 PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be told from rest"
 TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be told from contact"
+UNKNOWN = (
+    "no motion that goes on from this one was found, neither by the rules of the contacts nor by simulation"
+)
 
 
 def dead_end(problem: CycleProblem, point: Any) -> str:
-    """A sentence that says why no motion was found on the other side of a border; empty where none is known."""
+    """A sentence that says why no motion was found on the other side of a border."""
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     orbit = problem.orbit(u, p)
     if not len(problem.word):
-        return CREEPS if _gives_way_one_way(orbit) else ""
+        return CREEPS if _gives_way_one_way(orbit) else UNKNOWN
     margins = orbit.relative_margins
     speeds = [m.value for m in margins if m.kind == "approach" and VANISHING < m.value < SLOW]
     turns = [k for k, letter in enumerate(orbit.word.events) if letter == "t"]
@@ -35,7 +38,7 @@ def dead_end(problem: CycleProblem, point: Any) -> str:
     ]
     if speeds:
         return PILING.format(speed=min(speeds))
-    return TOUCHING.format(gap=min(gaps)) if gaps else ""
+    return TOUCHING.format(gap=min(gaps)) if gaps else UNKNOWN
 
 
 def piled_up(orbit: Solution) -> bool:

@@ -193,7 +193,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         stamp,
         inline=True,
         unpin=kernels.unpin,
-        multipliers=periodic_schur.multipliers_of_two if node == 2 else periodic_schur.multipliers_of_any,
+        multipliers=periodic_schur.multipliers_of(node),
         margins=kernels.margins,
     )
     flip = specialise(rearranged.flip, stamp, inline=True, unpin=kernels.unpin)

@@ -76,6 +76,8 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
 def cyclic_kernels(node: int) -> SimpleNamespace:
     """Compiled elimination for cycles whose nodes have `node` unknowns.
 
+    In one piece: the kernels share a size that numba unrolls, and so are made together.
+
     Returns
     -------
     SimpleNamespace

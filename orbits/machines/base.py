@@ -53,6 +53,8 @@ class Model:
     patience: ClassVar[int] = 0
     """How often a start that is looked for by simulation may be simulated four times longer."""
     rest: ClassVar[Rest]
+    moving_cavity: ClassVar[bool] = False
+    """Whether the cavity has a motion of its own, v and v' in the state; else it moves as prescribed."""
 
     settable: ClassVar[tuple[Parameter, ...]]
     """What may be given: the table, and names that stand for several of its numbers."""

@@ -58,6 +58,7 @@ def stepper(name: str) -> Machine:
         kernels.works,
         kernels.energies,
         chosen.walls,
+        chosen.moving_cavity,
     )
 
 

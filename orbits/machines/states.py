@@ -23,7 +23,7 @@ def states_of(
     psi = nodes[:, 0] - turns * TWO_PI
     states[:, PSI] = np.where((psi >= TWO_PI) | (psi < 0.0), 0.0, psi)
     states[:, TURNS], states[:, MODE] = turns, modes
-    if engine.state > V:
+    if engine.moving_cavity:
         states[:, V], states[:, V_RATE] = nodes[:, 2], nodes[:, 3]
     hits = codes < 2
     states[:, W] = nodes[:, 1]
@@ -39,7 +39,7 @@ def nodes_of(
 ) -> np.ndarray:
     """Nodes, shape (n, NODE), of events; phases are counted through (2 pi per turn)."""
     states = event_states(engine, modes, rows)
-    nodes = np.empty((len(rows), 4 if engine.state > V else 2))
+    nodes = np.empty((len(rows), engine.node))
     nodes[:, 0] = states[:, PSI] + TWO_PI * states[:, TURNS]
     impact = codes < 2
     nodes[:, 1] = np.where(impact, _cavity_speed(engine, params, states) - states[:, RATE], states[:, W])
@@ -61,7 +61,7 @@ def event_states(machine: Machine, modes: np.ndarray, rows: np.ndarray) -> np.nd
     states[:, W] = rows[:, 2]
     states[:, RATE] = rows[:, 4]
     states[:, MODE] = modes
-    if machine.state > V:
+    if machine.moving_cavity:
         states[:, V] = rows[:, 5]
         states[:, V_RATE] = rows[:, 6]
     return states

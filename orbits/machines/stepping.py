@@ -8,7 +8,7 @@
    ``Psi`` is the forcing phase reduced to [0, 2 pi) and ``turns`` the number of whole forcing periods, so
    that no digit of the phase is lost in a long run. ``mode`` is -1, 0 or +1. ``w + low`` is the position:
    ``low`` keeps the digits of ``w`` below roundoff, so that a turn 1e-18 away from a wall stays there.
-   The reduced model uses the first six entries, the coupled one all eight.
+   A machine whose cavity moves as prescribed uses the first six entries, one with ``moving_cavity`` all eight.
    ``mode == 0`` with ``abs(w) == 1`` exactly is *persistent contact*: the absorber rests on the wall and can
    only leave it inwards.
 
@@ -76,3 +76,19 @@ class Machine:
     works: Callable
     energies: Callable
     walls: Callable[[np.ndarray], tuple[Any, Any]]
+    moving_cavity: bool = False
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """Where a state has the coordinates of the motion at a definite phase."""
+        return (W, RATE, V, V_RATE) if self.moving_cavity else (W, RATE)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of these: position and velocity in the cavity, then those of the centre of mass."""
+        return ("w", "w_rate", "v", "v_rate")[: len(self.places)]
+
+    @property
+    def node(self) -> int:
+        """Unknowns per event: the phase, and all coordinates but one, which the event fixes."""
+        return len(self.places)

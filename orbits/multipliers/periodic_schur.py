@@ -25,7 +25,14 @@ from orbits.multipliers.periodic_qr import periodic_multipliers
 from orbits.multipliers.product_of_any import product_of_any
 from orbits.multipliers.product_of_two import CERTAIN, UNCERTAIN, UNDEFINED, dominant_of_two, product_of_two
 
-__all__ = ["multipliers", "multipliers_of_any", "multipliers_of_two", "periodic_multipliers", "scratch_size"]
+__all__ = [
+    "multipliers",
+    "multipliers_of",
+    "multipliers_of_any",
+    "multipliers_of_two",
+    "periodic_multipliers",
+    "scratch_size",
+]
 
 
 @ctypes.CFUNCTYPE(
@@ -95,6 +102,11 @@ def multipliers_of_two(A, D, twist, re, im, scratch):
 def multipliers_of_any(A, D, twist, re, im, scratch):
     """`multipliers` for nodes of more than two unknowns."""
     return _otherwise(product_of_any(A, D, twist, re, im, scratch), A, D, twist, re, im, scratch)
+
+
+def multipliers_of(node):
+    """The kernel for nodes of so many unknowns."""
+    return multipliers_of_two if node == 2 else multipliers_of_any
 
 
 @kernel

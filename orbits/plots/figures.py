@@ -35,7 +35,12 @@ def new_figure(size: tuple[float, float]) -> Figure:
     import matplotlib as mpl
 
     shrink = max(0.72, min(1.0, size[0] / 6.5))
-    mpl.rcParams.update({name: shrink * mpl.rcParams[name] for name in ("font.size", "lines.markersize")})
+    changed: dict[Any, Any] = {
+        name: shrink * mpl.rcParams[name]
+        for name in ("font.size", "lines.markersize", "axes.labelsize", "axes.titlesize", "legend.fontsize")
+        if isinstance(mpl.rcParams[name], int | float)
+    }
+    mpl.rcParams.update(changed)  # inside `styled`, which puts everything back
     shown = sys.modules.get("matplotlib.pyplot")
     if shown is not None and not any(word in shown.get_backend().lower() for word in (*QUIET, "inline")):
         return shown.figure(figsize=size)

@@ -102,7 +102,7 @@ class Motif:
             rows = [end.push - mode * flights.limit[mode], end.w - following[1]]
         else:
             rows = [end.w1, end.w - following[1]]
-        if self.node == 4:
+        if flights.moving_cavity:
             rows += [end.v - following[2], end.v1 - following[3]]
         return rows
 

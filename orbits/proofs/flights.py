@@ -72,6 +72,7 @@ class Shaken:
     """Flights of a cavity that is shaken harmonically; node (Psi, B+) at impacts, (Psi, w) elsewhere."""
 
     node = 2
+    moving_cavity = False
 
     limit: Mapping[int, Any]
     room: Mapping[int, Any]
@@ -129,6 +130,7 @@ class Coupled:
     """Flights of the absorber on its oscillator; node (Psi, B+, v, v') at impacts, (Psi, w, v, v') elsewhere."""
 
     node = 4
+    moving_cavity = True
     bias = 0
     limit: Mapping[int, Any]
     room: Mapping[int, Any]

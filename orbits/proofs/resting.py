@@ -54,7 +54,7 @@ def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) 
         reserves = [flights.limit[side] - side * flights.bias - size for side in (1, -1)]
         real = True if all(r > 0 for r in reserves) else False if any(r < 0 for r in reserves) else None
         # the oscillator's free motion decays by exp(-alpha T); the shaken cavity has none
-        stable = True if motif.node == 2 or p["damping"] > 0 else None
+        stable = True if not flights.moving_cavity or p["damping"] > 0 else None
     proof = Proof("orbit", motif, given, box=Box([], []), real=real, stable=stable, bits=bits)
     if real is None:
         return replace(proof, obstacles=(Obstacle(Step.ADMISSIBILITY, Remedy.BORDER, 0, "stick"),))

@@ -107,7 +107,7 @@ def first_state(
         return state
     given = dict(start or {})
     allowed = [key for key, place in _KEYS.items() if place < engine.state]
-    if engine.state > V:
+    if engine.moving_cavity:
         allowed += _BODIES
         if any(key in given for key in _BODIES):
             eps = float(params[model.parameter_names.index("mass_ratio")])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.machines.states import state_of
-from orbits.machines.stepping import FAILED, PSI, RATE, TURNS, V_RATE, Machine, V, W
+from orbits.machines.stepping import FAILED, PSI, TURNS, Machine, W
 from orbits.simulation.driver import buffers, skip
 
 EVENTS = 4096  # in one period at most
@@ -27,13 +27,13 @@ class Section:
     def __init__(self, engine: Machine, params: np.ndarray, code: int, mode: int, periods: int) -> None:
         self.engine, self.params = engine, params
         self.code, self.mode, self.periods = code, mode, periods
-        self.places = [W, RATE, V, V_RATE] if engine.state > V else [W, RATE]
+        self.places = list(engine.places)
         self.scratch = buffers(engine, 64)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Position and velocity in the cavity, then those of the centre of mass."""
-        return ("w", "w_rate", "v", "v_rate")[: len(self.places)]
+        return self.engine.coordinates
 
     def through(self, u: np.ndarray) -> np.ndarray:
         """Where the motion that begins with the first of the nodes u passes phase zero next, shape (d,)."""

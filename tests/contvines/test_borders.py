@@ -187,6 +187,46 @@ def test_what_lies_before_a_border_is_found_whatever_is_behind(max_step, flip, b
     assert [value for _, value in found] == pytest.approx([flip, border], abs=1e-12)
 
 
+@pytest.mark.parametrize("width", [5e-7, 1e-8])
+def test_the_far_border_of_a_short_branch_is_a_point_of_its_own(width):
+    """Word "b" lasts from 1/2 to 1/2 + width: its two borders look alike, and are two."""
+
+    def short(line, point):
+        other = Line("b", -0.5, 2.0, [1.0, -1.0], [0.5, 0.5 + width])
+        p = 0.5 + 0.5 * width
+        return Seed(other, np.array([2.0 * p - 0.5]), p, None, "border", "persistence", True)
+
+    class Same(Line):
+        def margin_kind(self, j):
+            return "velocity-graze"
+
+    graph = cv.diagram(Same("a", 0.0, 1.0, [-1.0], [0.5], [short]), within=(0.0, 1.0))
+    borders = [point for point in graph.special.values() if point.kind != "end"]
+    assert [point.value for point in borders] == pytest.approx([0.5, 0.5 + width], abs=1e-12)
+    assert graph["B2"].range == pytest.approx((0.5, 0.5 + width), abs=1e-12)
+
+
+@pytest.mark.parametrize("max_step", [0.03, 0.007])
+@pytest.mark.parametrize("behind", [0.0, 3e-6])
+def test_where_the_parameter_turns_back_at_a_border_there_is_no_fold(max_step, behind):
+    """t = u with p = -t^2 and the margin t, as where a stick vanishes: the branch ends where p is stationary, to rounding."""
+
+    class Turning(Line):
+        u0, p0 = np.array([0.7]), -0.49
+
+        def equations(self, u, p):
+            return np.array([p + u[0] ** 2]), np.array([[2.0 * u[0]]]), np.array([1.0])
+
+        def margins(self, u, p):
+            return np.array([u[0] + behind])
+
+    problem = Turning("t", 0.0, 1.0, [1.0], [0.0])
+    problem.u0, problem.p0 = np.array([0.7]), -0.49
+    graph = cv.diagram(problem, within=(-1.0, 1.0), settings={"max_step": max_step})
+    assert [point.kind for point in graph.special.values() if point.kind != "end"] == ["velocity-graze"]
+    assert graph["VG1"].value == pytest.approx(-(behind**2), abs=1e-13)
+
+
 class Vanishing(ProblemDefaults):
     """x = p, and a length t with t (t - 3 x) = 0: it vanishes at p = 0, where t = 0 is a solution, too, and F_u singular.
 

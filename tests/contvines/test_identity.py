@@ -62,3 +62,21 @@ def test_same_vector():
     assert same_vector(np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-7]))
     assert not same_vector(np.array([1.0, 2.0]), np.array([1.0, 2.001]))
     assert not same_vector(np.array([1.0]), np.array([1.0, 2.0]))
+
+
+def test_forms_with_different_keys_are_different_solutions():
+    one = np.array([0.5])
+    assert same_form(("a", one), ("a", one.copy())) and not same_form(("a", one), ("b", one.copy()))
+
+
+def test_the_end_of_a_branch_belongs_to_it():
+    """At a fold, where a branch is cut, no other point of it has the value: its end itself is compared."""
+    problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
+    graph = cv.diagram(problem, within=(-0.6, 0.6))
+    branch = graph["B1"]
+    register = Register()
+    register.add(branch, Engine(branch.problem, (-0.6, 0.6), Settings()))
+    for i in (0, -1):
+        beyond = float(branch.values[i]) * (1.0 + 1e-8)
+        assert register.find(branch.problem, np.array([np.sqrt(1 - beyond**2)]), beyond) is branch
+        assert register.find(branch.problem, np.array([-np.sqrt(1 - beyond**2)]), beyond) is None

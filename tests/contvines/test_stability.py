@@ -93,3 +93,19 @@ def test_a_sliver_too_narrow_to_be_seen_is_told_of():
     graph = cv.diagram(problem, within=(-0.1, 0.2), depth=0)
     for point in (*graph.of_kind("fold"), *graph.of_kind("period-doubling")):
         assert "would not be resolved" in point.note
+
+
+@pytest.mark.parametrize("rate, stable", [(-1e-4, True), (5e-4, False), (0.0, False)])
+def test_a_flow_is_stable_left_of_the_axis_only(rate, stable):
+    """u' = rate u at rest, and a conservative pair, whose eigenvalues are imaginary all along: nothing is attracted."""
+    problem = cv.AlgebraicProblem(lambda u, p: rate * (u - p), [0.0], 0.0, spectrum="flow")
+    assert bool(cv.diagram(problem, within=(-1.0, 1.0))["B1"].stable.all()) is stable
+    turning = cv.AlgebraicProblem(lambda u, p: np.array([u[1], p - u[0]]), [0.0, 0.0], 0.0, spectrum="flow")
+    assert not cv.diagram(turning, within=(-1.0, 1.0))["B1"].stable.any()
+
+
+def test_a_slow_instability_beside_fast_decays_is_one():
+    """Nine eigenvalues at -1, and one at 1e-4: however small beside them, it is to the right of the axis."""
+    rates = np.array([-1.0] * 9 + [1e-4])
+    problem = cv.AlgebraicProblem(lambda u, p: rates * (u - p), np.zeros(10), 0.0, spectrum="flow")
+    assert not cv.diagram(problem, within=(-1.0, 1.0))["B1"].stable.any()

@@ -10,14 +10,16 @@ from orbits.compiling.decorators import stored_with
 from orbits.machines.absorber import law as _numbers
 from orbits.machines.absorber.law import law
 from orbits.machines.cavity import law as _law
+from orbits.machines.cavity import legs as _legs
 from orbits.machines.cavity import motion as _motion
 from orbits.machines.cavity import simulation as _simulation
+from orbits.machines.cavity.legs import launch_with
 from orbits.machines.cavity.motion import energies_with, sample_with, works_with
-from orbits.machines.cavity.simulation import advance_with, launch_with
+from orbits.machines.cavity.simulation import advance_with
 
 STATE = 6
 ROW = 5
-SOURCES = (_numbers, _law, _motion, _simulation, _digits)
+SOURCES = (_numbers, _law, _legs, _motion, _simulation, _digits)
 
 
 @stored_with(*SOURCES)

@@ -23,6 +23,8 @@ from orbits.machines.pinning import last_flight
 def cycle(data, u, work, law, rate):
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
+    In one piece: the derivatives of a flight are products of some thirty local numbers, which a function would have to return.
+
     Parameters
     ----------
     data : tuple

@@ -80,6 +80,7 @@ class Coupled(Model):
 
     name: ClassVar[str] = "coupled"
     node_names: ClassVar[tuple[str, ...]] = ("phase", "B or w", "v", "v_rate")
+    moving_cavity: ClassVar[bool] = True
     default_measure: ClassVar[str] = "max_abs_q1"
     default_parameter: ClassVar[str] = "frequency"
     driven_by: ClassVar[str] = "forcing"

@@ -72,6 +72,8 @@ def _response(par, slope, mass, d_mass):
 def linearise(data, u, p, work):
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
+    In one piece: the derivatives of a flight are products of some fifty local numbers, which a function would have to return.
+
     Parameters
     ----------
     data : tuple

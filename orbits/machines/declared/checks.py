@@ -12,7 +12,8 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
 from orbits.machines.declared import engine
-from orbits.machines.declared.equations import Equations, PageError
+from orbits.machines.declared.equations import Equations
+from orbits.machines.declared.formulas import PageError
 
 DRAWS = 8  # random states at which formulas are compared
 SAME = 1e-9  # relative

@@ -19,47 +19,11 @@ from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import HELD, Wall
 from orbits.machines.declared import engine
+from orbits.machines.declared.formulas import Named, NoPhase, PageError, States, called
 from orbits.symbols import Symbol
 
 CLOCK = "phase"
 PatternKey = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
-
-
-class PageError(ValueError):
-    """A page that is no machine; the sentence names the contact or field, what is wrong with it, and the way out."""
-
-
-class States(Sequence):
-    """The states as a page sees them: a sequence that also knows their names."""
-
-    def __init__(self, names: Sequence[str], values: Sequence[Any]) -> None:
-        self._values = tuple(values)
-        self.__dict__.update(zip(names, self._values))
-
-    def __getitem__(self, place: Any) -> Any:
-        return self._values[place]
-
-    def __len__(self) -> int:
-        return len(self._values)
-
-    def __getattr__(self, name: str) -> Any:
-        known = ", ".join(k for k in self.__dict__ if k != "_values")
-        raise PageError(f"state.{name}: there is no state of this name; the states are {known}")
-
-
-class Named:
-    """Parameters, or contact forces and signs, by name; an unknown one is refused with a sentence."""
-
-    def __init__(self, what: str, values: Mapping[str, Any]) -> None:
-        self._what = what
-        self.__dict__.update(values)
-
-    def __getattr__(self, name: str) -> Any:
-        known = ", ".join(k for k in self.__dict__ if k != "_what")
-        raise PageError(
-            f"{self._what}.{name}: the page declares no such {'parameter' if self._what == 'p' else 'contact'}; "
-            f"it has {known or 'none'}"
-        )
 
 
 @dataclass(frozen=True)
@@ -199,7 +163,7 @@ class Equations:
     # ------------------------------------------------------------------ reading the page
     def value(self, function: Any, what: str) -> Symbol:
         """A function of (state, phase, p), as a symbol."""
-        return self._symbol(_called(what, function, self.state, self.phase, self.p), what)
+        return self._symbol(called(what, function, self.state, self.phase, self.p), what)
 
     def quantity(self, given: Any, what: str) -> Symbol:
         """A number, the name of a parameter, or a function of (state, phase, p)."""
@@ -226,7 +190,7 @@ class Equations:
                 given[contact.name] = forces[j]
             elif isinstance(contact, Switch):
                 given[contact.name] = self.sign[j]
-        rates = _called("motion", self._motion, self.state, self.phase, self.p, Named("contact", given))
+        rates = called("motion", self._motion, self.state, self.phase, self.p, Named("contact", given))
         if isinstance(rates, Symbol) or not hasattr(rates, "__len__"):
             rates = (rates,)
         if len(rates) != len(self.states):
@@ -285,37 +249,6 @@ class Equations:
     def signs(self, modes: Sequence[int]) -> list[float]:
         """The runtime signs in a mode: 0 for a friction that sticks or is absent."""
         return [float(modes[j]) if modes[j] in (-1, 1) else 0.0 for j in self.signed]
-
-
-class NoPhase:
-    """Stands for the phase of a self-excited machine, which has none."""
-
-    def _refuse(self, *_: Any) -> Any:
-        raise PageError(
-            "phase: a self-excited machine (phase_rate=None) has no forcing phase; leave it out of the formulas, or "
-            "name the parameter that is the forcing's frequency as phase_rate"
-        )
-
-    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = _refuse
-    __pow__ = __neg__ = __float__ = __array__ = _refuse
-
-
-def _called(what: str, function: Any, *arguments: Any) -> Any:
-    try:
-        return function(*arguments)
-    except PageError:
-        raise
-    except TypeError as error:
-        says = str(error)
-        hint = ""
-        if "callable cos" in says or "has no callable" in says or "must be real number" in says:
-            hint = "; take cos, sin, sqrt, exp ... from orbits.symbols"
-        elif "positional argument" in says:
-            given = "(state, phase, p, contact)" if what == "motion" else "(state, phase, p)"
-            hint = f"; it is called with {given}"
-        raise PageError(f"{what}: {says}{hint}") from error
-    except (ValueError, ArithmeticError, IndexError, KeyError, AttributeError, NameError) as error:
-        raise PageError(f"{what}: {error}") from error
 
 
 def _solved(

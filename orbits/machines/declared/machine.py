@@ -14,7 +14,8 @@ from orbits.contacts.wall import FREE, Wall
 from orbits.doors import above
 from orbits.machines.declared import checks
 from orbits.machines.declared.compiled import Compiled
-from orbits.machines.declared.equations import Equations, PageError
+from orbits.machines.declared.equations import Equations
+from orbits.machines.declared.formulas import PageError
 from orbits.machines.declared.page import Page, page_of
 from orbits.machines.parameters import ParameterError
 from orbits.words.alphabet import Alphabet

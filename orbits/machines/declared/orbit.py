@@ -210,6 +210,9 @@ class DeclaredOrbit:
         """Largest deviation of the event-driven simulation over one period; see `orbits.machines.declared.deviation`."""
         return deviation(self)
 
+    def _repr_html_(self) -> str:
+        return above("orbit_page")(self)
+
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.declared.portrait`."""
         return above("portrait_of_page")(self, **options)

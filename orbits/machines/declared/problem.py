@@ -13,7 +13,8 @@ import numpy as np
 from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
 from orbits.machines.declared import measures as measuring
 from orbits.machines.declared.attractor import witness
-from orbits.machines.declared.crossing import SAME, cross, distance
+from orbits.machines.declared.crossing import cross
+from orbits.machines.declared.distance import SAME, distance
 from orbits.machines.declared.margins import border_kind
 from orbits.machines.declared.orbit import DeclaredOrbit
 from orbits.machines.declared.section import Section

@@ -84,6 +84,13 @@ def coupled():
     return cv.diagram(orbit, over="frequency", within=(1.018, 1.027), depth=0)
 
 
+def bodies(machine):
+    """From w, w', v, v' to the states of the page's two bodies, and their places: w = q1 - q2, v = q1 + eps q2."""
+    eps = 0.006
+    to_bodies = np.kron(np.array([[eps, 1.0], [-1.0, 1.0]]) / (1 + eps), np.eye(2))
+    return to_bodies, [list(machine.states).index(name) for name in ("q1", "v1", "q2", "v2")]
+
+
 def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
     pytest.importorskip("heyoka")
     from orbits.machines.declared.section import Section
@@ -97,15 +104,46 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
     orbit = machine.orbit("LR", frequency=circle.value)
     section = Section(machine, machine.vector({"frequency": circle.value}), orbit.word, 1)
     assert found.names == ("w", "w_rate", "v", "v_rate")
-    eps = 0.006  # the page's states are those of the two bodies: w = q1 - q2, v = q1 + eps q2
-    to_bodies = np.kron(np.array([[eps, 1.0], [-1.0, 1.0]]) / (1 + eps), np.eye(2))
-    order = [list(machine.states).index(name) for name in ("q1", "v1", "q2", "v2")]
+    to_bodies, order = bodies(machine)
     phases = np.linspace(0.1, 6.0, 5)
     for x, image in zip(circle.at(phases), circle.at(phases + 2 * np.pi * circle.rotation)):
         start = np.zeros(4)
         start[order] = to_bodies @ x
         there = section.step(start)[order]
         assert np.linalg.inv(to_bodies) @ there == pytest.approx(image, abs=1e-7)
+
+
+def test_the_modulated_response_of_the_coupled_absorber_attracts():
+    """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
+    pytest.importorskip("heyoka")
+    from orbits.machines.declared.section import Section
+    from tests.orbits.machines.declared.pages import page
+
+    settings = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
+    orbit = Coupled(forcing=1.05, **settings).orbit("LR", frequency=0.9995)
+    graph = cv.diagram(orbit, over="frequency", within=(0.999, 1.0), depth=0)
+    (point,) = graph.of_kind("neimark-sacker")
+    assert point.criticality == "supercritical"
+    found = point.circles(to=0.99978)
+    circle, machine = found[-1], page("coupled")
+    assert circle.stable and circle.simulated == pytest.approx(circle.rotation, abs=1e-9)
+    there = {"frequency": circle.value, "forcing": 1.05}
+    section = Section(machine, machine.vector(there), machine.orbit("LR", **there).word, 1)
+    to_bodies, order = bodies(machine)
+    dense = circle.at(np.linspace(0.0, 2.0 * np.pi, 2001))
+
+    def far(x):
+        return np.abs(dense - np.linalg.solve(to_bodies, x[order])).max(axis=1).min()
+
+    for factor in (0.9, 1.1):  # from inside and from outside
+        x = np.zeros(4)
+        x[order] = to_bodies @ (found.centre + factor * (circle.points[0] - found.centre))
+        distances = [far(x)]
+        for _ in range(4):
+            for _ in range(500):
+                x = section.step(x)
+            distances.append(far(x))
+        assert distances[-1] < 0.1 * distances[0], distances
 
 
 def test_what_cannot_be_is_said_in_a_sentence(coupled):

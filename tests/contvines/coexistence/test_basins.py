@@ -9,6 +9,9 @@ import contvines as cv
 from contvines.coexistence.basins import Basins
 from contvines.coexistence.build import _beyond
 from contvines.coexistence.maps import MapPopulation
+from contvines.graph.attractor import Attractor
+from orbits import Absorber
+from orbits.words import Word
 
 
 def plane(index, mirrored, shares=()):
@@ -54,3 +57,27 @@ def test_asked_for_is_what_lies_just_outside_of_stable_stretches():
     graph = SimpleNamespace(within=(0.0, 1.0), branches={"B1": stable, "B2": virtual})
     below, above = _beyond(graph, [0.1, 0.9])
     assert 0.29 < below < 0.3 and 0.6 < above < 0.61
+
+
+def test_basins_tell_their_shares_in_a_line_in_lines_and_in_a_table():
+    index = np.zeros((20, 20), int)
+    index[:, 15:] = 1
+    found = plane(index, np.zeros((20, 20), bool))
+    found.attractors = [
+        Attractor(0.5, "LR", 1, "periodic", None, 0.75),
+        Attractor(0.5, "", 0, "escaped", None, 0.25),
+    ]
+    assert repr(found) == "Basins(x x y, 20 x 20 starts at p = 0.5: LR 75.0%, escaped 25.0%)"
+    lines = str(found).splitlines()
+    low, high = found.interval(0)
+    assert lines[0] == "400 starts in the plane x, y at p = 0.5"
+    assert lines[1].split()[:3] == ["LR", "k=1", "75.00%"] and f"{low:.2%} to {high:.2%}" in lines[1]
+    assert lines[2].split()[:2] == ["escaped", "25.00%"]
+    assert found._repr_html_().count("<tr>") == 3 and "25.00%" in found._repr_html_()
+
+
+def test_a_motion_has_the_same_word_in_basins_as_on_the_graph():
+    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    found = cv.basins(absorber, "amplitude", 1.1, points=8)
+    words = [about.word for about in found.attractors if about.kind == "periodic"]
+    assert words and words == [Word.parse(word).spelled() for word in words]

@@ -44,6 +44,16 @@ def test_curves_special_points_and_orbits_are_the_graphs(graph):
     assert np.abs(cavity - (v + 0.006 * w) / 1.006).max() < 5e-4  # five digits are kept
 
 
+def test_special_points_keep_their_orbits_however_many_points_there_are(graph, monkeypatch):
+    from contvines.report import contents as module
+
+    monkeypatch.setattr(module, "NUMBERS", 10_000)
+    orbits = contents(graph, "x.vines")["orbits"]
+    assert sum(len(scenes) for scenes in orbits.values()) < sum(len(b) for b in graph)
+    for branch in graph:
+        assert {str(i) for i, _ in branch.marks} <= set(orbits[branch.label])
+
+
 def test_a_problem_without_motions_has_a_page_too():
     circle = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1, [1.0], 0.0)
     data = contents(cv.diagram(circle, within=(-2.0, 2.0)), "circle.vines")

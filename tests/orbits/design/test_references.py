@@ -73,3 +73,20 @@ def test_friction_that_holds_is_a_heavier_oscillator():
     found = float(friction_damper(0.9, 0.1, 1.0, 0.05, 10.0))
     wanted = 0.05 * 0.1 * abs(1 + 1j * 0.045) / abs(1 - 1.05 * 0.81 + 1j * 0.045)
     assert found == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("frequency", [0.9, 1.0, 1.1])
+def test_the_first_harmonic_of_a_sliding_mass_is_in_balance(frequency):
+    """Both equations of motion, written as complex numbers with the relative displacement z = -|z| real.
+
+    Absorber: Omega^2 (q + z) = own i z/|z|, so that |q|^2 = |z|^2 + (own/Omega^2)^2; oscillator:
+    (1 - Omega^2 + i eps lambda Omega) q - eps own i z/|z| is the force.
+    """
+    G, lam, eps, pull = 3.0, 0.5, 0.05, 0.3
+    q = float(friction_damper(frequency, G, lam, eps, pull, 0.0))
+    own = 4.0 / math.pi * pull
+    z = math.sqrt(q**2 - (own / frequency**2) ** 2)
+    moved = -z + 1j * own / frequency**2
+    force = (1.0 - frequency**2 + 1j * eps * lam * frequency) * moved - 1j * eps * own
+    assert z > 0.0 and abs(moved) == pytest.approx(q, rel=1e-12)
+    assert abs(force) == pytest.approx(eps * G, rel=1e-9)

@@ -1,0 +1,183 @@
+"""Factors of sparse matrices: SuperLU, or LAPACK's banded ones where the unknowns can be put into a narrow band."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import get_lapack_funcs
+from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
+from scipy.sparse.linalg import splu
+
+NARROW = 48  # diagonals up to which a band is tried
+FILL = 3.0  # times the entries of SuperLU's factors: a wider band is no gain
+BAND_FACTORISE, BAND_SOLVE = get_lapack_funcs(("gbtrf", "gbtrs"), dtype=np.float64)
+
+
+def parity(order: np.ndarray) -> int:
+    """0 for an even permutation, 1 for an odd one."""
+    n = len(order)
+    graph = sp.csr_matrix((np.ones(n, dtype=np.int8), (np.arange(n), order)), shape=(n, n))
+    return (n - connected_components(graph, directed=False)[0]) % 2
+
+
+class SuperLUFactors:
+    """Factors by SuperLU.
+
+    Parameters
+    ----------
+    matrix : sparse matrix, csc
+    ordering : str
+        Of the columns; see ``scipy.sparse.linalg.splu``.
+
+    Raises
+    ------
+    RuntimeError
+        If the matrix is singular.
+    """
+
+    dear = True  # making them costs far more than a solution with them
+
+    def __init__(self, matrix: Any, ordering: str) -> None:
+        self.inner = splu(matrix, permc_spec=ordering)
+        self.nnz = int(self.inner.nnz)
+
+    def solve(self, sides: np.ndarray) -> np.ndarray:
+        """The inverse applied to one or more columns."""
+        return self.inner.solve(sides)
+
+    @cached_property
+    def sign(self) -> float:
+        """Of the determinant; 0 where that is zero."""
+        diagonal = self.inner.U.diagonal()
+        if not (diagonal != 0.0).all():
+            return 0.0
+        odd = int(np.count_nonzero(diagonal < 0.0)) + parity(self.inner.perm_r) + parity(self.inner.perm_c)
+        return -1.0 if odd % 2 else 1.0
+
+
+@dataclass
+class Band:
+    """Where the entries of a sparse matrix lie in LAPACK's banded form.
+
+    Attributes
+    ----------
+    indices, indptr : ndarray
+        The pattern (csc) it was made for.
+    order : ndarray
+        Unknowns and equations in the order of the band.
+    below, above : int
+        Diagonals.
+    """
+
+    indices: np.ndarray
+    indptr: np.ndarray
+    order: np.ndarray
+    below: int
+    above: int
+    places: tuple[np.ndarray, np.ndarray] = field(repr=False, default=(np.zeros(0, int), np.zeros(0, int)))
+
+    @classmethod
+    def of(cls, matrix: Any) -> Band | None:
+        """For the pattern of a matrix, in its own order or that of Cuthill and McKee; None where the band is wide."""
+        n = matrix.shape[0]
+        columns = np.repeat(np.arange(n), np.diff(matrix.indptr))
+        rows = matrix.indices
+        best = None
+        for order in (np.arange(n), None):
+            if order is None:
+                if best is not None:
+                    break
+                pattern = sp.csr_matrix((np.ones(len(rows), np.int8), (rows, columns)), shape=(n, n))
+                order = np.asarray(reverse_cuthill_mckee(pattern + pattern.T, symmetric_mode=True))
+            place = np.empty(n, dtype=np.int64)
+            place[order] = np.arange(n)
+            i, j = place[rows], place[columns]
+            below, above = int((i - j).max(initial=0)), int((j - i).max(initial=0))
+            if 2 * below + above + 1 <= NARROW:
+                best = cls(rows, matrix.indptr, order, below, above, (below + above + i - j, j))
+        return best
+
+    def fits(self, matrix: Any) -> bool:
+        """Whether a matrix has this pattern."""
+        return np.array_equal(matrix.indptr, self.indptr) and np.array_equal(matrix.indices, self.indices)
+
+    @property
+    def entries(self) -> int:
+        """Room that the factors take."""
+        return (2 * self.below + self.above + 1) * len(self.order)
+
+
+class BandFactors:
+    """Factors by LAPACK's gbtrf.
+
+    Raises
+    ------
+    RuntimeError
+        If the matrix is singular.
+    """
+
+    dear = False
+
+    def __init__(self, matrix: Any, band: Band) -> None:
+        self.band, self.nnz = band, band.entries
+        table = np.zeros((2 * band.below + band.above + 1, matrix.shape[0]), order="F")
+        table[band.places] = matrix.data
+        self.table, self.pivots, info = BAND_FACTORISE(table, band.below, band.above, overwrite_ab=1)
+        if info != 0:
+            raise RuntimeError("the matrix is singular")
+
+    def solve(self, sides: np.ndarray) -> np.ndarray:
+        """The inverse applied to one or more columns."""
+        band = self.band
+        found, _ = BAND_SOLVE(
+            self.table, band.below, band.above, np.asfortranarray(sides[band.order]), self.pivots
+        )
+        result = np.empty_like(found)
+        result[band.order] = found
+        return result.reshape(sides.shape)
+
+    @cached_property
+    def sign(self) -> float:
+        """Of the determinant."""
+        diagonal = self.table[self.band.below + self.band.above]
+        odd = np.count_nonzero(diagonal < 0.0) + np.count_nonzero(self.pivots != np.arange(len(diagonal)))
+        return -1.0 if odd % 2 else 1.0
+
+
+@dataclass
+class Method:
+    """How the matrices of one problem are factorised; found out at the first one."""
+
+    ordering: str = ""
+    band: Band | None = None
+
+    def factorise(self, matrix: Any) -> Any:
+        """Factors of a matrix (csc).
+
+        Raises
+        ------
+        RuntimeError
+            If it is singular.
+        """
+        if self.band is not None and self.band.fits(matrix):
+            return BandFactors(matrix, self.band)
+        if self.ordering:
+            return SuperLUFactors(matrix, self.ordering)
+        pattern = matrix.copy()
+        pattern.data[:] = 1.0
+        symmetric = (pattern != pattern.T).nnz == 0
+        tries = {
+            name: SuperLUFactors(matrix, name)
+            for name in (("MMD_AT_PLUS_A", "COLAMD") if symmetric else ("COLAMD",))
+        }
+        self.ordering = min(tries, key=lambda name: tries[name].nnz)
+        best = tries[self.ordering]
+        band = Band.of(matrix)
+        if band is not None and band.entries <= FILL * best.nnz:
+            self.band = band
+            return BandFactors(matrix, band)
+        return best

@@ -1,0 +1,22 @@
+"""Kernels that are the same whatever the Jacobian is: what is read of a linearisation, and a change of a parameter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def inspect(data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+    """Raw spectrum of the linearisation, then the margins of problems that have any."""
+    spectrum = data.raw_spectrum(work)
+    m = 2 * len(spectrum)
+    row[0:m:2] = spectrum.real
+    row[1:m:2] = spectrum.imag
+    if len(row) > m:
+        row[m:] = data.margins(u, p)
+
+
+def assign(data: Any, other: Any, value: float) -> None:
+    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+    data.values.assign(other.parameter, value)

@@ -1,0 +1,34 @@
+"""An orbit as HTML, for notebooks."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+from orbits.plots.portrait import title
+
+
+def page(orbit: Any) -> str:
+    """What an orbit is, line by line: its motion in words, its parameters, multipliers and least margin.
+
+    Parameters
+    ----------
+    orbit : Orbit or DeclaredOrbit
+    """
+    multipliers = ", ".join(
+        f"{m.real:.8g}" + (f" {'+' if m.imag > 0 else '-'} {abs(m.imag):.8g}i" if m.imag else "")
+        for m in orbit.multipliers[:8]
+    )
+    least = min(orbit.margins, key=lambda margin: margin.value, default=None)
+    rows = [
+        ("motion", title(orbit).split("\n")[0]),
+        *((name, f"{value:.10g}") for name, value in orbit.parameters.items()),
+        ("multipliers", multipliers or "-"),
+        ("least margin", "-" if least is None else f"{least.value:.6g} ({least.kind})"),
+    ]
+    body = "".join(
+        f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
+        f"<td style='text-align:left'>{html.escape(text)}</td></tr>"
+        for name, text in rows
+    )
+    return f"<table><tbody>{body}</tbody></table>"

@@ -1,0 +1,106 @@
+"""Branch points of problems with more unknowns than eigenvalues are computed for: an even number of them in one step is seen."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import contvines as cv
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+
+
+def hidden(local, slopes, n, seed=0):
+    """Equations in two unknowns beside n - 2 damped ones, all mixed by orthogonal matrices; F and its Jacobian."""
+    draw = np.random.default_rng(seed)
+    left, right = (np.linalg.qr(draw.standard_normal((n, n)))[0] for _ in range(2))
+    rates = 1.0 + np.arange(n - 2.0)
+
+    def F(u, p):
+        x = right @ u
+        return left @ np.append(local(x[:2], p), -rates * x[2:] + 0.3 * x[0] * x[1])
+
+    def jacobian(u, p):
+        x = right @ u
+        inner = np.zeros((n, n))
+        inner[:2, :2] = slopes(x[:2], p)
+        inner[2:, 0], inner[2:, 1] = 0.3 * x[1], 0.3 * x[0]
+        inner[2:, 2:] -= np.diag(rates)
+        return left @ inner @ right
+
+    return F, jacobian
+
+
+def bands(local, slopes, n):
+    """The same without mixing, the damped ones in a chain, as a sparse matrix."""
+    chain = sp.csr_array(np.eye(n - 2, k=1) - 3.0 * np.eye(n - 2) + np.eye(n - 2, k=-1))
+
+    def F(u, p):
+        rest = chain @ u[2:]
+        rest[0] += u[0] * u[1]
+        return np.append(local(u[:2], p), rest)
+
+    def jacobian(u, p):
+        low = sp.csr_array(([u[1], u[0]], ([0, 0], [0, 1])), shape=(n - 2, 2))
+        return sp.block_array([[sp.csr_array(slopes(u[:2], p)), None], [low, chain]]).tocsr()
+
+    return F, jacobian
+
+
+def transcritical(x, p):
+    return np.array([x[0] * (p - 0.5 - x[0]), x[1] * (p - 0.503 + 2.0 * x[1])])
+
+
+def transcritical_slopes(x, p):
+    return np.diag([p - 0.5 - 2.0 * x[0], p - 0.503 + 4.0 * x[1]])
+
+
+def square(x, p):
+    """Two pitchforks at once: the symmetry of a square."""
+    return x * (p - 0.5 - np.array([x[0] ** 2 + 0.4 * x[1] ** 2, x[1] ** 2 + 0.4 * x[0] ** 2]))
+
+
+def square_slopes(x, p):
+    a, b = x
+    return np.array(
+        [
+            [p - 0.5 - 3.0 * a**2 - 0.4 * b**2, -0.8 * a * b],
+            [-0.8 * a * b, p - 0.5 - 3.0 * b**2 - 0.4 * a**2],
+        ]
+    )
+
+
+@pytest.mark.parametrize("make", [hidden, bands])
+def test_two_branch_points_in_one_step(make):
+    F, jacobian = make(transcritical, transcritical_slopes, 30)
+    problem = cv.AlgebraicProblem(F, np.zeros(30), 0.0, jacobian=jacobian, scale=1.0)
+    graph = cv.diagram(problem, within=(0.0, 1.0), depth=1)
+    values = sorted(point.value for point in graph.of_kind("branch-point") if point.branch == "B1")
+    assert values == pytest.approx([0.5, 0.503], abs=1e-10)
+    assert len(graph) == 3
+
+
+@pytest.mark.parametrize("make", [hidden, bands])
+def test_two_null_vectors_at_once(make):
+    """Eight half-branches leave: x = 0, y = 0, x = y, x = -y."""
+    F, jacobian = make(square, square_slopes, 30)
+    problem = cv.AlgebraicProblem(F, np.zeros(30), 0.0, jacobian=jacobian, scale=1.0)
+    graph = cv.diagram(problem, within=(0.0, 1.0), depth=1)
+    assert [point.value for point in graph.of_kind("branch-point")] == pytest.approx([0.5], abs=1e-8)
+    assert len(graph) == 5
+
+
+def test_the_distance_is_that_of_the_bordered_matrix():
+    """1/|M^-1 b| in units of the scales, dense and sparse, against numpy."""
+    F, jacobian = bands(transcritical, transcritical_slopes, 30)
+    found = []
+    for make in (jacobian, lambda u, p: jacobian(u, p).toarray()):
+        problem = cv.AlgebraicProblem(F, np.zeros(30), 0.0, jacobian=make, scale=2.0)
+        engine = Engine(problem, (0.0, 1.0), Settings())
+        border = np.linspace(1.0, 2.0, 31)
+        point = engine.solve(np.zeros(30), 0.3, border, 0.6)
+        assert point is not None and problem.scales is not None
+        inner = np.column_stack([make(point.u, point.p) @ np.eye(30), np.zeros(30)])
+        image = np.linalg.solve(np.vstack([inner, border]), problem.side) / problem.scales.vector
+        assert point.row[0] == pytest.approx(np.sqrt(31.0) / np.linalg.norm(image), rel=1e-9)
+        found.append(point.row[0])
+    assert found[0] == pytest.approx(found[1], rel=1e-9)

@@ -1,0 +1,45 @@
+"""Why nothing goes on at a border: said where it is known, and confirmed by the simulator."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber, Cavity
+from orbits.attractors import find_attractor
+from orbits.borders.dead_ends import UNKNOWN
+from orbits.simulation import simulate
+
+
+def test_on_a_slope_a_motion_at_rest_creeps_to_a_wall():
+    """A little beyond the border the simulated absorber slips downhill in every period, until it leans on a wall."""
+    machine = Cavity(restitution=0.5, friction=0.9, gravity=0.8, slope=0.15, distance_left=1.4)
+    graph = cv.diagram(machine.orbit("", amplitude=0.2), over="amplitude", within=(0.1, 1.0), depth=1)
+    border = graph.of_kind("stick")[0]
+    # friction less slope: the smaller of the two pulls is what a push has to beat
+    assert border.value == pytest.approx(0.8 * (0.9 * np.cos(0.15) - np.sin(0.15)), abs=1e-12)
+    assert len(border.remarks) == 1 and "creeps" in border.remarks[0] and len(graph.branches) == 1
+    run = simulate(machine, {"w": 0.5}, periods=3000, amplitude=border.value * 1.02)
+    assert run.sample(per_period=5).w[-1] == pytest.approx(-1.0, abs=1e-6)
+    assert simulate(machine, {"w": 0.5}, periods=400, amplitude=border.value * 0.99).codes.size == 0
+
+
+def test_impacts_that_pile_up_are_told_with_the_speed_of_the_slowest():
+    machine = Absorber(restitution=0.0535032, friction=0.65425996, gravity=0.16014476)
+    orbit = find_attractor(machine, {"w_rate": 1.0}, amplitude=1.11).orbit
+    graph = cv.diagram(orbit, over="amplitude", within=(1.1, 1.14), depth=0)
+    last = next(p for p in graph.special.values() if any("pile up" in text for text in p.remarks))
+    assert not [s for s in graph.switches if s.source == last.branch and s.point == last.label]
+    told = float(last.remarks[0].split("slowest has ")[1].split(" of")[0])
+    # the simulator's own run beside it: the slowest impact that it sees after the slowest of the orbit is lost in rounding
+    run = simulate(machine, {"w_rate": 1.0}, periods=200, amplitude=last.value - 1e-9)
+    speeds = np.sort(np.abs(run.rows[run.codes < 2][-40:, 3]))
+    assert np.abs(np.log(speeds / told)).min() < 0.2
+
+
+def test_where_the_reason_is_not_known_that_is_said():
+    """Of an orbit away from all borders nothing is known; no remark is ever empty."""
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211)
+    graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.5, 0.6), depth=0)
+    point = next(iter(graph.special.values()))
+    assert point.problem.dead_end(point) == UNKNOWN
+    assert all(text for p in graph.special.values() for text in p.remarks)

@@ -1,0 +1,196 @@
+"""What happens at a border once in a period, in every other period, or together with something else."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber, Cavity
+from orbits.attractors import find_attractor
+from orbits.simulation.replay import replay
+from orbits.starts.find import polish
+
+PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+def switches(graph, point):
+    return [switch for switch in graph.switches if switch.point == point.label]
+
+
+def at(graph, value, kind=None):
+    """The real special point nearest to a parameter value."""
+    points = [p for p in graph.special.values() if p.real and (kind is None or p.kind == kind)]
+    return min(points, key=lambda p: abs(p.value - value))
+
+
+def test_no_doubled_orbit_where_the_other_round_cannot_be():
+    """`RLRsL` solves the maps at the border, but its first round would reverse: it is nowhere real."""
+    machine = Absorber(
+        restitution=0.7681303100552106,
+        friction=0.8449920033953432,
+        gravity=0.3468595434873274,
+        mass_ratio=0.006,
+        frequency=0.9686114331813895,
+    )
+    graph = cv.diagram(
+        machine.orbit("RL", amplitude=0.8232), over="amplitude", within=(0.576242, 1.15248), depth=2
+    )
+    assert all(np.ptp(branch.values) > 1e-3 for branch in graph)
+    graze = at(graph, 1.0055957, "velocity-graze")
+    assert len(switches(graph, graze)) == 1
+    for amplitude in (graze.value - 1e-4, graze.value + 1e-4):
+        assert find_attractor(machine, {"w_rate": 1.0}, amplitude=amplitude, transient=2000).periods == 1
+
+
+@pytest.mark.parametrize("length", [1.0, 10.0, 300.0, 1.0 / 300.0])
+def test_a_stick_that_vanishes_in_every_other_round_whatever_the_unit(length):
+    """Beside the border of `LsR` lie `LR` and, stable, `LsRLR`, on which the simulator settles; in every unit of length."""
+    machine = Cavity(
+        restitution_left=0.187988511664,
+        restitution_right=0.146949315394,
+        friction_left=0.486875724634,
+        friction_right=0.227771540815,
+        gravity=0.350912725868 * length,
+        slope=-0.436876915907,
+        distance_left=0.718238770362 * length,
+        distance_right=1.287009084052 * length,
+    )
+    found = find_attractor(machine, {"w_rate": length}, amplitude=0.88 * length)
+    assert sorted(found.text) == sorted("LsR")
+    graph = cv.diagram(found.orbit, over="amplitude", within=(0.86 * length, 0.88 * length), depth=1)
+    border = at(graph, 0.8694124 * length, "stick")
+    targets = [graph[s.target] for s in switches(graph, border)]
+    words = {"".join(sorted(b.description["word"])): b for b in targets}
+    assert set(words) == {"LR", "LLRRs"} and not words["LR"].stable.any() and words["LLRRs"].stable.all()
+    seen = find_attractor(machine, {"w_rate": length}, amplitude=0.868 * length, transient=2000)
+    assert seen.periods == 2 and sorted(seen.text) == sorted("LsRLR")
+
+
+def test_a_border_does_not_depend_on_the_steps():
+    """A doubled orbit whose stick vanishes while its other round grazes: beyond it the simple orbit, followed in all cases."""
+    machine = Cavity(
+        restitution_left=0.74278442138,
+        restitution_right=0.79636308072,
+        friction_left=0.94439458090,
+        friction_right=0.71229734608,
+        gravity=0.65317808993,
+        slope=0.09257194695,
+        distance_left=0.75611650756,
+        distance_right=1.19122723091,
+    )
+    orbit = machine.orbit("LRLR", periods=2, amplitude=1.14)
+    borders = []
+    for settings in ({}, {"max_step": 0.003, "angle": 0.01}, {"max_step": 0.1, "angle": 0.2}):
+        graph = cv.diagram(orbit, over="amplitude", within=(0.9, 1.35), depth=0, settings=settings)
+        assert {"".join(sorted(b.description["word"])) for b in graph} == {"LR", "LLRR", "LLRRs", "LRs"}
+        borders.append([(p.kind, p.value) for p in graph.special.values()])
+    for other in borders[1:]:
+        for one in (borders[0], other):
+            one.sort()
+        assert [kind for kind, _ in other] == [kind for kind, _ in borders[0]]
+        np.testing.assert_allclose(
+            [value for _, value in other], [value for _, value in borders[0]], rtol=0, atol=1e-10
+        )
+
+
+def started(orbit):
+    """A start of the simulator right beside an orbit's first impact."""
+    start = {"phase": orbit.events.phase[0] % (2 * np.pi), "w": orbit.events.w[0]}
+    return {**start, "w_rate": orbit.events.rate_post[0] * (1.0 + 1e-8)}
+
+
+def test_periods_are_added_where_a_turn_touches_a_wall():
+    """Beside the doubling, orbits of six and seven rounds with one more impact, on which the simulator settles.
+
+    At the graze itself their multiplier is infinite, like the inverse of the square root of the distance: they are stable from a
+    period doubling very close to it on. There the differenced simulation, which knows no branch, has a multiplier of -1.
+    """
+    machine = Absorber(
+        restitution=0.15840379606858848,
+        friction=0.27062304650022073,
+        gravity=0.08085179925290478,
+        mass_ratio=0.006,
+    )
+    graph = cv.diagram(machine.orbit("LttRtt", amplitude=1.28), over="amplitude", within=(1.27, 1.3), depth=1)
+    graze = at(graph, 1.28857446, "wall-graze")
+    added = [graph[s.target] for s in switches(graph, graze) if "times as long" in s.note]
+    assert {branch.description["periods"] for branch in added} == {6, 7}
+    for branch in added:
+        place, flip = next((i, graph[k]) for i, k in branch.marks if graph[k].kind == "period-doubling")
+        outside = np.abs(branch.values - graze.value) < abs(flip.value - graze.value)
+        assert not branch.stable[outside].any() and branch.stable[~outside].all()
+        orbit = branch.orbit(place + 1)
+        seen = find_attractor(machine, started(orbit), amplitude=orbit.parameters["amplitude"], max_period=8)
+        assert (seen.periods, seen.impacts) == (orbit.periods, 2 * orbit.periods + 1)
+        told = np.abs(seen.multipliers).max()
+        assert told == pytest.approx(np.abs(orbit.multipliers).max(), abs=1e-3) and told < 1.0
+        assert flip.multipliers.real.min() == pytest.approx(-1.0, abs=1e-9)
+
+
+def test_an_impact_and_the_flight_after_it_vanish_together():
+    """From the stick at the wall the motion goes on without the impact; both are one motion at the border, and both are followed."""
+    machine = Cavity(
+        restitution_left=0.724035,
+        restitution_right=0.818974,
+        friction_left=0.424031,
+        friction_right=0.906205,
+        gravity=0.491416,
+        slope=-0.083218,
+        distance_left=1.438987,
+        distance_right=0.912791,
+        mass_ratio=0.05,
+    )
+    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.5727}, amplitude=0.754836)
+    graph = cv.diagram(polish(found.orbit), over="amplitude", within=(0.74, 0.79), depth=1)
+    soft = next(
+        point for point in graph.special.values()
+        if point.kind in ("stick", "wall-graze")
+        and any(m.kind == "approach" and abs(m.value) < 1e-9 for m in point.orbit.margins)
+    )  # fmt: skip
+    assert soft.orbit.word.events.count("L") == 2
+    assert switches(graph, soft)
+    for switch in switches(graph, soft):
+        target = graph[switch.target]
+        end = int(np.argmin(np.abs(target.values - soft.value)))
+        near = target.orbit(end)
+        assert near.word.events.count("L") == 2 * near.periods - 1
+        if near.periods > 1:
+            continue  # in every other round only; the border orbit itself is compared below
+        grid = np.linspace(0.0, 2.0 * np.pi, 500)
+        one, other = (
+            np.interp((grid - path["phase"][0]) % (2 * np.pi), path["phase"] - path["phase"][0], path["w"])
+            for path in (orbit.sample(20000) for orbit in (soft.orbit, near))
+        )
+        assert np.abs(one - other).max() < 1e-6
+        assert replay(target.orbit(len(target) // 2)).error < 1e-6
+
+
+def test_a_doubling_right_before_a_doubled_orbit_comes_back_to_its_root():
+    """A multiplier passes -1 within 2e-5 of the meeting, behind which lies the image of what is before it: found with any steps."""
+    machine = Cavity(
+        restitution_left=0.3026013366985359,
+        restitution_right=0.9116775872513103,
+        friction_left=0.6762239499547344,
+        friction_right=0.9838720605416361,
+        gravity=0.7175520851058237,
+        slope=-0.08957104092297741,
+        distance_left=1.2319815798863538,
+        distance_right=1.5673046754759739,
+    )
+    found = find_attractor(
+        machine, {"w_rate": 1.0, "phase": 3.9579484187309633}, amplitude=1.6462546849061006
+    )
+    for settings in ({}, {"max_step": 0.003}):
+        graph = cv.diagram(
+            polish(found.orbit),
+            over="amplitude",
+            within=(1.2462546849, 2.0462546849),
+            depth=1,
+            settings=settings,
+        )
+        meeting = next(p for p in graph.of_kind("period-doubling") if p.note.startswith("met from"))
+        branch = graph[meeting.met_from]
+        own = [graph[label] for _, label in branch.marks if label != meeting.label]
+        (doubling,) = [point for point in own if point.kind == "period-doubling"]
+        assert 0.0 < doubling.value - meeting.value < 3e-5
+        seen = replay(polish(doubling.orbit), thorough=True).multipliers
+        assert seen[np.argmax(np.abs(seen))] == pytest.approx(-1.0, abs=1e-4)

@@ -1,0 +1,78 @@
+"""The house in order: no file that cannot be read in one sitting, no function without an end, no two files that need one another."""
+
+import ast
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("contvines", "orbits")
+LINES, FUNCTION = 350, 120
+UNDER_WORK = {"orbits/proofs/pieces.py", "orbits/proofs/prove.py"}
+FILES = sorted(path for package in (*PACKAGES, "tests") for path in (ROOT / package).rglob("*.py"))
+
+
+def module_of(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+@cache
+def parsed(path):
+    return ast.parse(path.read_text())
+
+
+def functions(tree):
+    return [node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+
+
+def says_why(node):
+    """Kernels, whose parts share too many numbers to be functions of their own, may be long; their docstrings say so."""
+    return "In one piece: " in (ast.get_docstring(node) or "")
+
+
+def imports(path, known):
+    """Files of both packages that a file imports, at its top, inside functions, or for types only."""
+    own = module_of(path)
+    package = own if path.name == "__init__.py" else own.rpartition(".")[0]
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.Import):
+            wanted = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parts = package.split(".")
+                base = ".".join([*parts[: len(parts) - node.level + 1], *([base] if base else [])])
+            names = [f"{base}.{alias.name}" for alias in node.names]
+            wanted = [name if name in known else base for name in names]
+        else:
+            continue
+        yield from (name for name in wanted if name in known and name != own)
+
+
+def test_files_are_short():
+    long = {path: path.read_text().count("\n") for path in FILES}
+    long = {str(path.relative_to(ROOT)): lines for path, lines in long.items() if lines > LINES}
+    long = {name: lines for name, lines in long.items() if name not in UNDER_WORK}
+    assert not long, f"more than {LINES} lines: {long}; what is their second concept?"
+
+
+def test_functions_are_short():
+    long = [
+        f"{path.relative_to(ROOT)}: {node.name}"
+        for path in FILES
+        for node in functions(parsed(path))
+        if (node.end_lineno or 0) - node.lineno >= FUNCTION and not says_why(node)
+    ]
+    assert not long, f"more than {FUNCTION} lines: {', '.join(long)}"
+
+
+def test_no_two_files_need_one_another():
+    """Found by removing what needs nothing that is left, again and again."""
+    paths = [path for package in PACKAGES for path in (ROOT / package).rglob("*.py")]
+    known = {module_of(path) for path in paths}
+    needs = {module_of(path): set(imports(path, known)) for path in paths}
+    assert sum(map(len, needs.values())) > 1000  # they were read
+    while free := [name for name, wanted in needs.items() if not wanted & needs.keys()]:
+        for name in free:
+            del needs[name]
+    assert not needs, f"in or above a circle: {', '.join(sorted(needs))}"
