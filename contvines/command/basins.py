@@ -7,13 +7,6 @@ import typer
 
 from contvines.command.run import StudyArgument
 
-ENDS = {
-    "leaves": "leaves the plane",
-    "long": "cut where it was very long",
-    "breaks": "cut where the motion is not continuous",
-}
-
-
 def basins(
     study: StudyArgument,
     at: Annotated[float, typer.Option("--at", metavar="VALUE", help="Value of the study's parameter.")],
@@ -62,35 +55,6 @@ def basins(
         typer.echo(json_text(found.to_dict()))
     else:
         typer.echo(str(found))
-    if plot is not None:
-        from contvines.plots.figures import check_picture
-
-        check_picture(plot)
-    asked = checked_study(study)
-    fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
-    population = population_of(machine(asked), asked.parameter, **fixed)
-    found = contvines.basins(population, at=at, plane=plane, points=points)
-    if json:
-        from contvines.export import json_text
-
-        typer.echo(json_text(found.to_dict()))
-    else:
-        across, up = found.axes
-        typer.echo(f"{found.index.size} starts in the plane {across}, {up} at {found.parameter} = {at:.10g}")
-        for k, about in enumerate(found.attractors):
-            low, high = found.interval(k)
-            word = about.name
-            images = f", {about.mirror_share:.1%} of them the mirror image" if about.mirror_share else ""
-            typer.echo(f"  {word}  k={about.periods}  {about.share:.2%} ({low:.2%} to {high:.2%}{images})")
-        try:
-            exponent, error = found.uncertainty_exponent()
-            typer.echo(f"  uncertainty exponent of the boundary: {exponent:.2f} +- {error:.2f}")
-        except ValueError:
-            pass
-        for curve in found.manifolds:
-            typer.echo(
-                f"  stable manifold of {curve.word} on {curve.branch}: {len(curve.points)} points, {ENDS[curve.ended]}"
-            )
     if plot is not None:
         from contvines.plots.figures import save_figure
 

@@ -49,14 +49,17 @@ def plot_erosion(
         (shares,) = beside.plot(values, erosion.shares, color=SHARE, marker=".", label="share of starts")
         beside.fill_between(values, low, high, color=SHARE, alpha=0.25, linewidth=0.0)
         distances = np.where(np.isfinite(erosion.distances), erosion.distances, np.nan)
-        (kicks,) = axes.plot(values, distances, color=KICK, marker="o", label="smallest kick")
+        (kicks,) = axes.plot(values, distances, color=KICK, marker="o", label="smallest kick that leads elsewhere")
         axes.set_ylim(bottom=0.0)
         axes.set_zorder(beside.get_zorder() + 1)
         axes.patch.set_visible(False)
         axes.set_xlabel(axis_label(erosion.parameter))
-        axes.set_ylabel("smallest kick that leads elsewhere")
+        axes.set_ylabel("smallest kick")
         axes.set_title(f"{erosion.label}: {erosion.word}" if erosion.word else erosion.label)
         if legend:
-            axes.legend(handles=[kicks, shares])
+            if figure.axes == [axes, beside] and figure.get_layout_engine() is not None:
+                figure.legend(handles=[kicks, shares], loc="outside lower center", ncols=2, frameon=False)
+            else:
+                axes.legend(handles=[kicks, shares])
         settle(figure)
     return figure

@@ -74,7 +74,7 @@ def test_an_erosion_curve_falls_to_zero_at_the_fold(graph):
     assert np.all(np.diff(found.distances) > 0.0)
     assert found.distances[0] < 0.1
     axes = found.plot().axes[0]
-    line = next(line for line in axes.lines if line.get_label() == "smallest kick")
+    line = next(line for line in axes.lines if line.get_label() == "smallest kick that leads elsewhere")
     assert np.array_equal(line.get_xydata(), np.column_stack([found.values, found.distances]))
     assert "smallest kick" in str(found)
 
