@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..interrupts import HELD, OPEN
+from ..problems.abilities import Rough
 from ..problems.protocol import Problem
 from . import corrector
 from . import march as source
+from .approach import approach
 from .binding import bind
 from .settings import Settings
 
@@ -191,7 +193,12 @@ class Engine:
             found = self.solve(u, p, border, float(np.dot(border, self.join(u, p))), tangent)
             if found is not None and self.lower <= found.p <= self.upper:
                 return found
-        found = self.at_value(np.asarray(u, dtype=float), p)
+        found = None
+        if tangent is None and not self.problem.kernels.compiled and isinstance(self.problem, Rough):
+            near = approach(self.problem, np.asarray(u, dtype=float), p)
+            found = None if near is None else self.at_value(near, p)
+        if found is None:
+            found = self.at_value(np.asarray(u, dtype=float), p)
         if found is None:
             for i in range(min(self.n, 8)):
                 border = np.zeros(self.n + 1)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..problems.scales import Scales, in_fields
+from .approach import approach
 
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
@@ -104,6 +105,9 @@ class Scout:
     def start(self) -> tuple[np.ndarray, np.ndarray] | None:
         """A solution near the start, at the fixed parameter or with a fixed unknown, and its tangent."""
         z = np.append(self.problem.u0, self.problem.p0)
+        near = approach(self.problem, z[:-1], float(z[-1]))
+        if near is not None:
+            z[:-1] = near
         for i in (self.n, *range(min(self.n, 8))):
             border = np.zeros(self.n + 1)
             border[i] = 1.0

@@ -7,9 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..problems.abilities import Started
+from ..problems.abilities import Rough, Started
 from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
+
+TOLD = (
+    1e-2  # distance of a start from the solution that was found, in typical sizes, from which on it is told
+)
 
 
 def check_interval(within: Any) -> tuple[float, float]:
@@ -103,3 +107,31 @@ def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = N
             "give a better guess or another parameter value"
         )
     return found
+
+
+def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
+    """A sentence on a start that was no solution: how large F is there, and where the branch begins instead; empty if it was one.
+
+    Parameters
+    ----------
+    engine : Engine
+    u, p
+        As given.
+    found : Solved
+        The solution that was taken.
+    """
+    problem = engine.problem
+    if not isinstance(problem, Rough) or engine.problem.kernels.compiled:
+        return ""
+    u = np.asarray(u, dtype=float).reshape(-1)
+    moved = np.abs(found.u - u) / engine.scale[:-1]
+    shift = abs(found.p - float(p)) / float(engine.scale[-1])
+    if max(float(moved.max()), shift) < TOLD:
+        return ""
+    size = float(np.abs(problem.residuals(u, float(p))).max())
+    i = int(np.argmax(moved))
+    where = f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}"
+    if shift >= TOLD:
+        where += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"
+    far = f", {moved[i]:.2g} of its typical size away" if moved[i] >= 0.1 else ""
+    return f"the start given is no solution (the largest entry of F is {size:.2g}): the branch begins at {where}{far}"

@@ -10,12 +10,15 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Nearing
 from .borders import find_border
-from .functions import DeterminantTest, SymmetryTest, balance, counts, crossing, user_function
+from .determinant import DeterminantTest
 from .limits import one_sided
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
+from .multipliers import balance, counts, crossing
 from .scan import FLAT
 from .segment import Segment
+from .symmetry import SymmetryTest
+from .users import user_function
 
 NAMES = ("plus", "minus", "pair")
 FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
@@ -35,7 +38,7 @@ class Examiner:
     ----------
     engine : Engine
     user_functions : mapping of name to function, optional
-        See :func:`contvines.events.functions.user_function`.
+        See :func:`contvines.events.users.user_function`.
     stops : collection of str
         Names of those at whose zeros a branch ends.
     """

@@ -18,8 +18,9 @@ import numpy as np
 from ..continuation import march
 from ..continuation.engine import Engine
 from ..continuation.march import MARGIN
-from . import functions
-from .functions import PAST, SymmetryTest
+from . import multipliers
+from .multipliers import PAST
+from .symmetry import SymmetryTest
 
 FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
 COLUMNS = 16  # a cycle is known from any of its nodes: a few unknowns tell whether it is its own image
@@ -214,7 +215,7 @@ def _compiled() -> Callable[..., Any]:
 
     inner = {f.__name__: njit(forceinline=True, **OPTIONS)(f) for f in (dips, turns_twice)}
     # numba looks at this file only, not at where the constants come from
-    sources = (Path(__file__), Path(str(functions.__file__)), Path(str(march.__file__)))
+    sources = (Path(__file__), Path(str(multipliers.__file__)), Path(str(march.__file__)))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
     return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..continuation.chunk import Chunk
-from ..continuation.engine import Engine, Solved
+from ..continuation.engine import Solved
 from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
 from .examine import Examiner, changes
-from .functions import LIMIT, balance, counts, nearest_to_circle
 from .leaps import leap
 from .located import Located, Role
+from .multipliers import LIMIT, balance, counts, nearest_to_circle
 from .scan import (
     APART,
     BORDER,
@@ -43,25 +43,12 @@ BESIDE = 0.02  # part of the segment next to a branch point that is left out
 
 
 class Watch(Examiner):
-    """What to look for along a branch.
+    """What to look for along a branch: an `Examiner`, which is shown the segments that may hold something."""
 
-    Parameters
-    ----------
-    engine : Engine
-    user_functions : mapping of name to function, optional
-        See :func:`contvines.events.functions.user_function`.
-    stops : collection of str
-        Names of those at whose zeros a branch ends.
-    """
-
-    def __init__(
-        self,
-        engine: Engine,
-        user_functions: Mapping[str, Any] | None = None,
-        stops: Collection[str] = (),
-    ) -> None:
-        super().__init__(engine, user_functions, stops)
-        self.scanner = Scanner(engine, self.symmetries)
+    @cached_property
+    def scanner(self) -> Scanner:
+        """Finds those segments."""
+        return Scanner(self.engine, self.symmetries)
 
     def scan(self, chunk: Chunk, real: bool = True) -> Scan:
         """Marks segments of a chunk that may hold something, and finds the smallest margins; see :meth:`look`."""

@@ -68,7 +68,7 @@ class Forms:
         self.n = len(self.u)
         self.work = problem.workspace()
         self.flow = problem.spectrum != "map"
-        here = self._jacobian(problem, self.work, self.u)
+        here = self._jacobian((problem.kernels, problem.data, self.work), self.u)
         if here is None:
             raise ValueError("the equations cannot be evaluated here")
         self.J = here
@@ -84,6 +84,7 @@ class Forms:
             )[0]
             self.open = embedding.problem
             self.open_work, self.whole = self.open.workspace(), np.array(embedding.u, dtype=float)
+        self.open_calls = (self.open.kernels, self.open.data, self.open_work)
         self.lines: dict[bytes, Line] = {}
 
     @property
@@ -91,11 +92,12 @@ class Forms:
         """Of J: those of an equilibrium, in the user's own unit of time."""
         return np.asarray(np.linalg.eigvals(self.J), dtype=complex)
 
-    def _jacobian(self, problem: Problem, work: Any, u: np.ndarray) -> np.ndarray | None:
-        residual = problem.kernels.linearise(problem.data, np.ascontiguousarray(u), self.p, work)
-        if not residual < 1e300:
+    def _jacobian(self, calls: tuple[Any, Any, Any], u: np.ndarray) -> np.ndarray | None:
+        """The Jacobian of a problem, given by its kernels, data and workspace."""
+        kernels, data, work = calls
+        if not kernels.linearise(data, np.ascontiguousarray(u), self.p, work) < 1e300:
             return None
-        return problem.kernels.matrix(problem.data, work)
+        return kernels.matrix(data, work)
 
     # ------------------------------------------------------------------ open ends
     def closed_by(self, factor: complex) -> np.ndarray:
@@ -130,7 +132,7 @@ class Forms:
         if key not in self.lines:
 
             def rows(u: np.ndarray) -> np.ndarray | None:
-                found = self._jacobian(self.open, self.open_work, u)
+                found = self._jacobian(self.open_calls, u)
                 return None if found is None else found[: self.n]
 
             found = along_line(rows, self.whole, direction, self._reach(direction), self.rough)
@@ -184,8 +186,8 @@ class Forms:
                     return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n]
                 except (ValueError, ArithmeticError):
                     return np.full(self.n, np.nan)
-        kernels, work = self.open.kernels, self.open_work
-        if not kernels.linearise(self.open.data, np.ascontiguousarray(moved), self.p, work) < 1e300:
+        kernels, data, work = self.open_calls
+        if not kernels.linearise(data, np.ascontiguousarray(moved), self.p, work) < 1e300:
             return np.full(self.n, np.nan)
         return np.array(work[0].reshape(-1)[: self.n])
 

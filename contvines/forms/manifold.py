@@ -143,7 +143,8 @@ class Reduction:
         values = []
         for line, size in zip(lines, sizes):
             r = self.radius / (size * max(float(np.abs(self.vectors).max()), 1e-300))
-            samples = self._rest(np.outer(r * nodes, self.real @ line))
+            with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+                samples = self._rest(np.outer(r * nodes, self.real @ line))
             if not np.isfinite(samples).all():
                 raise ValueError("the equations cannot be evaluated near the special point")
             values.append(weights @ samples / r**degree)

@@ -16,6 +16,7 @@ import numpy as np
 NODES = 12
 RADIUS = 0.4  # relative to the scale of the unknowns
 SMALLER = 0.6
+ENOUGH = 1e-10  # relative difference of two radii that asks for no other
 ROUGH = 0.02  # of the largest radius
 
 
@@ -65,6 +66,8 @@ def along_line(
             if best is None or errors[1] < best.third_error:
                 best = Line(*wide, *errors)
             elif errors[1] > 8.0 * best.third_error:
+                break
+            if all(error <= ENOUGH * float(np.abs(part).max()) for error, part in zip(errors, wide)):
                 break
         radius *= SMALLER
     return best

@@ -14,7 +14,7 @@ from ..branches.half_branch import HalfBranch
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.march import MARGIN
-from ..continuation.starts import solve_start
+from ..continuation.starts import solve_start, told_start
 from ..continuation.status import Status
 from ..events.kinds import BORDERS
 from ..events.watch import AT_BORDER, Watch
@@ -48,6 +48,7 @@ def begin(run: Run, problem: Problem, u: Any, p: float) -> None:
             f"the start at {problem.parameter} = {start.p:.10g} is beyond a border ({problem.margin_kind(j)}, "
             f"margin {margin:.3g}), so no machine can follow it; start elsewhere or set virtual = true"
         )
+    run.graph.start = told_start(engine, u, p, start)
     run.queue.append(Pending(problem, start.u, start.p, start.tangent))
 
 

@@ -71,6 +71,8 @@ class Graph:
         False while the run that builds it goes on, or was interrupted.
     message : str
         How the run ended, in words.
+    start : str
+        A sentence where the start that was given is no solution: where the branch begins instead.
     complete : bool
         False where branches were left waiting at ``max_branches``.
     looked : bool
@@ -88,6 +90,7 @@ class Graph:
     settings: dict[str, Any] = field(default_factory=dict)
     finished: bool = False
     message: str = ""
+    start: str = ""
     complete: bool = True
     looked: bool = False
     proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -171,6 +174,7 @@ class Graph:
             **({"units": self.units} if self.units else {}),
             "finished": self.finished,
             "message": self.message,
+            **({"start": self.start} if self.start else {}),
             "branches": [branch.to_dict() for branch in self.branches.values()],
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],

@@ -228,10 +228,12 @@ def may_be_one(problem: Problem, u: np.ndarray, p: float, point: SpecialPoint) -
 def _doubt(engine: Engine, special: SpecialPoint) -> None:
     """Carry the accuracy of the equations into that of the location, and look whether given derivatives are right here."""
     problem = engine.problem
+    if special.kind == "end":
+        return
     special.location_error = max(
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
-    wrong = None if special.kind == "end" else problem.check(special.u, special.value)
+    wrong = problem.check(special.u, special.value)
     if wrong is not None:
         special.remarks = (*special.remarks, str(wrong))
         special.location_error = float("inf")

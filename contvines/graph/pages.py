@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+
 from ..branches.branch import Branch
 from ..branches.special_point import SpecialPoint
 from .graph import Graph
@@ -10,7 +12,8 @@ from .table import Table, branches_table, describe, ends, number, special_table,
 
 def graph_page(graph: Graph) -> str:
     """Both tables of a graph."""
-    parts = [f"<p>{title(graph)}</p>", branches_table(graph).html()]
+    about = f"<p>{title(graph)}</p>" + (f"<p>{html.escape(graph.start)}</p>" if graph.start else "")
+    parts = [about, branches_table(graph).html()]
     return "".join([*parts, special_table(graph).html()] if graph.special else parts)
 
 

@@ -89,7 +89,8 @@ def table(graph: Graph, width: int | None = None) -> str:
     width : int, optional
         Characters to a line; None: as many as it takes.
     """
-    lines = [title(graph), "", *branches_table(graph).lines(width)]
+    about = [title(graph), graph.start] if graph.start else [title(graph)]
+    lines = [*about, "", *branches_table(graph).lines(width)]
     if graph.special:
         lines += ["", *special_table(graph).lines(width)]
     return "\n".join(lines)

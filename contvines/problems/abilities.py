@@ -26,6 +26,15 @@ class Evaluable(Protocol):
 
 
 @runtime_checkable
+class Rough(Protocol):
+    """May be given a rough start: its equations can be evaluated without their derivatives, and the lengths over which they bend are known."""
+
+    @property
+    def lengths(self) -> np.ndarray: ...
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+@runtime_checkable
 class Sectioned(Protocol):
     """Its motions can be simulated period by period; see :mod:`contvines.circles.section`."""
 
@@ -44,6 +53,13 @@ class Resolved(Protocol):
     """Tells the eigenvectors that belong to multipliers, as columns."""
 
     def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray: ...
+
+
+@runtime_checkable
+class Limited(Protocol):
+    """Of what ``orbit`` returned: takes the multipliers that a branch has in the limit, where its own equations are singular."""
+
+    def with_multipliers(self, multipliers: np.ndarray) -> Any: ...
 
 
 @runtime_checkable

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import sparse
 from .callables import CallableProblem
+from .colouring import Colouring
 from .conditions import Conditions
 from .derivatives import Differentiated
 from .images import image_map, images_of, smallest_image
@@ -64,6 +65,9 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         Those nearest to this one.
     preconditioner : callable, optional
         (u, p) -> LinearOperator or array that is nearly the inverse of dF/du, for a matrix-free Jacobian.
+    sparsity : sparse matrix or array of shape (N, N), optional
+        Not zero where F_i depends on u_j: without a ``jacobian`` a sparse one is made by differences (or the complex step), of
+        all columns at once that share no row.
     outputs : mapping of str to callable, optional
         (u, p) -> number: measures of your own, for tables, pictures and exports.
 
@@ -92,6 +96,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         shift: float = 0.0,
         preconditioner: Callable | None = None,
         outputs: Mapping[str, Callable] | None = None,
+        sparsity: Any = None,
     ) -> None:
         if spectrum not in ("none", "flow"):
             raise ValueError(f'spectrum = {spectrum!r} must be "none" or "flow"; for maps use MapProblem')
@@ -110,7 +115,8 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             "mirror": mirror,
             "preconditioner": preconditioner,
         }
-        self.functions = Differentiated(*self._wrapped(self.pieces), start, self.values)
+        colours = None if sparsity is None else Colouring(sparsity, self.node)
+        self.functions = Differentiated(*self._wrapped(self.pieces), start, self.values, sparsity=colours)
         self.outputs = Outputs(outputs, self.values)
         self.mirror = None if mirror is None else image_map(mirror, self.node)
         self.symmetric = len(symmetries) > 0
@@ -284,7 +290,14 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again if F can be imported."""
         where, importable = addresses(self.given)
-        plain = not (self.symmetric or self.conditions or self.pieces.count or self.outputs.names)
+        special = (
+            self.symmetric,
+            self.conditions,
+            self.pieces.count,
+            self.outputs.names,
+            self.functions.sparsity,
+        )
+        plain = not any(special)
         return {
             "name": self.name,
             "parameter": self.parameter,

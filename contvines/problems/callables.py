@@ -21,6 +21,9 @@ from .protocol import ProblemDefaults
 from .scales import Scales
 
 NOTICED = 1e-13  # noise of the unknowns below this is roundoff
+ROUNDING = (
+    64 * 2.0**-53
+)  # relative accuracy of a value that is found to roundoff; brackets may be narrower than that
 WORST = 1e-4  # more noise than this is not believed
 
 
@@ -194,12 +197,12 @@ class CallableProblem(ProblemDefaults):
 
     # ------------------------------------------------------------------ what is wrong
     def uncertainty(self) -> float:
-        """Relative accuracy of what was evaluated last: of derivatives by differences, and of noisy equations."""
-        errors = self.functions.errors
+        """Relative accuracy of what was evaluated last: of derivatives by differences, of noisy equations, and of rounding."""
+        errors, least = self.functions.errors, max(self.noise, ROUNDING)
         if self.scales is None or not errors.any():
-            return self.noise
+            return least
         scale = self.scales.unknowns[: len(errors)]
-        return max(float((errors * scale).max() / self.scales.rows.max()), self.noise)
+        return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
         """Why a branch ends where Newton's method fails, as far as that can be told; else an empty string.

@@ -44,10 +44,13 @@ def _wrong_derivative(functions: Differentiated, u: np.ndarray, p: float) -> str
 
 
 def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
-    if functions.given_matrix is None:
-        return None
     n = len(u)
-    matrix = as_matrix(functions.given_matrix.raw(u, p), n)
+    if functions.given_matrix is not None:
+        matrix = as_matrix(functions.given_matrix.raw(u, p), n)
+    elif functions.sparsity is not None:
+        matrix = functions.jacobian(u, p)
+    else:
+        return None
     direction = functions.lengths * np.random.default_rng(4).uniform(0.5, 1.0, n) * (-1.0) ** np.arange(n)
     near = along(lambda t: functions.value(u + t * direction, p), 0.3, functions.noise)
     if not np.isfinite(near.value).all():
@@ -61,6 +64,8 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float) -> str |
         return None
     i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))
     where = f"at {functions.parameters.varying} = {p:.10g}"
+    if functions.given_matrix is None:
+        return f"sparsity lacks an entry of {functions.name} in row {i}, {where}"
     entry = _wrong_entry(functions, matrix, u, p, i)
     if entry is None:
         return f"jacobian disagrees with differences of {functions.name} in row {i}, {where}"

@@ -10,6 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
+from .colouring import Colouring
 from .differences import REACH, Difference, along, bend, coupling, noise_of
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
@@ -40,6 +41,8 @@ class Differentiated:
     parameters : ParameterSet
     name : str
         Of f, for messages.
+    sparsity : Colouring, optional
+        Where the Jacobian has entries at all.
 
     Attributes
     ----------
@@ -70,7 +73,9 @@ class Differentiated:
         u: np.ndarray,
         parameters: ParameterSet,
         name: str = "F",
+        sparsity: Colouring | None = None,
     ) -> None:
+        self.sparsity = sparsity
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.parameters, self.name = parameters, name
         self.structure = "dense"
@@ -141,6 +146,8 @@ class Differentiated:
             self.structure = (
                 "sparse" if hasattr(matrix, "tocsc") else "operator" if hasattr(matrix, "matvec") else "dense"
             )
+        elif self.sparsity is not None:
+            self.structure = "sparse"
         return self.structure
 
     # ------------------------------------------------------------------ values
@@ -173,6 +180,8 @@ class Differentiated:
         if self.given_matrix is not None:
             self.errors = np.zeros(n)
             return as_matrix(self.given_matrix.raw(u, p), n)
+        if self.sparsity is not None and not self.rows:
+            return self._coloured(self.sparsity, u, p)
         result, worst = np.empty((self.rows or n, n)), np.zeros(n)
         for j in range(n):
             if self.complex_step:
@@ -185,6 +194,27 @@ class Differentiated:
                 worst[j] = found.error.max()
         self.errors = worst
         return result
+
+    def _coloured(self, sparsity: Colouring, u: np.ndarray, p: float) -> Any:
+        """The sparse Jacobian, with as many differences as there are groups of columns."""
+        n = len(u)
+        worst = np.zeros(n)
+
+        def along_columns(mask: np.ndarray) -> np.ndarray:
+            if self.complex_step:
+                return np.imag(self._value(u + 1j * COMPLEX_STEP * mask, p)) / COMPLEX_STEP
+            direction = np.where(mask, self.lengths, 0.0)
+            line = self._quietly(lambda t: self._value(u + t * direction, p), n)
+            found = self._evaluable(along(line, 1.0, self.noise))
+            worst[mask] = found.error.max()
+            return found.value
+
+        matrix = sparsity.jacobian(along_columns)
+        if not self.complex_step:
+            matrix.data /= self.lengths[sparsity.columns]
+            worst /= self.lengths
+        self.errors = worst
+        return matrix
 
     def column(self, u: np.ndarray, p: float, j: int) -> Difference:
         """df/du_j by differences."""

@@ -84,6 +84,7 @@ def page(data: dict[str, Any], kind: str = "graph") -> str:
         "TITLE": _escaped(f"{data['source']}: {kind}"),
         "STYLE": here.joinpath("page.css").read_text(encoding="utf-8"),
         "BODY": here.joinpath(f"{kind}.html").read_text(encoding="utf-8"),
+        "MOTION": here.joinpath("motion.html").read_text(encoding="utf-8"),  # a part of some bodies
         "PROGRAM": "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in PROGRAMS[kind]),
         "PLOTLY": _packed(_plotly()),
         "DATA": _packed(json_text(data, indent=None)),

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from ..events.functions import crossing
+from ..events.multipliers import crossing
 
 STEP = 1e-3
 
@@ -39,7 +39,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     point : Solved
         The special point, with the tangent of the known branch.
     name, k
-        Which multiplier; see :func:`contvines.events.functions.crossing`.
+        Which multiplier; see :func:`contvines.events.multipliers.crossing`.
     """
     kind = engine.problem.spectrum
     if kind == "none" or abs(point.tangent[-1]) < 1e-9:

@@ -53,9 +53,8 @@ def matrix(data, work) -> np.ndarray:
     A, D, twist = work[1], work[2], data[4]
     length, n = A.shape[0], A.shape[1]
     whole = np.zeros((length, n, length, n))
-    closure = np.r_[1.0, np.full(n - 1, twist)]
-    place = np.arange(length)
-    whole[place, :, place, :] = A
-    whole[place[:-1], :, place[1:], :] = D[:-1]
-    whole[-1, :, 0, :] += D[-1] * closure
+    np.einsum("kikj->kij", whole)[...] = A  # views: blocks on the diagonal, and beside it
+    np.einsum("kikj->kij", whole[:-1, :, 1:])[...] = D[:-1]
+    whole[-1, :, 0, 0] += D[-1, :, 0]
+    whole[-1, :, 0, 1:] += twist * D[-1, :, 1:]
     return whole.reshape(length * n, length * n)

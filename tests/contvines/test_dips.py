@@ -9,8 +9,9 @@ import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from contvines.events.examine import changes
-from contvines.events.functions import SymmetryTest, counts
+from contvines.events.multipliers import counts
 from contvines.events.scan import Scanner, _compiled, dips
+from contvines.events.symmetry import SymmetryTest
 from contvines.problems.dense import KERNELS, dense_workspace
 from contvines.problems.protocol import Kernels, ProblemDefaults, Symmetry
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contvines.events import scan
-from contvines.events.functions import counts
+from contvines.events.multipliers import counts
 
 WAYS = {"fold": scan.FOLD, "border": scan.BORDER, "multiplier": scan.MULTIPLIER, "shallow": scan.SHALLOW,
         "damped": scan.DAMPED, "hump": scan.HUMP, "singular": scan.SINGULAR}  # fmt: skip

@@ -30,10 +30,12 @@ def test_demo(demo):
         (row["kind"], row["value"]) for row in expected
     ]
     width = demo.within[1] - demo.within[0]
+    stated = {point.value: point.location_error for point in graph.special.values()}
     for (kind, value, u), row in zip(found, expected):
         guess = row["u"] if len(row["u"]) == len(demo.u) else u
         exact = solved(demo, kind, row["value"], guess * row["cycle"])[0]
         assert value == pytest.approx(exact, rel=1e-10, abs=1e-12 * width), kind
+        assert abs(value - exact) <= stated[value], "the stated error is too small"
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import contvines as cv
+from contvines.problems.factors import BandFactors, Method, SuperLUFactors
 from tests.benchmarks.large import bratu as bratu_2d
 
 
@@ -117,3 +118,61 @@ def test_two_dimensional_bratu():
         step = splu(whole).solve(-np.concatenate([F(u, p), J @ v, [0.5 * (v @ v - 1.0)]]))
         u, v, p = u + step[:N], v + step[N : 2 * N], p + step[-1]
     assert point.value == pytest.approx(p, rel=1e-12)
+
+
+@pytest.mark.parametrize("complex_step", [True, False])
+def test_coloured_differences(complex_step):
+    """A chain of 60 without a Jacobian: one call (or six) for each of three colours, and the fold of the dense problem."""
+    m = 60
+    line = second_difference(m) * (m + 1) ** 2
+    calls = [0]
+
+    def F(u, p):
+        calls[0] += 1
+        found = line @ u + p * np.exp(u)
+        return found if complex_step else np.real(found)
+
+    problem = cv.AlgebraicProblem(F, np.zeros(m), 0.0, sparsity=abs(line))
+    assert problem.functions.complex_step == complex_step
+    u = np.linspace(0.0, 1.0, m)
+    calls[0] = 0
+    found = problem.functions.jacobian(u, 2.0)
+    assert calls[0] <= 3 * (1 if complex_step else 60) and sp.issparse(found)
+    exact = line + sp.diags_array(2.0 * np.exp(u))
+    assert abs(found - exact).max() < 1e-9 * abs(exact).max()
+    assert np.count_nonzero(found.toarray()[np.abs(line.toarray()) == 0.0]) == 0
+
+
+def test_a_pattern_that_lacks_an_entry_is_refused():
+    line = second_difference(30)
+
+    def F(u, p):
+        found = line @ u + p
+        found[7] += u[20]
+        return found
+
+    with pytest.raises(ValueError, match=r"sparsity lacks an entry of F in row 7"):
+        cv.AlgebraicProblem(F, np.zeros(30), 0.0, sparsity=line != 0.0)
+    with pytest.raises(ValueError, match=r"\(3, 3\)"):
+        cv.AlgebraicProblem(F, np.zeros(30), 0.0, sparsity=np.ones((3, 3)))
+
+
+def test_banded_factors_are_those_of_numpy():
+    """A shuffled band: solutions and the sign of the determinant."""
+    draw = np.random.default_rng(6)
+    n = 40
+    for k in range(6):
+        matrix = np.zeros((n, n))
+        for d in (-2, -1, 0, 1):
+            matrix += np.diag(draw.standard_normal(n - abs(d)), d)
+        order = np.arange(n) if k % 2 else draw.permutation(n)
+        matrix = matrix[order][:, order]
+        method, sides = Method(), draw.standard_normal((n, 2))
+        factors = method.factorise(sp.csc_matrix(matrix))
+        assert isinstance(factors, BandFactors)
+        np.testing.assert_allclose(factors.solve(sides), np.linalg.solve(matrix, sides), rtol=1e-6)
+        np.testing.assert_allclose(
+            factors.solve(sides[:, 0]), np.linalg.solve(matrix, sides[:, 0]), rtol=1e-6
+        )
+        assert factors.sign == SuperLUFactors(sp.csc_matrix(matrix), "COLAMD").sign
+        assert factors.sign == np.linalg.slogdet(matrix)[0]

@@ -1,0 +1,85 @@
+"""Test functions of multipliers: period doublings, Neimark-Sacker and Hopf points, and folds and branch points where they show there.
+
+Multipliers are taken one by one: ``("plus", k)`` is the logarithm of the k-th largest real multiplier, so two multipliers
+that cross at once are two events. A product of test functions would not change sign.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
+LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
+
+
+def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
+    """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
+
+    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part; where only branch points are looked
+    for ("real"), the first of these.
+    """
+    result = np.zeros((len(spectrum), 3), dtype=np.int64)
+    real = spectrum.imag == 0.0
+    upper = spectrum.imag > 0.0
+    if kind == "map":
+        columns = (
+            real & (spectrum.real > 1.0 + PAST),
+            real & (spectrum.real < -1.0 - PAST),
+            upper & (np.abs(spectrum) > 1.0 + PAST),
+        )
+    elif kind == "real":
+        columns = (real & (spectrum.real > PAST),)
+    elif kind == "flow":
+        columns = (real & (spectrum.real > PAST), np.zeros_like(real), upper & (spectrum.real > PAST))
+    else:
+        return result
+    for place, past in enumerate(columns):
+        for j in range(past.shape[1]):  # few columns, many rows
+            result[:, place] += past[:, j]
+    return result
+
+
+def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:
+    """The test function of the k-th multiplier of a sort at one point: positive past the circle."""
+    if name == "pair":
+        part = spectrum[spectrum.imag > 0.0]
+        values = np.sort(np.abs(part) if kind == "map" else part.real)[::-1]
+    else:
+        values = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
+    if len(values) < k:
+        if name == "pair" or len(values) == len(spectrum):
+            return -LIMIT
+        # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
+        # as it does in conservative systems
+        place = 0.0 if kind != "map" else (-1.0 if name == "minus" else 1.0)
+        return -min(float(np.abs(spectrum[spectrum.imag != 0.0] - place).min()), LIMIT)
+    value = float(values[k - 1])
+    if kind == "map":
+        value = float(np.log(value)) if value > 0.0 else -LIMIT
+    return min(max(value, -LIMIT), LIMIT)
+
+
+def balance(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
+    """Smallest number past the circle plus the largest before it, of the real multipliers of each row; NaN without both.
+
+    Where one multiplier leaves while another enters at the same place, as at branch points with the symmetry of a triangle, no
+    count changes, but this sum passes through zero.
+    """
+    real = np.where(spectrum.imag == 0.0, spectrum.real, np.nan)
+    if kind == "map":
+        with np.errstate(all="ignore"):
+            real = np.where(real > 0.0, np.log(real), np.nan)
+    past = np.where(real > 0.0, real, np.inf).min(axis=-1, initial=np.inf)
+    before = np.where(real <= 0.0, real, -np.inf).max(axis=-1, initial=-np.inf)
+    both = np.isfinite(past) & np.isfinite(before)
+    return np.where(both, np.where(both, past, 0.0) + np.where(both, before, 0.0), np.nan)
+
+
+def nearest_to_circle(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
+    """Distance from the circle (the axis) of the nearest real positive multiplier of each row, as a logarithm; clipped at LIMIT."""
+    real = np.where(spectrum.imag == 0.0, spectrum.real, np.nan)
+    if kind == "map":
+        with np.errstate(all="ignore"):
+            real = np.where(real > 0.0, np.log(real), np.nan)
+    return np.nan_to_num(np.fmin.reduce(np.abs(real), axis=-1, initial=LIMIT), nan=LIMIT)

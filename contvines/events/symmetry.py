@@ -1,0 +1,57 @@
+"""Test function of symmetric solutions that are met: the part of the unknowns that a symmetry changes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+class SymmetryTest:
+    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
+
+    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks.
+    """
+
+    def __init__(
+        self, symmetry: Any, n: int, period_shift: np.ndarray | None, scale: np.ndarray | None = None
+    ) -> None:
+        self.scale = None if scale is None or (scale == 1.0).all() else scale
+        self.symmetry, self.kind = symmetry, symmetry.kind
+        self.shift = (
+            None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
+        )
+        # numbers without a pattern: multiples of irrational numbers
+        probe, check = (0.1 + 0.8 * np.modf(np.sqrt(a) * np.arange(1.0, n + 1.0))[0] for a in (2.0, 3.0))
+        self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        try:
+            constant = np.asarray(symmetry.apply(np.zeros(n)), dtype=float)
+            image = np.asarray(symmetry.apply(probe), dtype=float) - constant
+            order = np.empty(n, dtype=int)
+            order[np.argsort(np.abs(image), kind="stable")] = np.argsort(probe, kind="stable")
+            signs = np.sign(image)
+            wrong = np.abs(signs * check[order] + constant - symmetry.apply(check)).max()
+            if np.abs(signs * probe[order] - image).max() < 1e-9 and wrong < 1e-9:
+                self.affine = (order, signs, constant)
+        except (ArithmeticError, ValueError, IndexError):
+            self.affine = None
+
+    def part(self, points: np.ndarray) -> np.ndarray:
+        """u - T(u) for points of shape (n, N)."""
+        if self.affine is not None:
+            order, signs, constant = self.affine
+            gap = points - (signs * points[:, order] + constant)
+        else:
+            gap = points - np.array([self.symmetry.apply(u) for u in points])
+        if self.shift is not None:
+            turns = np.round(gap @ self.shift / (self.shift @ self.shift))
+            gap = gap - turns[:, None] * self.shift
+        return gap if self.scale is None else gap / self.scale
+
+    def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Derivative of T at u applied to v."""
+        if self.affine is not None:
+            order, signs, _ = self.affine
+            return signs * v[order]
+        scale = 1e-5 / max(float(np.abs(v).max()), 1e-300)
+        return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)

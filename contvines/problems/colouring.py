@@ -1,0 +1,62 @@
+"""Sparse Jacobians by coloured differences: columns that share no row are differentiated together.
+
+Curtis, Powell and Reid, On the estimation of sparse Jacobian matrices, J. Inst. Maths Applics 13 (1974) 117. The groups are scipy's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.optimize._numdiff import group_columns
+
+
+class Colouring:
+    """Groups of columns of a sparsity pattern.
+
+    Parameters
+    ----------
+    pattern : sparse matrix or array, shape (n, n)
+        Not zero where f_i depends on u_j.
+    n : int
+
+    Attributes
+    ----------
+    groups : ndarray of int, shape (n,)
+    count : int
+
+    Raises
+    ------
+    ValueError
+        If it has another shape.
+    """
+
+    def __init__(self, pattern: Any, n: int) -> None:
+        matrix = pattern if hasattr(pattern, "tocsc") else sp.csc_array(np.asarray(pattern))
+        if matrix.shape != (n, n):
+            raise ValueError(f"sparsity has shape {matrix.shape}; ({n}, {n}) is needed")
+        matrix = sp.csc_matrix(matrix, copy=True)
+        matrix.eliminate_zeros()
+        matrix.sort_indices()
+        self.indices, self.indptr, self.n = matrix.indices, matrix.indptr, n
+        self.columns = np.repeat(np.arange(n), np.diff(matrix.indptr))
+        matrix.data = np.ones_like(matrix.data, dtype=float)
+        # greedy: the order matters
+        orders: tuple[Any, Any] = (0, np.arange(n))
+        tries = [np.asarray(group_columns(matrix, order)) for order in orders]
+        self.groups = min(tries, key=lambda groups: int(groups.max(initial=-1)))
+        self.count = int(self.groups.max(initial=-1)) + 1
+
+    def jacobian(self, along: Callable[[np.ndarray], np.ndarray]) -> Any:
+        """The matrix, from products with the sums of its columns in each group.
+
+        Parameters
+        ----------
+        along : callable
+            (mask of columns, of shape (n,)) -> the sum of these columns, shape (n,).
+        """
+        sums = np.array([along(self.groups == group) for group in range(self.count)])
+        data = sums[self.groups[self.columns], self.indices]
+        return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.n, self.n))

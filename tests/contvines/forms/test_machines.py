@@ -1,0 +1,58 @@
+"""Cubic coefficients of machines, told from outside: by the branch that leaves, and by the multiplier of the motion that it leaves."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+from orbits import Absorber, Coupled
+
+REDUCED = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+
+
+def first_node_apart(problem, u):
+    """Half the distance between the first event and the one that would be the same one without the bifurcation, in the problem's units."""
+    nodes = problem.expand(u)
+    later = nodes[len(nodes) // 2].copy()
+    later[0] -= np.pi * problem.periods
+    if problem.periods % 2:  # its mirror image half a period later
+        later[1:] *= -1.0
+    return float(np.linalg.norm((nodes[0] - later) / problem.equations.unit[0])) / 2
+
+
+@pytest.mark.parametrize("label", ["SB1", "PD1", "PD2"])
+def test_the_branch_that_leaves_has_the_size_that_the_coefficient_says(label):
+    graph = cv.diagram(REDUCED.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 1.16))
+    check(graph, label)
+
+
+def test_the_same_of_the_coupled_absorber():
+    machine = Coupled(
+        forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
+    )
+    graph = cv.diagram(machine.orbit("LR", frequency=1.01), over="frequency", within=(0.999, 1.02), depth=1)
+    check(graph, "SB1")
+
+
+def check(graph, label):
+    """x -> m x + c x^3 has the motion of two returns at x^2 = (-1 - m) / c."""
+    point = graph[label]
+    problem, n = point.problem, len(point.u)
+    (child,) = [b for b in graph.branches.values() if b.seed == label and b.points.shape[1] == 2 * n]
+    near = (point.value - 0.1, point.value + 0.1)
+    root, side = Engine(problem, near, Settings()), Engine(child.problem, near, Settings())
+    sizes, ratios = [], []
+    for i in np.argsort(np.abs(child.values - point.value))[1:60]:
+        p = float(child.values[i])
+        solved, leaving = root.at_value(point.u, p), side.at_value(child.points[i], p)
+        if solved is None or leaving is None:
+            continue
+        spectrum = root.spectrum(solved.row)
+        m = spectrum[np.argmin(np.abs(spectrum + 1.0))].real
+        x = first_node_apart(child.problem, leaving.u)
+        if x > 1e-3 / np.sqrt(abs(point.coefficient)):
+            sizes.append(x * x)
+            ratios.append((-1.0 - m) / (x * x))
+    fit = np.polyfit(sizes[:5], ratios[:5], 2)
+    assert point.coefficient == pytest.approx(fit[-1], rel=1e-5)

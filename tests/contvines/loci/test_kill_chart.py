@@ -1,0 +1,147 @@
+"""Kill -9 and Ctrl-C in the middle of `contvines chart`, then the same command again: the same chart; bad input answered in sentences."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from contvines.command.cli import app
+from contvines.store import Store, load
+
+KILLER = Path(__file__).parents[1] / "killer.py"
+STUDY = """
+[model]
+name = "absorber"
+restitution = 0.76
+friction = 0.5
+gravity = 0.211
+mass_ratio = 0.006
+[start]
+word = "LR"
+periods = 1
+amplitude = 0.55
+[continue]
+parameter = "amplitude"
+within = [0.2, 0.95]
+depth = 0
+"""
+
+
+@pytest.fixture(scope="module")
+def diagram(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("chart")
+    (folder / "study.toml").write_text(STUDY)
+    path = folder / "study.vines"
+    result = CliRunner().invoke(
+        app, ["diagram", str(folder / "study.toml"), "-q", "--no-look", "-o", str(path)]
+    )
+    assert result.exit_code == 0, result.output
+    return path
+
+
+def words(diagram, target):
+    return ["chart", str(diagram), "--over", "friction", "--within", "0.4", "0.6", "-o", str(target)]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(diagram):
+    target = diagram.with_name("u.vines")
+    result = CliRunner().invoke(app, [*words(diagram, target), "-q"])
+    assert result.exit_code == 0, result.output
+    return load(target, problems=False).to_dict()
+
+
+def same(one, other):
+    """The same entries, numbers up to rounding: the borders of the bordered systems are found anew where work goes on."""
+    if isinstance(one, dict):
+        assert one.keys() == other.keys()
+        for key in one:
+            same(one[key], other[key])
+    elif isinstance(one, list):
+        assert len(one) == len(other)
+        for a, b in zip(one, other):
+            same(a, b)
+    elif isinstance(one, float):
+        assert one == pytest.approx(other, abs=1e-11)
+    else:
+        assert one == other
+
+
+def test_a_chart_killed_twice_is_the_undisturbed_one(diagram, undisturbed, tmp_path):
+    target, log = tmp_path / "k.vines", tmp_path / "log.txt"
+    for writes, where in ((3, "inside"), (5, "after")):
+        done = subprocess.run(
+            [sys.executable, str(KILLER), str(writes), where, str(log), *words(diagram, target), "-q"]
+        )
+        assert done.returncode == -signal.SIGKILL
+        with Store.open(target) as store:
+            assert not store.finished
+            kept = {key for key, _ in store.entries("journal")}
+        assert set(log.read_text().split()) <= kept if log.exists() else True
+    result = CliRunner().invoke(app, words(diagram, target))
+    assert result.exit_code == 0, result.output
+    assert "is unfinished: going on after" in result.output
+    same(load(target, problems=False).to_dict(), undisturbed)
+
+
+def test_ctrl_c_says_how_to_go_on(diagram, undisturbed, tmp_path):
+    target = tmp_path / "c.vines"
+    code = (
+        "import sys\nfrom contvines.store import Store\nfrom contvines.command.cli import main\n"
+        "record = Store.record\n"
+        "def once(self, *a):\n    record(self, *a)\n    raise KeyboardInterrupt\n"
+        "Store.record = once\nmain(sys.argv[1:])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words(diagram, target)], capture_output=True, text=True
+    )
+    assert done.returncode == 130 and "Traceback" not in done.stderr
+    assert f"all finished points are kept in {target}; the same command goes on from there" in done.stderr
+    assert CliRunner().invoke(app, [*words(diagram, target), "-q"]).exit_code == 0
+    same(load(target, problems=False).to_dict(), undisturbed)
+
+
+@pytest.mark.parametrize(
+    "changed, said",
+    [
+        ({"--over": "viscosity"}, "over = 'viscosity': the problem has no such parameter; it has amplitude"),
+        ({"--over": "amplitude"}, "over = 'amplitude' is the parameter of the diagram itself"),
+        ({"--within": ("0.6", "0.9")}, "was made at friction = 0.5, outside of within"),
+        ({"--within": ("0.9", "0.2")}, "give the lower number first"),
+        ({"--within": ("-1", "0.9")}, "friction = -1 is out of range"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["chart", "locus"])
+def test_bad_input_is_answered_in_a_sentence(diagram, tmp_path, verb, changed, said):
+    given = {"--over": "friction", "--within": ("0.4", "0.6"), **changed}
+    line = [verb, str(diagram)] + (["LP1"] if verb == "locus" else [])
+    line += ["--over", given["--over"], "--within", *given["--within"], "-o", str(tmp_path / "x.vines")]
+    result = CliRunner().invoke(app, line)
+    assert result.exit_code != 0
+    assert said in str(result.exception)
+    assert isinstance(result.exception, ValueError | KeyError)
+
+
+def test_labels_without_a_locus_are_refused(diagram, tmp_path):
+    for label, said in (
+        ("EP1", "EP1 is no special point of the motion"),
+        ("B1", "B1 is a branch"),
+        ("XY7", "XY7 is no label of it; its special points are"),
+    ):
+        line = [
+            "locus",
+            str(diagram),
+            label,
+            "--over",
+            "friction",
+            "--within",
+            "0.4",
+            "0.6",
+            "-o",
+            str(tmp_path / "x.vines"),
+        ]
+        result = CliRunner().invoke(app, line)
+        assert result.exit_code != 0 and said in str(result.exception), str(result.exception)
