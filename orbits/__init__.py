@@ -25,7 +25,9 @@ _PLACES = {
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
 lead(
     {
+        "attractor": "orbits.attractors.recurrence:find_attractor",
         "attractor_of_page": "orbits.machines.declared.attractor:find_attractor",
+        "attractors": "orbits.attractors.sweep:different_attractors",
         "attractors_of_page": "orbits.machines.declared.attractor:find_attractors",
         "DeclaredPopulation": "orbits.machines.declared.population:DeclaredPopulation",
         "DeclaredProblem": "orbits.machines.declared.problem:DeclaredProblem",
@@ -42,6 +44,7 @@ lead(
         "portrait_of_page": "orbits.plots.declared:portrait",
         "scene": "orbits.plots.scene:scene",
         "scene_of_page": "orbits.plots.declared:scene",
+        "simulate": "orbits.simulation.driver:simulate",
         "simulate_page": "orbits.machines.declared.simulation:simulate",
     }
 )

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..doors import above
-from ..problems.abilities import Provable
+from ..events.kinds import BORDERS
+from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending
 
@@ -134,13 +135,16 @@ class Branch:
         return self.problem.measures((name,), u, p)[name]
 
     def orbit(self, i: int) -> Any:
-        """The solution at point i as the object that the problem hands to users."""
+        """The solution at point i as the object that the problem hands to users; at a border with the multipliers' limits."""
         if self.problem is None:
             raise ValueError(without_problem(self.label, self.description))
         n = len(self)
         if not -n <= i < n:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
-        return self.problem.orbit(self.points[i], float(self.values[i]))
+        found = self.problem.orbit(self.points[i], float(self.values[i]))
+        ends = {0: self.endings[0], n - 1: self.endings[1]}
+        limited = i % n in ends and ends[i % n].kind in BORDERS and isinstance(found, Limited)
+        return found.with_multipliers(self.multipliers[i]) if limited else found
 
     def prove(
         self,

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..doors import above
-from ..problems.abilities import Provable, Resolved
+from ..events.kinds import BORDERS
+from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
@@ -132,10 +133,12 @@ class SpecialPoint:
 
     @property
     def orbit(self) -> Any:
-        """The solution as the object that its problem hands to users."""
+        """The solution as the object that its problem hands to users; at a border with the multipliers' one-sided limits."""
         if self.problem is None:
             raise ValueError(without_problem(self.label))
-        return self.problem.orbit(self.u, self.value)
+        found = self.problem.orbit(self.u, self.value)
+        limited = self.kind in BORDERS and isinstance(found, Limited)
+        return found.with_multipliers(self.multipliers) if limited else found
 
     def plot(self, **options: Any) -> Any:
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""

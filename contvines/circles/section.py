@@ -6,7 +6,8 @@ The contract, in words:
 2. ``section.names`` are its coordinates.
 3. ``section.through(u)`` is the point in which the motion that begins with the unknowns u meets the section, shape (d,). It is
    smooth in u; of a cycle, it is a fixed point of ``step``.
-4. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
+4. ``section.rounds(u)`` are the points in which the cycle itself meets the section, shape (periods, d), the first that of ``through``.
+5. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ class Section(Protocol):
     def names(self) -> tuple[str, ...]: ...
 
     def through(self, u: np.ndarray) -> np.ndarray: ...
+
+    def rounds(self, u: np.ndarray) -> np.ndarray: ...
 
     def step(self, x: np.ndarray) -> np.ndarray: ...
 

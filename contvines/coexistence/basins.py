@@ -10,6 +10,8 @@ import numpy as np
 
 from ..doors import above
 from ..graph.attractor import Attractor
+from ..graph.graph import Graph
+from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
 if TYPE_CHECKING:
@@ -39,6 +41,8 @@ class Basins:
         Whether it reaches the mirror image.
     attractors : list of Attractor
         With their shares of the plane.
+    manifolds : list of Manifold
+        Stable manifolds of saddles, which separate the basins.
     """
 
     parameter: str
@@ -50,6 +54,7 @@ class Basins:
     index: np.ndarray
     mirrored: np.ndarray
     attractors: list[Attractor] = field(default_factory=list)
+    manifolds: list[Manifold] = field(default_factory=list)
 
     def __str__(self) -> str:
         return above("basins_table")(self)
@@ -64,11 +69,7 @@ class Basins:
 
     def interval(self, k: int) -> tuple[float, float]:
         """A 95 % interval (Wilson's) of the share of attractor `k` in the plane, its points taken as draws from it."""
-        n, share = self.index.size, self.attractors[k].share
-        z2 = CONFIDENCE**2
-        centre = (share + z2 / (2 * n)) / (1 + z2 / n)
-        half = CONFIDENCE / (1 + z2 / n) * np.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
-        return float(max(centre - half, 0.0)), float(min(centre + half, 1.0))
+        return wilson(self.attractors[k].share, self.index.size)
 
     def uncertainty_exponent(self) -> tuple[float, float]:
         """Uncertainty exponent of the boundary and its standard error; 1: a smooth curve, near 0: riddled.
@@ -115,11 +116,20 @@ class Basins:
                 a.to_dict() | {"interval": list(self.interval(k))} for k, a in enumerate(self.attractors)
             ],
             "uncertainty_exponent": exponent,
+            **({"manifolds": [m.to_dict() for m in self.manifolds]} if self.manifolds else {}),
         }
 
     def plot(self, **options: Any) -> Figure:
         """The plane in colours; see :func:`contvines.plots.basins.plot_basins`."""
         return above("plot_basins")(self, **options)
+
+
+def wilson(share: float, n: int) -> tuple[float, float]:
+    """Wilson's 95 % interval of a share that was counted among n draws."""
+    z2 = CONFIDENCE**2
+    centre = (share + z2 / (2 * n)) / (1 + z2 / n)
+    half = CONFIDENCE / (1 + z2 / n) * np.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+    return float(max(centre - half, 0.0)), float(min(centre + half, 1.0))
 
 
 def basins(
@@ -130,6 +140,7 @@ def basins(
     points: int | tuple[int, int] = 200,
     within: Mapping[str, tuple[float, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
+    saddles: Graph | None = None,
 ) -> Basins:
     """Simulate a plane of starts and tell what each reaches.
 
@@ -148,6 +159,9 @@ def basins(
         Ranges of the coordinates; by default the machine's box.
     fixed : mapping, optional
         The other coordinates; 0 by default.
+    saddles : Graph, optional
+        With the unstable motions whose stable manifolds are grown over the plane, which must be the section of motions with two
+        states: position and velocity at phase zero, or the two states of a map.
 
     Returns
     -------
@@ -191,6 +205,11 @@ def basins(
         starts[:, names.index(name)] = value
     starts[:, names.index(across)] = np.tile(x, rows)
     starts[:, names.index(up)] = np.repeat(y, columns)
+    curves: list[Manifold] = []
+    if saddles is not None:
+        others = {name: given.get(name, 0.0) for name in names if name not in (across, up)}
+        check_plane(saddles, population.parameter, (across, up), others)
+        curves = stable_manifolds(saddles, float(at), np.array([limits[across], limits[up]]))
     motions, index, mirrored = population.settle(starts, float(at))
     attractors = [
         Attractor(
@@ -210,6 +229,7 @@ def basins(
         index.reshape(shape),
         mirrored.reshape(shape),
         attractors,
+        curves,
     )
 
 

@@ -10,6 +10,12 @@ from ..graph.table import Table
 if TYPE_CHECKING:
     from .basins import Basins
 
+ENDS = {
+    "leaves": "leaves the plane",
+    "long": "cut where it was very long",
+    "breaks": "cut where the motion is not continuous",
+}
+
 
 def table(basins: Basins) -> str:
     """What the plane is, a line per attractor with its share and the interval of it, and how ragged the boundary is."""
@@ -50,8 +56,14 @@ def _title(basins: Basins) -> str:
 
 
 def _boundary(basins: Basins) -> list[str]:
+    lines = []
     try:
         exponent, error = basins.uncertainty_exponent()
+        lines.append(f"uncertainty exponent of the boundary: {exponent:.2f} +- {error:.2f}")
     except ValueError:
-        return []
-    return [f"uncertainty exponent of the boundary: {exponent:.2f} +- {error:.2f}"]
+        pass
+    for curve in basins.manifolds:
+        lines.append(
+            f"stable manifold of {curve.word} on {curve.branch}: {len(curve.points)} points, {ENDS[curve.ended]}"
+        )
+    return lines

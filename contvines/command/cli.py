@@ -23,6 +23,7 @@ from contvines.command import (
     plot,
     prove,
     report,
+    robustness,
     run,
     show,
     survey,
@@ -68,6 +69,7 @@ app.command()(run.trace)
 app.command()(run.switch)
 app.command()(run.atlas)
 app.command()(basins.basins)
+app.command()(robustness.robustness)
 app.command()(locus.locus)
 app.command()(chart.chart)
 app.command()(circle.circle)

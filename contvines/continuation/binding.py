@@ -66,9 +66,8 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     from ..problems.kernels import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
-    compile_ = njit(
-        cache=True, **OPTIONS
-    )  # inlined by force, the loop would take half as long again to compile
+    # inlined by force, the loop would take half as long again to compile
+    compile_ = njit(cache=True, **OPTIONS)
     sums = {name: compile_(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = compile_(copy_with(corrector.improve, suffix, **sums))
     correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **sums, **functions))

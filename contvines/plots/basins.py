@@ -48,6 +48,7 @@ def plot_basins(
         A style or rcParams of matplotlib's that come before the house's.
     """
     from matplotlib.colors import to_rgb
+    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     count = len(basins.attractors)
@@ -63,6 +64,10 @@ def plot_basins(
         half_x, half_y = (0.5 * (v[1] - v[0]) for v in (basins.x, basins.y))
         extent = (basins.x[0] - half_x, basins.x[-1] + half_x, basins.y[0] - half_y, basins.y[-1] + half_y)
         axes.imshow(picture, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
+        for curve in basins.manifolds:
+            axes.plot(*curve.points.T, color="black", linewidth=0.8)
+        axes.set_xlim(extent[:2])
+        axes.set_ylim(extent[2:])
         if basins.axes[0] == "w":
             axes.invert_xaxis()  # w = +1 is the left wall, and stands on the left
         axes.set_xlabel(START.get(basins.axes[0], axis_label(basins.axes[0])))
@@ -76,6 +81,11 @@ def plot_basins(
                 entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}"))
                 if 0.0 < about.mirror_share < about.share:
                     entries.append(Patch(color=light[k], label="its mirror image"))
+            if basins.manifolds:
+                words = dict.fromkeys(short_word(curve.word, 20) for curve in basins.manifolds)
+                entries.append(
+                    Line2D([], [], color="black", linewidth=0.8, label=f"manifolds of {', '.join(words)}")
+                )
             narrow = figure.get_size_inches()[0] < NARROW
             place = "outside lower center" if narrow else "outside right upper"
             options: dict[str, Any] = {"loc": place, "ncols": 2 if narrow else 1, "frameon": False}

@@ -56,6 +56,13 @@ class Resolved(Protocol):
 
 
 @runtime_checkable
+class Limited(Protocol):
+    """Of what ``orbit`` returned: takes the multipliers that a branch has in the limit, where its own equations are singular."""
+
+    def with_multipliers(self, multipliers: np.ndarray) -> Any: ...
+
+
+@runtime_checkable
 class Drawable(Protocol):
     """Of what ``orbit`` returned: draws itself."""
 

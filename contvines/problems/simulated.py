@@ -35,6 +35,10 @@ class MapSection:
         """The first point of the cycle."""
         return np.array(u[: self.problem.node], dtype=float)
 
+    def rounds(self, u: np.ndarray) -> np.ndarray:
+        """All points of the cycle, shape (periods, d)."""
+        return np.array(u, dtype=float).reshape(self.problem.cycle, self.problem.node)
+
     def image(self, x: np.ndarray) -> np.ndarray:
         """f at a point, in the piece in which it lies; NaN where f is not defined."""
         try:

@@ -125,6 +125,14 @@ class Attractor:
         """The attractor as an `orbits.orbit.Orbit`, ready for continuation; see `cycle`."""
         return above("Orbit").of(self.cycle)
 
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
+        """The attractor as a continuation problem, so that it can be handed to `contvines.diagram`; see `cycle` for what is raised."""
+        return self.orbit.problem(parameter, symmetric)
+
+    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+        """Unknowns and parameter value in `problem`."""
+        return self.orbit.seed(problem)
+
     @property
     def _mass_ratio(self) -> float:
         return float(self.params[self.model.parameter_names.index("mass_ratio")])

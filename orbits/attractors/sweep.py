@@ -17,6 +17,7 @@ from orbits.machines.stepping import MODE, RATE
 from orbits.simulation.driver import SimulationError, collect, first_state, machine
 from orbits.simulation.trajectory import Trajectory
 
+SAME = 1e-4  # difference of the nodes of one motion met twice
 PATIENCE = 2
 """How often the transient is prolonged fourfold before a motion is said not to recur: weakly damped ones settle late."""
 
@@ -186,6 +187,27 @@ def find_attractors(
 ) -> list[Attractor]:
     """`find_attractor` from many starts; the result does not depend on the number of worker processes."""
     return _many(partial(_one_attractor, model, options), starts, workers)
+
+
+def different_attractors(model: Any, count: int, seed: int = 0, **options: Any) -> list[Attractor]:
+    """The different attractors that `count` random starts lead to, in the order in which they are met; mirror images are one.
+
+    Parameters
+    ----------
+    model : Model
+    count, seed : int
+        Starts, and the seed of their generator.
+    **options
+        As for `find_attractor`, parameters of the machine included.
+    """
+    generator = np.random.default_rng(seed)
+    params = model.vector({k: v for k, v in options.items() if k in model.parameter_names})
+    found: list[Attractor] = []
+    for _ in range(count):
+        one = find_attractor(model, model.random_start(params, generator), **options)
+        if not any(one.distance(known) < SAME for known in found):
+            found.append(one)
+    return found
 
 
 def sweeps(

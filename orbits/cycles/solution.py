@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -42,6 +42,16 @@ class Solution(Cycle):
     def multipliers(self) -> np.ndarray:
         """Multipliers of the period, complex, largest modulus first; an impact-free motion's trivial +1 is left out."""
         return self._examined[1]
+
+    def with_multipliers(self, multipliers: np.ndarray) -> Self:
+        """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits.
+
+        Where something has no length or speed at all the maps' own derivatives are rounding.
+        """
+        found = replace(self)
+        residual, _, margins = self._examined
+        found.__dict__["_examined"] = (residual, np.asarray(multipliers), margins)
+        return found
 
     @property
     def half_multipliers(self) -> np.ndarray:

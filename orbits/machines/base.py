@@ -208,6 +208,25 @@ class Model:
             "w_rate": generator.uniform(-2.0, 2.0),
         }
 
+    def simulate(
+        self,
+        start: Mapping[str, float] | np.ndarray | None = None,
+        *,
+        periods: float | None = None,
+        events: int | None = None,
+        **parameters: float,
+    ) -> Any:
+        """Simulate from event to event; see `orbits.simulation.simulate`."""
+        return above("simulate")(self, start, periods=periods, events=events, **parameters)
+
+    def attractor(self, start: Mapping[str, float] | np.ndarray | None = None, **parameters: float) -> Any:
+        """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
+        return above("attractor")(self, start, **parameters)
+
+    def attractors(self, count: int, seed: int = 0, **parameters: float) -> list[Any]:
+        """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
+        return above("attractors")(self, count, seed, **parameters)
+
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Many starts and what they settle on; see `orbits.population.Population`."""
         return above("Population")(self, over or self.default_parameter, parameters)

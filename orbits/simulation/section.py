@@ -40,6 +40,12 @@ class Section:
         state = state_of(self.engine, self.params, self.code, self.mode, np.asarray(u)[: len(self.places)])
         return self._after(state, float(state[TURNS]) + 1.0)
 
+    def rounds(self, u: np.ndarray) -> np.ndarray:
+        """Where the cycle passes phase zero, once per forcing period, shape (periods, d)."""
+        state = state_of(self.engine, self.params, self.code, self.mode, np.asarray(u)[: len(self.places)])
+        first = float(state[TURNS]) + 1.0
+        return np.array([self._after(state, first + k) for k in range(self.periods)])
+
     def step(self, x: np.ndarray) -> np.ndarray:
         """One period of the cycle later; NaN where the motion is no longer finite, or leaves its cavity at once."""
         state = np.zeros(self.engine.state)

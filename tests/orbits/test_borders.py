@@ -266,3 +266,9 @@ def test_multipliers_where_a_stick_begins_are_one_sided_limits(stiff, label):
             seen.append(np.abs(replay(near, thorough=True).multipliers).max())
         line = np.polynomial.Polynomial.fit(lasts, seen, 1)
         assert np.abs(target.multipliers[end]).max() == pytest.approx(line(0.0), abs=0.01)
+        # the orbit at the border itself, as users hold it, tells the same
+        told = target.orbit(-1 if end else 0)
+        assert np.abs(told.multipliers).max() == pytest.approx(line(0.0), abs=0.01)
+        assert told.to_dict()["multipliers"][0][0] == told.multipliers[0].real
+    np.testing.assert_array_equal(point.orbit.multipliers, point.multipliers)
+    np.testing.assert_array_equal(point.orbit.nodes, point.problem.orbit(point.u, point.value).nodes)

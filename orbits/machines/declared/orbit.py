@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -89,6 +89,13 @@ class DeclaredOrbit:
     def multipliers(self) -> np.ndarray:
         """Multipliers of the period, complex, largest modulus first; none of them is trivial."""
         return self._examined[1]
+
+    def with_multipliers(self, multipliers: np.ndarray) -> DeclaredOrbit:
+        """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits."""
+        found = replace(self)
+        residual, _, margins = self._examined
+        found.__dict__["_examined"] = (residual, np.asarray(multipliers), margins)
+        return found
 
     @property
     def half_multipliers(self) -> np.ndarray:

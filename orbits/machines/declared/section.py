@@ -50,6 +50,14 @@ class Section:
         self.stepper.start(node[1:], float(node[0]), self.modes)
         return self._until(self.stepper.base + TWO_PI)
 
+    def rounds(self, u: np.ndarray) -> np.ndarray:
+        """Where the cycle meets the section, once per forcing period, shape (periods, d); of a self-excited machine, one point."""
+        first = self.through(u)
+        if not self.machine.forced:
+            return first[None]
+        begun = self.stepper.base + self.stepper.clock
+        return np.array([first, *(self._until(begun + TWO_PI * k) for k in range(1, self.periods))])
+
     def step(self, x: np.ndarray) -> np.ndarray:
         """One period of the cycle later; NaN where the motion does not come back."""
         try:

@@ -1,0 +1,126 @@
+"""Erosion curves: what is left of an attractor's safety along its branch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..branches.branch import Branch
+from ..doors import above
+from .robustness import Robustness, robustness
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass
+class Erosion:
+    """The robustness of a branch's stable motions against the parameter.
+
+    Attributes
+    ----------
+    parameter, label, word : str
+    entries : list of Robustness
+        In increasing order of the parameter.
+    """
+
+    parameter: str
+    label: str
+    word: str
+    entries: list[Robustness] = field(default_factory=list)
+
+    @property
+    def values(self) -> np.ndarray:
+        """Values of the parameter, shape (n,)."""
+        return np.array([one.value for one in self.entries])
+
+    @property
+    def distances(self) -> np.ndarray:
+        """Lengths of the smallest kicks that lead elsewhere (local integrity), shape (n,)."""
+        return np.array([one.distance for one in self.entries])
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Shares of the starts that reach the motion (global integrity), shape (n,)."""
+        return np.array([one.share for one in self.entries])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return {
+            "parameter": self.parameter,
+            "branch": self.label,
+            "word": self.word,
+            "values": [one.to_dict() for one in self.entries],
+        }
+
+    def __str__(self) -> str:
+        lines = [
+            f"{self.label}  {self.word}",
+            "",
+            f"{self.parameter:>14}  {'share':>7}  {'smallest kick':>13}  to",
+        ]
+        for one in self.entries:
+            kick = f"{one.distance:13.4g}" if np.isfinite(one.distance) else f"{'none':>13}"
+            lines.append(f"{one.value:14.8g}  {one.share:7.2%}  {kick}  {one.reaches}".rstrip())
+        return "\n".join(lines)
+
+    def plot(self, **options: Any) -> Figure:
+        """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""
+        return above("plot_erosion")(self, **options)
+
+
+def erosion(
+    branch: Branch,
+    values: int | Sequence[float] = 16,
+    *,
+    units: Mapping[str, float] | None = None,
+    directions: int = 64,
+    starts: int = 512,
+    seed: int = 0,
+) -> Erosion:
+    """The robustness of a branch's motions, value by value.
+
+    Parameters
+    ----------
+    branch : Branch
+    values : int or sequence of float
+        So many, spread evenly over the branch's stable intervals, or these.
+    units, directions, starts, seed
+        As for :func:`contvines.robustness`.
+
+    Raises
+    ------
+    ValueError
+        If the branch has no stable real motions, or none at a given value.
+    """
+    where = _spread(branch, values) if isinstance(values, int) else sorted(float(v) for v in values)
+    if not where:
+        raise ValueError(f"values = {values!r}: give how many, 1 or more, or a list of values")
+    found = Erosion(branch.parameter, branch.label, str(branch.description.get("word", "")))
+    for value in where:
+        found.entries.append(
+            robustness(branch, value, units=units, directions=directions, starts=starts, seed=seed)
+        )
+    return found
+
+
+def _spread(branch: Branch, count: int) -> list[float]:
+    """Values inside the stable intervals, evenly over their union, none of them at an end."""
+    intervals = sorted(branch.stable_intervals()) if branch.real else []
+    merged: list[list[float]] = []
+    for first, last in intervals:
+        if merged and first <= merged[-1][1]:
+            merged[-1][1] = max(merged[-1][1], last)
+        elif last > first:
+            merged.append([first, last])
+    if not merged:
+        raise ValueError(f"{branch.label} has no stable real motions")
+    ends = np.array(merged)
+    lengths = np.diff(ends, axis=1)[:, 0]
+    before = np.concatenate([[0.0], np.cumsum(lengths)])
+    places = before[-1] * (np.arange(max(count, 0)) + 0.5) / max(count, 1)
+    piece = np.clip(np.searchsorted(before, places, side="right") - 1, 0, len(ends) - 1)
+    return [float(v) for v in ends[piece, 0] + places - before[piece]]

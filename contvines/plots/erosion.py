@@ -1,0 +1,67 @@
+"""Erosion curves: smallest kick and share of starts against the parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .figures import new_axes, settle, styled
+from .style import axis_label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..coexistence.erosion import Erosion
+
+KICK, SHARE = "#2a6f97", "#e9a23b"
+
+
+def plot_erosion(
+    erosion: Erosion,
+    *,
+    axes: Axes | None = None,
+    legend: bool = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
+    """Draw the smallest kick that leads elsewhere, and the share of starts as a filled curve with its own axis.
+
+    Parameters
+    ----------
+    erosion : Erosion
+    axes : Axes, optional
+        Drawn on; without, a new figure of `figsize` inches.
+    legend : bool
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
+    """
+    with styled(style):
+        figure, axes = new_axes(axes, figsize=figsize)
+        values = erosion.values
+        beside = axes.twinx()
+        beside.grid(False)
+        beside.set_ylim(0.0, 1.0)
+        beside.set_ylabel("share of starts")
+        low, high = np.array([one.share_interval for one in erosion.entries]).T
+        (shares,) = beside.plot(values, erosion.shares, color=SHARE, marker=".", label="share of starts")
+        beside.fill_between(values, low, high, color=SHARE, alpha=0.25, linewidth=0.0)
+        distances = np.where(np.isfinite(erosion.distances), erosion.distances, np.nan)
+        (kicks,) = axes.plot(
+            values, distances, color=KICK, marker="o", label="smallest kick that leads elsewhere"
+        )
+        axes.set_ylim(bottom=0.0)
+        axes.set_zorder(beside.get_zorder() + 1)
+        axes.patch.set_visible(False)
+        axes.set_xlabel(axis_label(erosion.parameter))
+        axes.set_ylabel("smallest kick")
+        axes.set_title(f"{erosion.label}: {erosion.word}" if erosion.word else erosion.label)
+        if legend:
+            if figure.axes == [axes, beside] and figure.get_layout_engine() is not None:
+                figure.legend(handles=[kicks, shares], loc="outside lower center", ncols=2, frameon=False)
+            else:
+                axes.legend(handles=[kicks, shares])
+        settle(figure)
+    return figure

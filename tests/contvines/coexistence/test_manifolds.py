@@ -1,0 +1,100 @@
+"""Stable manifolds: a parabola in closed form, Henon's saddle by iteration, the absorber's boundary by simulation."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import contvines as cv
+from contvines.coexistence.manifolds import stable_manifolds
+from orbits import Absorber
+
+PLANE = np.array([[-3.0, 3.0], [-2.0, 2.0]])
+
+
+@pytest.mark.parametrize("slow", [0.4, -0.4])  # a negative multiplier: the two halves change places
+def test_a_parabola(slow):
+    # x' = 2 x + 0.7 y^2, y' = slow y: x = K y^2 is invariant if K slow^2 = 2 K + 0.7
+    bend = 0.7 / (slow * slow - 2.0)
+    problem = cv.MapProblem(lambda u, p: np.array([p * u[0] + 0.7 * u[1] ** 2, slow * u[1]]), [0.0, 0.0], 2.0)
+    halves = stable_manifolds(cv.diagram(problem, within=(1.9, 2.1), depth=0), 2.0, PLANE)
+    assert len(halves) == 2
+    for half in halves:
+        assert half.ended == "leaves"
+        assert np.abs(half.points[:, 0] - bend * half.points[:, 1] ** 2).max() < 1e-3
+        assert abs(half.points[-1, 1]) > 2.0
+    assert halves[0].points[-1, 1] * halves[1].points[-1, 1] < 0.0
+
+
+def test_points_of_henons_manifold_fall_into_the_saddle():
+    problem = cv.MapProblem(
+        lambda u, p: np.array([1.0 - p * u[0] ** 2 + u[1], 0.3 * u[0]]), [0.63, 0.19], 1.4
+    )
+    limits = np.array([[-2.0, 2.0], [-2.0, 2.0]])
+    halves = stable_manifolds(cv.diagram(problem, within=(1.3, 1.5), depth=0), 1.4, limits)
+    x = (-0.7 + np.sqrt(0.49 + 5.6)) / 2.8
+    for half in halves:
+        for point in half.points[:: max(1, len(half.points) // 20)]:
+            nearest = np.inf
+            for _ in range(30):
+                nearest = min(nearest, float(np.hypot(point[0] - x, point[1] - 0.3 * x)))
+                point = np.array([1.0 - 1.4 * point[0] ** 2 + point[1], 0.3 * point[0]])
+                if np.abs(point).max() > 10.0:
+                    break
+            assert nearest < 5e-3
+
+
+@pytest.fixture(scope="module")
+def absorber():
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)
+    return machine, cv.diagram(
+        machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 0.8), depth=1
+    )
+
+
+def test_the_two_sides_of_a_manifold_reach_different_motions(absorber):
+    machine, graph = absorber
+    found = cv.basins(machine, "amplitude", 0.3, points=20, saddles=graph)
+    assert {curve.word for curve in found.manifolds} == {"LR"}
+    population = machine.population("amplitude")
+    for curve in found.manifolds:
+        middle = 0.5 * (curve.points[1:] + curve.points[:-1])
+        along = np.diff(curve.points, axis=0)
+        across = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1)[:, None]
+        inside = np.all((np.abs(middle) < [0.95, 2.0]), axis=1)
+        sides = []
+        for side in (0.02, -0.02):
+            states = (middle + side * across)[inside]
+            motions, index, _ = population.settle(np.column_stack([np.zeros(len(states)), states]), 0.3)
+            sides.append(np.array([motions[k].word for k in index]))
+        assert np.all(sides[0] != sides[1])
+    assert json.loads(json.dumps(found.to_dict()))["manifolds"][0]["word"] == "LR"
+    lines = found.plot().axes[0].lines
+    assert len(lines) == len(found.manifolds)
+    assert np.array_equal(lines[0].get_xydata(), found.manifolds[0].points)
+
+
+def test_planes_that_will_not_do(absorber):
+    machine, graph = absorber
+    with pytest.raises(ValueError, match="choose the plane w, w_rate, with all other coordinates zero"):
+        cv.basins(machine, "amplitude", 0.3, points=4, saddles=graph, fixed={"phase": 1.0})
+    other = machine.population("friction", amplitude=0.55)
+    with pytest.raises(ValueError, match="the graph's parameter is amplitude, not friction"):
+        cv.basins(other, at=0.3, points=4, saddles=graph)
+
+
+def test_on_the_command_line(tmp_path, absorber):
+    from contvines.command.cli import app
+
+    _, graph = absorber
+    graph.save(tmp_path / "a.vines")
+    study = tmp_path / "a.toml"
+    study.write_text(
+        '[model]\nname = "absorber"\nrestitution = 0.76\nfriction = 0.5\ngravity = 0.211\nmass_ratio = 0.006\nfrequency = 1.0\n'
+        '[start]\nword = "LR"\nperiods = 1\namplitude = 0.55\n[continue]\nparameter = "amplitude"\nwithin = [0.17, 0.8]\n'
+    )
+    words = ["basins", str(study), "--at", "0.3", "--points", "10", "--saddles", str(tmp_path / "a.vines")]
+    said = CliRunner().invoke(app, words)
+    assert said.exit_code == 0
+    assert "stable manifold of LR on B1" in said.stdout
