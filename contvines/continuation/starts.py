@@ -135,7 +135,8 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
         return ""
     size = float(np.abs(problem.residuals(u, float(p))).max())
     i = int(np.argmax(moved))
-    if not moved[i] <= engine.settings.escape:
+    guessed = np.maximum(engine.scale[:-1], np.abs(u))  # a solution at zero tells no size, the guess does
+    if not (np.abs(found.u - u) / guessed).max() <= engine.settings.escape:
         raise ValueError(
             f"the start given is no solution (the largest entry of F is {size:.2g}), and Newton's method ends far away, at "
             f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}; give a better guess or another parameter value"
