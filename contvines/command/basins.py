@@ -7,6 +7,7 @@ import typer
 
 from contvines.command.run import StudyArgument
 
+
 def basins(
     study: StudyArgument,
     at: Annotated[float, typer.Option("--at", metavar="VALUE", help="Value of the study's parameter.")],

@@ -119,6 +119,11 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
         As given.
     found : Solved
         The solution that was taken.
+
+    Raises
+    ------
+    ValueError
+        If it is further away than a branch may get (`escape`).
     """
     problem = engine.problem
     if not isinstance(problem, Rough) or engine.problem.kernels.compiled:
@@ -130,6 +135,11 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
         return ""
     size = float(np.abs(problem.residuals(u, float(p))).max())
     i = int(np.argmax(moved))
+    if not moved[i] <= engine.settings.escape:
+        raise ValueError(
+            f"the start given is no solution (the largest entry of F is {size:.2g}), and Newton's method ends far away, at "
+            f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}; give a better guess or another parameter value"
+        )
     where = f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}"
     if shift >= TOLD:
         where += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"

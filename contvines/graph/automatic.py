@@ -109,7 +109,7 @@ def new_run(
         parameter=parameter,
         model=model,
         within=check_interval(within),
-        settings={**chosen.to_dict(), "depth": depth, "virtual": virtual},
+        settings={**chosen.to_dict(), "depth": depth, "virtual": virtual, **limits.kept()},
     )
     kept = NullJournal() if journal is None else journal
     return Run(graph, chosen, kept, depth, virtual, user_functions, progress, limits)
@@ -137,7 +137,7 @@ def switch(
     depth : int
         How many more switches deep to go on from the new branches.
     user_functions, journal, progress, settings, stop, bounds
-        As for :func:`diagram`; the settings of the graph are the default.
+        As for :func:`diagram`; the settings of the graph, and its bounds, are the default.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def switch(
         bool(graph.settings.get("virtual", False)),
         user_functions,
         progress,
-        Limits.of(stop, bounds, point.problem),
+        Limits.of(stop, graph.settings.get("bounds") if bounds is None else bounds, point.problem),
     )
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)

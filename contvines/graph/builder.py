@@ -25,6 +25,7 @@ from .marking import mark, may_be_one, origin_index
 from .pending import Origin, Pending
 from .run import Run
 
+NOWHERE = 1e-12  # a branch shorter than this is none
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
@@ -142,6 +143,9 @@ def trace_pending(run: Run, pending: Pending) -> None:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return
+    if pending.kind is Origin.BORDER and of_no_length(run, engine, half):
+        run.numbers["B"] -= 1
+        return  # a solution of the border itself, once more: nothing was crossed
     half = filled(engine, half, origin_index(half, pending))
     origin = origin_index(half, pending)
     branch = make_branch(label, engine, half, real, endings, closed, pending.point, origin)
@@ -154,6 +158,13 @@ def trace_pending(run: Run, pending: Pending) -> None:
     run.points += len(branch)
     run.journal.checkpoint(run.graph)
     run.tell(f"{label} finished", float(branch.values[-1]))
+
+
+def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
+    """Whether a branch ends both ways where it begins, but for rounding."""
+    whole = half.joined()
+    across = engine.join(np.ptp(whole.points, axis=0), 0.0)
+    return bool(np.ptp(whole.values) <= NOWHERE * run.unit(half.end) and engine.norm(across) <= NOWHERE)
 
 
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:

@@ -72,6 +72,13 @@ class Limits:
             functions |= {f"{name} = {end:g}": (name, end) for end in (low, high) if math.isfinite(end)}
         return cls(functions, pairs)
 
+    def kept(self) -> dict[str, Any]:
+        """What a graph keeps of them among its settings, JSON-able: the bounds."""
+        pairs = {
+            name: [end if math.isfinite(end) else None for end in pair] for name, pair in self.bounds.items()
+        }
+        return {"bounds": pairs} if pairs else {}
+
     def outside(self, problem: Problem, u: np.ndarray, p: float) -> str:
         """A sentence on the first bound beyond which a solution lies; empty if it lies within all."""
         for name, (low, high) in self.bounds.items():

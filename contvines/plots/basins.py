@@ -67,6 +67,7 @@ def plot_basins(
         for curve in basins.manifolds:
             axes.plot(*curve.points.T, color="black", linewidth=0.8)
         axes.set_xlim(extent[:2])
+        axes.locator_params(axis="x", nbins=5)
         axes.set_ylim(extent[2:])
         if basins.axes[0] == "w":
             axes.invert_xaxis()  # w = +1 is the left wall, and stands on the left

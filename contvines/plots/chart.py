@@ -45,6 +45,7 @@ def plot_chart(
     axes: Any = None,
     labels: bool = True,
     names: bool = True,
+    legend: bool = True,
     style: str | Mapping[str, Any] | None = None,
     **options: Any,
 ) -> Figure:
@@ -58,6 +59,8 @@ def plot_chart(
         Write the labels of the points of codimension two.
     names : bool
         Write into each region what is stable there.
+    legend : bool
+        Say what the lines are: below a new figure, inside given axes.
     style : str or mapping, optional
         As for :func:`contvines.plots.figures.styled`.
     **options
@@ -92,7 +95,8 @@ def plot_chart(
             )
         axes.set_xlabel(axis_label(q, unit=chart.units.get(q)))
         axes.set_ylabel(axis_label(p, unit=chart.units.get(p)))
-        _legend(figure, axes, own, list(handles.values()))
+        if own and legend:
+            _legend_below(figure, list(handles.values()))
         settle(figure)
         if own and axes.get_window_extent().height < LOW * figure.dpi:
             axes.set_ylabel(axis_label(p, short=True, unit=chart.units.get(p)))
@@ -101,17 +105,26 @@ def plot_chart(
         if own:
             freeze(figure)
         boxes = _name(axes, chart) if names else []
+        if legend and handles and not own:
+            boxes.append(_legend_inside(axes, list(handles.values()), boxes))
         if labels:
             _label(axes, chart, boxes)
     return figure
 
 
-def _legend(figure: Figure, axes: Any, own: bool, handles: list[Any]) -> None:
-    """Below the axes of a figure of ours, in as many columns as fit; inside the axes of others."""
+def _legend_inside(axes: Any, handles: list[Any], names: list[Any]) -> tuple[float, float, float, float]:
+    """Inside the axes, where it hides no name of a region, if there is such a corner; its box on the page."""
+    box: Any = None
+    for place in ("best", "lower right", "lower left", "upper right", "upper left", "best"):
+        box = axes.legend(handles=handles, loc=place, fontsize="small").get_window_extent()
+        if not any(box.x0 < x1 and x0 < box.x1 and box.y0 < y1 and y0 < box.y1 for x0, y0, x1, y1 in names):
+            break
+    return box.x0, box.y0, box.x1, box.y1
+
+
+def _legend_below(figure: Figure, handles: list[Any]) -> None:
+    """Below the axes of a figure of ours, in as many columns as fit."""
     if not handles:
-        return
-    if not own:
-        axes.legend(handles=handles, loc="best", fontsize="small")
         return
     columns = max(1, min(len(handles), int(figure.get_size_inches()[0] / (1.55 * scale(figure)))))
     options: dict[str, Any] = {"loc": "outside lower center"}  # a place that the stubs do not know

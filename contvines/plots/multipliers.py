@@ -20,6 +20,7 @@ COLORS = ("#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#a6611a", "#017a79")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)))
 MOST = 12  # curves drawn: the largest ones
 NARROW = 5.5  # inches: in a narrower figure the two panels stand under one another
+LOW = 3.4  # inches: a lower narrow figure has no room for the plane
 
 
 def plot_multipliers(
@@ -38,7 +39,7 @@ def plot_multipliers(
     ----------
     branch : Branch
     axes : two Axes, optional
-        Drawn on; without, a new figure of `figsize` inches.
+        Drawn on; without, a new figure of `figsize` inches. A small one has the moduli alone.
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
 
@@ -58,7 +59,10 @@ def plot_multipliers(
             size = figsize or (8.6, 4.0)
             figure = new_figure(figsize=size)
             narrow = size[0] < NARROW
-            if narrow:
+            right: Axes | None = None
+            if narrow and size[1] < LOW:
+                left = figure.add_subplot()  # no room for the plane as well
+            elif narrow:
                 left, right = figure.subplots(2, 1, height_ratios=(1, 1.25))
             else:
                 left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
@@ -66,7 +70,8 @@ def plot_multipliers(
             left, right = axes
             figure: Any = left.get_figure(root=True)
         _sizes(left, branch, spectrum, flow)
-        _plane(right, branch, spectrum, flow)
+        if right is not None:
+            _plane(right, branch, spectrum, flow)
     return figure
 
 
@@ -140,4 +145,6 @@ def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
     axes.set_xlabel(r"Re $\lambda$")
     axes.set_ylabel(r"Im $\lambda$")
     hidden = int((~shown).sum())
-    axes.set_title(f"the complex plane ({hidden} outside)" if hidden else "the complex plane")
+    narrow = figure.get_size_inches()[0] < NARROW
+    apart = "\n" if narrow else " "
+    axes.set_title(f"the complex plane{apart}({hidden} outside)" if hidden else "the complex plane")

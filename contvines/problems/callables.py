@@ -239,7 +239,10 @@ class CallableProblem(ProblemDefaults):
 
     def check(self, u: np.ndarray, p: float) -> str | None:
         """A sentence on given derivatives that disagree with the equations at a solution; None if they agree."""
-        return disagreement(self.functions, u, p)
+        scales = self.scales
+        if scales is not None and not len(u) == len(scales.unknowns) == len(self.functions.lengths):
+            scales = None
+        return disagreement(self.functions, u, p, scales)
 
     def _check_start(self, u: np.ndarray) -> None:
         try:

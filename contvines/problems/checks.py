@@ -9,21 +9,29 @@ import numpy as np
 from .derivatives import AGREE, Differentiated
 from .differences import along
 from .functions import NotEvaluable, as_matrix
+from .scales import Scales
+
+ROUNDING = 1e-12  # part of a row's size that is rounding, where the derivatives themselves vanish, as at branch points
 
 
-def disagreement(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+def disagreement(
+    functions: Differentiated, u: np.ndarray, p: float, scales: Scales | None = None
+) -> str | None:
     """A sentence on where given derivatives disagree with differences of f at a point; None if they do not.
 
-    One random direction tells; entries are looked at one by one only if it does.
+    One random direction tells; entries are looked at one by one only if it does. With `scales`, what is rounding in the units of
+    unknowns, parameter and rows is no disagreement.
     """
     with np.errstate(all="ignore"):
         try:
-            return _wrong_jacobian(functions, u, p) or _wrong_derivative(functions, u, p)
+            return _wrong_jacobian(functions, u, p, scales) or _wrong_derivative(functions, u, p, scales)
         except NotEvaluable:
             return None
 
 
-def _wrong_derivative(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+def _wrong_derivative(
+    functions: Differentiated, u: np.ndarray, p: float, scales: Scales | None
+) -> str | None:
     if functions.given_slope is None:
         return None
     given = functions.given_slope(u, p)
@@ -34,6 +42,8 @@ def _wrong_derivative(functions: Differentiated, u: np.ndarray, p: float) -> str
         np.abs(given - near.value) - AGREE * np.maximum(np.abs(given), np.abs(near.value)) - 10.0 * near.error
     )
     gap -= 1e-9 * np.abs(near.value).max()
+    if scales is not None:
+        gap -= ROUNDING * scales.rows / scales.parameter
     if not np.isfinite(near.value).all() or not (gap > 0.0).any():
         return None
     i = int(np.argmax(gap))
@@ -43,7 +53,7 @@ def _wrong_derivative(functions: Differentiated, u: np.ndarray, p: float) -> str
     )
 
 
-def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: Scales | None) -> str | None:
     n = len(u)
     if functions.given_matrix is not None:
         matrix = as_matrix(functions.given_matrix.raw(u, p), n)
@@ -60,6 +70,8 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float) -> str |
     if hasattr(matrix, "toarray") or isinstance(matrix, np.ndarray):
         rows = np.maximum(rows, np.asarray(abs(matrix) @ np.abs(direction)).reshape(-1))
     gap = np.abs(product - near.value) - AGREE * rows - 10.0 * near.error
+    if scales is not None:
+        gap -= ROUNDING * scales.rows * float(np.abs(direction / scales.unknowns).max())
     if np.isfinite(product).all() and not (gap > 1e-9 * rows.max()).any():
         return None
     i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))

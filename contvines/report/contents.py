@@ -11,7 +11,7 @@ from ..graph.proving import mark, told
 from ..graph.shortening import short_word
 from ..plots.style import MARKS, PLAIN, axis_label
 from ..problems.abilities import Animated
-from .numbers import plain_label, rounded, shortened
+from .numbers import plain_label, rounded, shortened, told_of
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -47,7 +47,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "source": source,
         "parameter": graph.parameter,
         "within": [float(v) for v in graph.within],
-        "model": {str(k): v for k, v in graph.model.items() if not isinstance(v, dict | list)},
+        "model": told_of(graph.model),
         "settings": {str(k): v for k, v in graph.settings.items()},
         "finished": graph.finished,
         "message": graph.message,

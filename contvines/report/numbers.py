@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,12 @@ def rounded(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [rounded(v) for v in value]
     return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
+def told_of(model: dict[str, Any]) -> dict[str, Any]:
+    """What a page says of a machine: its plain entries; of files only their names, not where they lay."""
+    plain = {str(k): v for k, v in model.items() if not isinstance(v, dict | list)}
+    return {k: PurePath(v).name if k == "page" else v for k, v in plain.items()}
 
 
 def plain_label(label: str) -> str:

@@ -26,27 +26,53 @@ function stop() {
   $("play").textContent = "play";
 }
 let frame = 0;
-function animate(motion) {
-  stop();
-  const canvas = $("animation"), pen = canvas.getContext("2d");
-  const all = [...motion.box.map((v) => v + motion.half_width), ...motion.box.map((v) => v - motion.half_width)];
+function stage(motion) {
+  // an absorber in its cavity, or the bodies and walls of a machine on a page: what stands where, and how to draw it
+  const canvas = $("animation"), pen = canvas.getContext("2d"), width = 34;
+  const cavity = Boolean(motion.box);
+  const tracks = cavity ? [] : Object.values(motion.bodies), walls = cavity ? [] : motion.walls;
+  const all = cavity
+    ? [...motion.box.map((v) => v + motion.half_width), ...motion.box.map((v) => v - motion.half_width)]
+    : [...tracks.flat(), ...walls.map((wall) => wall.at).flat()];
   const low = Math.min(...all), high = Math.max(...all), sign = motion.left > 0 ? -1 : 1; // the left wall stands on the left
-  const at = (v) => canvas.width / 2 + sign * (v - (low + high) / 2) * (canvas.width - 90) / (high - low);
+  const at = (v) => canvas.width / 2 + sign * (v - (low + high) / 2) * (canvas.width - 90) / (high - low || 1);
+  const n = cavity ? motion.box.length : tracks[0].length;
+  const fill = dark.matches ? "#ff9d5c" : "#b5531c";
   const paint = (share) => {
-    const n = motion.box.length, t = share * (n - 1), i = Math.min(Math.floor(t), n - 2), f = t - i;
+    const t = share * (n - 1), i = Math.min(Math.floor(t), n - 2), f = t - i;
     const mix = (v) => v[i] * (1 - f) + v[i + 1] * f;
-    const box = mix(motion.box), body = mix(motion.body), width = 34;
     pen.clearRect(0, 0, canvas.width, canvas.height);
-    pen.strokeStyle = ink(); pen.lineWidth = 3;
-    const [a, b] = [at(box + motion.half_width), at(box - motion.half_width)].sort((p, q) => p - q);
+    pen.strokeStyle = ink(); pen.lineWidth = 3; pen.fillStyle = fill;
     pen.beginPath();
-    pen.moveTo(a - width / 2, 18); pen.lineTo(a - width / 2, 88); pen.lineTo(b + width / 2, 88); pen.lineTo(b + width / 2, 18);
-    pen.stroke();
-    pen.fillStyle = dark.matches ? "#ff9d5c" : "#b5531c";
-    pen.fillRect(at(body) - width / 2, 52, width, 34);
+    if (cavity) {
+      const box = mix(motion.box);
+      const [a, b] = [at(box + motion.half_width), at(box - motion.half_width)].sort((p, q) => p - q);
+      pen.moveTo(a - width / 2, 18); pen.lineTo(a - width / 2, 88); pen.lineTo(b + width / 2, 88); pen.lineTo(b + width / 2, 18);
+      pen.stroke();
+      pen.fillRect(at(mix(motion.body)) - width / 2, 52, width, 34);
+    } else {
+      pen.moveTo(8, 88); pen.lineTo(canvas.width - 8, 88);
+      for (const wall of walls) {
+        const x = at(mix(wall.at)) + sign * wall.side * width / 2;
+        pen.moveTo(x, 18); pen.lineTo(x, 88);
+      }
+      pen.stroke();
+      tracks.forEach((body, k) => {
+        const x = at(mix(body));
+        pen.fillStyle = k % 2 ? (dark.matches ? "#6fb1ff" : "#0b3c6f") : fill;
+        pen.fillRect(x - width / 2, 52, width, 34);
+      });
+    }
     frame += 1;
     canvas.dataset.frame = frame;
+    canvas.dataset.body = at(mix(cavity ? motion.body : tracks[0])).toFixed(1);
   };
+  canvas.setAttribute("aria-label", cavity ? "the absorber in its cavity" : `${Object.keys(motion.bodies).join(", ")} of the machine, its walls`);
+  return paint;
+}
+function animate(motion) {
+  stop();
+  const paint = stage(motion);
   const seconds = 2.5 * (motion.periods || 1);
   const run = (start) => (now) => {
     paint(((now - start) / 1000 / seconds) % 1);

@@ -45,3 +45,7 @@ def main():
             point.label: tuple(round(float(x), 6) for x in point.value) for point in chart.points.values()
         }
     return figure, numbers
+
+
+if __name__ == "__main__":
+    paper.run("charts", main)

@@ -70,7 +70,8 @@ def main():
     axes.text(8.58, 1e3 * machine.upper_bound + 0.2, "$q_{1,\\max}$", ha="right")
     axes.text(8.58, 1e3 * machine.activation_threshold + 0.2, "$q_{1,\\min}$", ha="right")
     axes.text(8.58, 1e3 * high + 0.2, "sliding ends", ha="right", fontsize=8)
-    axes.set(xlabel="$f$ [Hz]", ylabel="$|q_1|_{\\max}$ [mm]", ylim=(0, 26), xlim=(6.8, 8.6))
+    axes.text(8.58, 1e3 * low - 0.2, "sliding begins", ha="right", va="top", fontsize=8)
+    axes.set(xlabel="$f$ [Hz]", ylabel="$|q_1|_{\\max}$ [mm]", ylim=(0, 29), xlim=(6.8, 8.6))
     axes.legend(loc="upper left", fontsize=8)
     numbers = {
         "q1_min, q1_max in mm": (

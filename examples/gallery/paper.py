@@ -116,6 +116,7 @@ def portrait(panels: Any, machine: Any, state: Any, periods: int, *, color: str 
         plane.axvline(wall, color="k", lw=0.7)
     plane.plot(seen.w, seen.w_rate, color=color)
     plane.set(xlabel="$w$", ylabel="$w'$")
+    plane.invert_xaxis()  # the left wall, w = +1, on the left
 
 
 def run(

@@ -87,7 +87,7 @@ def main():
             settled = simulate(machine, row.detail.state, periods=1500).end
             motion = simulate(machine, settled, periods=row.periods).sample(per_period=800)
             panel.plot(motion.w, motion.w_rate, color=paper.RED, lw=1)
-            panel.set(xlabel="$w$", xlim=(-1.05, 1.05))
+            panel.set(xlabel="$w$", xlim=(1.05, -1.05))  # the left wall, w = +1, on the left
             panel.set_title(f"{row.word[:12]}, {row.value:.3f}, {name}", fontsize=8)
     numbers["portraits"] = seen
     return figure, numbers

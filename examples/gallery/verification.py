@@ -88,10 +88,12 @@ def main():
         title=r"$\Omega=0.986$, friction's sign frozen in flight: no machine",
     )
     panels[3, 1].plot(path[:, 1], path[:, 2], color=paper.RED)
-    panels[3, 1].set(xlabel="$w$", ylabel="$w'$")
+    panels[3, 1].set(xlabel="$w$", ylabel="$w'$", xlim=(1.1, -1.1), xticks=(1, 0, -1))
     numbers["Omega = 0.986, friction's sign frozen: periods until it repeats (0: not found)"] = repeat
     numbers["Omega = 0.986, friction's sign frozen: least s w' in flight"] = float(np.min(pattern[:, 5]))
-    panels[0, 0].legend(loc="upper right", ncols=2)
+    panels[0, 0].legend(
+        loc="lower right", bbox_to_anchor=(1.02, 1.0), ncols=2, fontsize=7.5
+    )  # beside the title
     return figure, numbers
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from orbits.plots.figures import new_figure, styled
 from orbits.plots.portrait import LOW, NARROW, ORBIT, title
+from orbits.plots.track import track
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +72,7 @@ def portrait(
 
 
 def scene(orbit: DeclaredOrbit, points: int = 120) -> dict[str, Any]:
-    """Curves of one period as plain numbers, as `orbits.plots.scene.scene` has them; without an animation.
+    """Curves of one period as plain numbers, as `orbits.plots.scene.scene` has them; the animation is that of `track`.
 
     Parameters
     ----------
@@ -93,7 +94,7 @@ def scene(orbit: DeclaredOrbit, points: int = 120) -> dict[str, Any]:
             "curves": {name: motion[name] for name in names},
             "walls": [],
         },
-        "animation": None,
+        "animation": track(orbit, motion),
         "events": [
             {"event": letter, "at": float(at), "x": float(node[columns[0]]), "y": float(node[columns[1]])}
             for letter, at, node in zip(orbit.word.events, starts, orbit.nodes)

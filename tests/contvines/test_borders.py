@@ -206,6 +206,17 @@ def test_the_far_border_of_a_short_branch_is_a_point_of_its_own(width):
     assert graph["B2"].range == pytest.approx((0.5, 0.5 + width), abs=1e-12)
 
 
+def test_a_solution_of_the_border_itself_is_no_branch():
+    """Word "b" has margins p - 1/2 and 1/2 - p: it is real at the border, to rounding, and nowhere else."""
+
+    def nowhere(line, point):
+        other = Line("b", -0.5, 2.0, [1.0, -1.0], [0.5, 0.5 - 1e-13])
+        return Seed(other, np.array([0.5]), 0.5, None, "border", "persistence", True)
+
+    graph = cv.diagram(Line("a", 0.0, 1.0, [-1.0], [0.5], [nowhere]), within=(0.0, 1.0))
+    assert list(graph.branches) == ["B1"] and not graph.switches
+
+
 @pytest.mark.parametrize("max_step", [0.03, 0.007])
 @pytest.mark.parametrize("behind", [0.0, 3e-6])
 def test_where_the_parameter_turns_back_at_a_border_there_is_no_fold(max_step, behind):

@@ -14,30 +14,6 @@ from tests.contvines import fakes
 EXAMPLE = Path(__file__).parents[2] / "examples" / "friction.toml"
 
 
-@pytest.fixture
-def run(capsys, monkeypatch, tmp_path):
-    """Runs `contvines ...` in an empty folder; returns (exit status, stdout, stderr)."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-
-    def go(*words):
-        try:
-            main([str(w) for w in words])
-            status = 0
-        except SystemExit as end:
-            status = end.code or 0
-        out, err = capsys.readouterr()
-        return status, out, err
-
-    return go
-
-
-@pytest.fixture
-def vines(tmp_path):
-    save(fakes.pitchfork_graph(), tmp_path / "g.vines")
-    return tmp_path / "g.vines"
-
-
 def test_help_lists_every_command(run):
     status, out, _ = run("--help")
     assert status == 0
@@ -208,6 +184,7 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
         (("orbit", "g.vines"), "Give one of the labels BP1, EP1, VG1, B1, B2, B3"),
         (("orbit", "g.vines", "XX1"), "no label 'XX1'; it has B1, B2, B3, BP1, EP1, VG1"),
         (("orbit", "g.vines", "B1:99"), "numbered from 0 to 40"),
+        (("orbit", "g.vines", "B1:41"), "numbered from 0 to 40"),
         (("orbit", EXAMPLE, "B1"), "a study has no labels"),
         (("plot", "g.vines", "-y", "speed"), "B1 has no measure 'speed'"),
         (("plot", "g.vines", "-o", "a.doc"), "must end in .png"),
@@ -292,6 +269,14 @@ def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path
 def test_other_endings_are_the_users_affair(run, vines, tmp_path, name):
     assert run("export", vines, "--to", "csv", "-o", name)[0] == 0
     assert (tmp_path / name).read_text().startswith("branch,index,p,")
+
+
+def test_export_of_an_unfinished_file_says_so(run, tmp_path):
+    save(fakes.pitchfork_graph(finished=False), tmp_path / "u.vines")
+    status, _, err = run("export", tmp_path / "u.vines", "--to", "json")
+    assert status == 0 and "is unfinished" in err
+    save(fakes.pitchfork_graph(), tmp_path / "g.vines")
+    assert "unfinished" not in run("export", tmp_path / "g.vines", "--to", "json")[2]
 
 
 def test_help_of_export_says_what_the_unknowns_are(run):

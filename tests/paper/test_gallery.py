@@ -148,5 +148,6 @@ def test_script(name, gallery, tmp_path):
     script = importlib.import_module(name)
     numbers = gallery.run(name, script.main, tmp_path)
     assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    assert f'paper.run("{name}", main)' in Path(str(script.__file__)).read_text()  # as a script, too
     assert script.__doc__ and any(word in script.__doc__ for word in ("Confirms", "Refines", "Contradicts"))
     globals()[f"check_{name}"](numbers)

@@ -5,6 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 import contvines as cv
+from contvines.journal import MemoryJournal
 
 
 def parabola(u, p):
@@ -20,6 +21,65 @@ def test_a_function_stops_a_branch_at_its_zero():
     assert "stops at US1 (half), p = 0.25" in branch.ended
     graph = cv.diagram(problem, within=(-1.0, 4.0), stop={"measured": ("square", 2.25)})
     assert graph["B1"].points.max() == pytest.approx(1.5, abs=1e-14)
+
+
+def tree(u, p):
+    """A transcritical point at p = 0, and the branch u = p that leaves there."""
+    return u * (p - u)
+
+
+class Cut(MemoryJournal):
+    """Is interrupted after so many records, as a run that is killed."""
+
+    left = 3
+
+    def record(self, key, values):
+        super().record(key, values)
+        self.left -= 1
+        if self.left == 0:
+            raise KeyboardInterrupt
+
+
+def test_limits_on_resume(tmp_path):
+    """Bounds and stops hold in a run that goes on after an interrupt, and in what is kept of it."""
+    problem = cv.AlgebraicProblem(tree, [0.0], -1.0)
+    more = {"bounds": {"u0": (-0.5, None)}, "stop": {"far": lambda u, p: u[0] - 0.75}}
+    whole = cv.diagram(problem, within=(-1.0, 1.0), **more)
+    journal = Cut()
+    with pytest.raises(KeyboardInterrupt):
+        cv.diagram(problem, within=(-1.0, 1.0), journal=journal, **more)
+    graph = cv.diagram(problem, within=(-1.0, 1.0), journal=journal, **more)
+    assert str(graph) == str(whole)
+    assert sorted(point.value for point in graph.of_kind("user")) == pytest.approx([-0.5, 0.75])
+    graph.save(tmp_path / "tree.vines")
+    again = cv.load(tmp_path / "tree.vines")
+    assert str(again) == str(whole) and again.settings["bounds"] == {"u0": [-0.5, None]}
+
+
+def test_bounds_hold_where_a_graph_goes_on():
+    problem = cv.AlgebraicProblem(tree, [0.0], -1.0)
+    graph = cv.diagram(problem, within=(-1.0, 1.0), depth=0, bounds={"u0": (-0.5, 0.75)})
+    (label,) = cv.switch(graph, "BP1")
+    assert graph[label].range == pytest.approx((-0.5, 0.75))
+    other = cv.diagram(problem, within=(-1.0, 1.0), depth=0, bounds={"u0": (-0.5, 0.75)})
+    (label,) = cv.switch(other, "BP1", bounds={})
+    assert other[label].range == pytest.approx((-1.0, 1.0))
+
+
+def test_points_at_the_very_end_of_the_interval():
+    """A branch point, a fold, and none of them a little inside."""
+    line = cv.AlgebraicProblem(tree, [0.0], -1.0)
+    assert "at the end" in str(cv.diagram(line, within=(-1.0, 0.0)))
+    assert "at the end" not in str(cv.diagram(line, within=(-1.0, 1e-3)))
+    fold = str(cv.diagram(cv.AlgebraicProblem(parabola, [1.0], 1.0), within=(0.0, 2.0)))
+    assert "fold" in fold and "at the end" in fold
+
+
+def test_a_branch_that_creeps_ends_and_says_so():
+    problem = cv.AlgebraicProblem(parabola, [1.0], 1.0, scale=1.0)
+    graph = cv.diagram(problem, within=(-1.0, 2.0), settings={"max_step": 5e-7, "first_step": 1e-7})
+    assert all("creeps near p = " in said for said in graph["B1"].ended)
+    assert 600 <= len(graph["B1"]) < 4000
 
 
 def test_bounds_of_measures():

@@ -28,6 +28,12 @@ def test_multipliers_are_drawn_with_the_unit_circle(graph):
         plot_multipliers(graph.branches["B2"])
 
 
+def test_small_multipliers_are_the_moduli_alone_and_taller_ones_have_both(graph):
+    small, tall = (plot_multipliers(graph.branches["B2"], figsize=size) for size in ((3.4, 2.4), (3.4, 4.6)))
+    assert len(small.axes) == 1 and small.axes[0].get_window_extent().height > 0.45 * 2.4 * small.dpi
+    assert len(tall.axes) == 3  # with the key of colours
+
+
 def test_portrait_asks_the_orbit_first():
     class Orbit:
         def plot(self):

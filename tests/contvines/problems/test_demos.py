@@ -46,7 +46,10 @@ def test_demo(demo):
         ("oxidation of CO", {"fold": [1.04204, 1.0522], "hopf": [1.0410, 1.0516]}),  # MatCont's manual
         ("morris-lecar II", {"hopf": [93.86, 212.02]}),  # Rinzel and Ermentrout 1989
         ("squid", {"hopf": [9.78, 154.5]}),  # XPPAUT
-        ("lrz", {"hopf": [470.0 / 19.0]}),  # Lorenz 1963
+        ("lrz", {"hopf": [24.7368], "symmetry-breaking": [1.0]}),  # AUTO's manual; 470/19, Lorenz 1963
+        ("cusp", {"fold": [-0.384900, 0.384900]}),  # AUTO's manual
+        ("adaptx", {"hopf": [1.000002]}),  # MatCont's manual
+        ("henon", {"fold": [-0.1225]}),  # Henon, Commun. Math. Phys. 50 (1976) 69, for b = 0.3
         ("delayed logistic", {"neimark-sacker": [2.0]}),
         ("logistic", {"period-doubling": [3.0, 3.449489743]}),
     ],

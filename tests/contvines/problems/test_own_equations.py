@@ -189,3 +189,39 @@ def test_outputs_are_measures():
     )
     branch = cv.diagram(problem, within=(-1.0, 1.0))["B1"]
     np.testing.assert_allclose(branch.measure("energy"), 0.5 * branch.values**4 + branch.values, atol=1e-12)
+
+
+def test_right_derivatives_are_not_doubted_where_they_vanish():
+    """At the ends of a circle on a line both derivatives are zero but for rounding."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: [(u[0] ** 2 + p**2 - 1e-4) * u[0]],
+        [0.0],
+        -1.0,
+        jacobian=lambda u, p: [[3.0 * u[0] ** 2 + p**2 - 1e-4]],
+        derivative=lambda u, p: [2.0 * p * u[0]],
+    )
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    points = graph.of_kind("branch-point")
+    assert sorted(point.value for point in points) == pytest.approx([-0.01, 0.01], abs=1e-12)
+    assert all(point.location_error < 1e-12 and not point.remarks for point in points)
+
+
+@pytest.mark.parametrize("digits", [16, 8])
+def test_a_kink_is_told_from_noise(digits):
+    """F rounded to eight digits: a kink is named where there is one, a smooth branch goes on to the end."""
+
+    def rounded(value):
+        return [float(np.round(value, digits))]
+
+    kink = cv.AlgebraicProblem(lambda u, p: rounded(p - abs(u[0] - 0.3) - 0.5 * u[0]), [-1.0], 0.8)
+    (said, other) = cv.diagram(kink, within=(0.0, 2.0))["B1"].ended
+    assert "kink near p = 0.15 (row 0)" in said and "end of the interval" in other
+    smooth = cv.AlgebraicProblem(lambda u, p: rounded(p - np.sinh(u[0])), [0.0], 0.0)
+    assert all("end of the interval" in said for said in cv.diagram(smooth, within=(-2.0, 2.0))["B1"].ended)
+
+
+def test_a_start_far_from_any_solution_is_refused():
+    """Below 0.3 this F does not depend on u."""
+    problem = cv.AlgebraicProblem(lambda u, p: [p - abs(u[0] - 0.3) - u[0]], [-1.0], 1.6)
+    with pytest.raises(ValueError, match=r"largest entry of F is 1\.3\).*far away.*better guess"):
+        cv.diagram(problem, within=(0.0, 2.0))

@@ -98,6 +98,27 @@ def survey_file(tmp_path_factory):
     return write_report(survey, tmp_path_factory.mktemp("report") / "survey.html", "x-survey.nc")
 
 
+@pytest.fixture(scope="module")
+def declared_file(tmp_path_factory):
+    """A mass on a spring with a wall, on a page."""
+    pytest.importorskip("heyoka")
+    from orbits import Machine, Wall
+    from orbits.symbols import cos
+
+    machine = Machine(
+        name="stop",
+        states=("x", "v"),
+        parameters={"forcing": 1.0, "frequency": 2.3, "damping": 0.05, "gap": 0.1, "restitution": 0.8},
+        phase_rate="frequency",
+        motion=lambda s, phase, p, contact: (s.v, p.forcing * cos(phase) - 2 * p.damping * s.v - s.x),
+        contacts=[
+            Wall("R", gap=lambda s, phase, p: p.gap - s.x, push={"v": -1.0}, restitution="restitution")
+        ],
+    )
+    graph = cv.diagram(machine.attractor(frequency=2.3), over="frequency", within=(2.25, 2.35), depth=0)
+    return write_report(graph, tmp_path_factory.mktemp("report") / "declared.html", "x.vines")
+
+
 @pytest.fixture
 def opened(browser, request):
     page_file = request.getfixturevalue(getattr(request, "param", "page_file"))
@@ -152,6 +173,17 @@ def test_the_absorber_moves_and_stops(opened):
     held = frame()
     opened.wait_for_timeout(200)
     assert frame() == held
+
+
+@pytest.mark.parametrize("opened", ["declared_file"], indirect=True)
+def test_the_body_of_a_machine_on_a_page_moves_before_its_wall(opened):
+    opened.locator("#row-B1").click()
+    assert opened.locator("#stage").is_visible()
+    if opened.locator("#play").inner_text() == "play":
+        opened.locator("#play").click()
+    first = opened.locator("#animation").get_attribute("data-body")
+    opened.wait_for_function(f"document.getElementById('animation').dataset.body !== '{first}'")
+    assert "x of the machine" in opened.locator("#animation").get_attribute("aria-label")
 
 
 def test_keys_walk_along_a_branch(opened):

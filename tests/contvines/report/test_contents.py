@@ -10,6 +10,7 @@ import pytest
 
 import contvines as cv
 from contvines.report.contents import contents
+from contvines.report.numbers import told_of
 from contvines.report.page import page, write_report
 from orbits import Absorber
 from tests.contvines import fakes
@@ -83,3 +84,8 @@ def test_names_cannot_break_out_of_the_page():
 def test_a_page_that_cannot_be_written_is_refused(graph, tmp_path, name, says):
     with pytest.raises(ValueError, match=says):
         write_report(graph, tmp_path / name, "x.vines")
+
+
+def test_where_a_page_of_python_lay_is_not_told():
+    told = told_of({"name": "stop", "page": "/home/somebody/work/stop.py", "gap": 0.1, "nested": {}})
+    assert told == {"name": "stop", "page": "stop.py", "gap": 0.1}

@@ -32,3 +32,22 @@ def test_a_sum_of_two_floats_keeps_what_one_would_lose():
             w, low = plain[2](w, low, step)
             exact += mp.mpf(step)
             assert abs(mp.mpf(w) + mp.mpf(low) - exact) < 1e-31
+
+
+def test_what_is_kept_on_disk_is_named_by_the_sources_it_calls(tmp_path):
+    """A kernel whose helpers have changed is another one: its name carries a digest of their files, and changes with it."""
+    from types import ModuleType
+
+    from orbits.compiling.decorators import digest_of, stored_with
+
+    def kernel(x):
+        return x
+
+    module, names = ModuleType("helper"), []
+    for text in ("a = 1", "a = 2", "a = 1"):
+        module.__file__ = str(tmp_path / "helper.py")
+        (tmp_path / "helper.py").write_text(text)
+        kernel.__qualname__ = "kernel"
+        names.append(stored_with(module)(kernel).py_func.__qualname__)
+        assert digest_of(module) in names[-1]
+    assert names[0] == names[2] != names[1]

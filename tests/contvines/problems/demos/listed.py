@@ -36,7 +36,16 @@ DEMOS = [
     Demo("plp", "AUTO plp", eq.plp, [100.0, 450.0], 0.01, (0.0, 4.0), "rho"),
     Demo("wav", "AUTO wav", eq.wav, [62.7662, 88.8308], 500.0, (400.0, 1200.0), "a0"),
     Demo("enz", "AUTO enz", eq.enz, [0.0, 0.0], 0.0, (0.0, 50.0), "s0", options={"mirror": SWAP}),
-    Demo("cusp", "AUTO cusp, COCO cusp", eq.cusp, [1.0], 0.0, (-1.0, 1.0), "mu"),
+    Demo(
+        "cusp",
+        "AUTO cusp, COCO cusp",
+        eq.cusp,
+        [1.0],
+        0.0,
+        (-1.0, 1.0),
+        "mu",
+        printed="0.384900, -0.384900 (AUTO)",
+    ),
     Demo("chu", "AUTO chu", eq.chu, [0.0, 0.0, 0.0], -1.0, (-1.0, 15.0), "alpha"),
     Demo(
         "lrz",
@@ -47,6 +56,7 @@ DEMOS = [
         (0.0, 30.0),
         "rho",
         options={"mirror": TURN},
+        printed="1.00000, Hopf 24.7368 (AUTO)",
     ),
     Demo(
         "tor",
@@ -70,7 +80,7 @@ DEMOS = [
         1.92373,
         (0.5, 1.95),
         "q2",
-        printed="Hopf 1.04099, 1.05156; folds 1.04204, 1.05220",
+        printed="folds 1.042049, 1.052200; Hopf 1.051558, 1.040991 (MatCont)",
     ),
     Demo("bazykin", "MatCont tutorials", eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2), "alpha"),
     Demo(
@@ -100,6 +110,7 @@ DEMOS = [
         -1.0,
         (-1.4, 1.8),
         "alpha",
+        printed="1.000002 (MatCont)",
     ),
     Demo(
         "lorenz 84",
