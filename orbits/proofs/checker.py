@@ -142,7 +142,7 @@ def conditions(c, box, wanted):
     x, p, found = [jet(a) for a in box["hull"]], machine(c, jet(box["hull"][-1])), {}
     for i, (letter, mode, wall, after, node, y) in enumerate(flights(c, x, x[:c["n"]])):
         tests = {("duration", i, 0): (y[0] - node[0])[VALUE]}
-        tests |= {("wall", i, s): (p[f"wall{s}"] - node[1])[VALUE] * s for s in SIDES if letter in "tsu"}
+        tests |= {("wall", i, s): (p[f"wall{s}"] - node[1])[VALUE] * s for s in SIDES if letter in "tsuo"}
         found |= {key: True if value > 0 else False if value < 0 else None for key, value in tests.items()}
         sides = [1] if letter == "o" and "slope" not in p else SIDES  # stuck for ever: the other side is the mirror image
         for s in sides if c["frictionless"] or mode == 0 else (mode,):
@@ -158,10 +158,11 @@ def conditions(c, box, wanted):
     return {key: holds for key, holds in found.items() if wanted([*key])}
 
 def spectrum(c, box):
-    """Whether all multipliers lie inside the unit circle; det(1 - A) and det(1 + A) of their matrix A, in the basis that is given."""
+    """Whether all multipliers lie inside the unit circle; det(1 - A) and det(1 + A) of their matrix A, in the basis that is given; how many
+    are known to lie outside, all others inside: D - A'DA is positive definite with so many -1 in D = diag(-1 .. 1 ..)."""
     n, p, rows, loose = c["n"], machine(c, jet(box["hull"][-1])), equations(c, box["hull"], 10**6), not set(c["events"]) & set(WALL)
     if c["events"] == "o":
-        return n == 2 or p["damping"][VALUE] > 0 or None, iv.mpf(1), iv.mpf(1)
+        return n == 2 or (p["e"] * p["damping"]).get(VALUE, 0) > 0 or None, iv.mpf(1), iv.mpf(1), 0
     A = basis = iv.matrix([[number(text) for text in row] for row in box["basis"]])
     for j, shift in enumerate([0, 1, p["e"].get(VALUE, iv.mpf(0)) * -1, 0][:n] if loose else []):
         basis[j, 1] = shift  # w may be shifted, with v + e w kept: that multiplier is left out
@@ -172,19 +173,19 @@ def spectrum(c, box):
     A, kept = basis**-1 * A, [j for j in range(n) if j != 1 or not loose]
     A, one, pairs = iv.matrix([[A[i, j] for j in kept] for i in kept]), iv.eye(len(kept)), [(i, j) for j in range(len(kept)) for i in range(j)]
     minors = [[int((i, j) == (k, m)) - A[i, k] * A[j, m] + A[i, m] * A[j, k] for k, m in pairs] for i, j in pairs]
-    minus, plus, short = iv.det(one - A), iv.det(one + A), one - A.T * A  # short is definite where A shortens all vectors
-    inside = all(iv.det(short[:k, :k]) > 0 for k in range(1, len(kept) + 1))
+    minus, plus, D = iv.det(one - A), iv.det(one + A), [iv.diag([-1] * k + [1] * (len(kept) - k)) for k in range(len(kept) + 1)]
+    counts = [k for k, H in enumerate(D) if all(iv.det((H - A.T * H * A)[:j, :j]) > 0 for j in range(1, len(kept) + 1))]
     outside = minus < 0 or plus < 0 or (pairs and iv.det(iv.matrix(minors)) < 0)  # the product of all 1 - mu_i mu_j
-    return True if inside else False if outside else None, minus, plus
+    return True if 0 in counts else False if outside or counts else None, minus, plus, counts[0] if counts else None
 
 def changed(c, tile, one, other):
     """Whether the orbits on both sides of a tile differ as they do about a special point of its kind."""
-    kind, (inside, minus, plus), (inside_, minus_, plus_) = tile["kind"], spectrum(c, one), spectrum(c, other)
+    kind, (_, minus, plus, k), (_, minus_, plus_, k_) = tile["kind"], spectrum(c, one), spectrum(c, other)
     if kind == "border":
         sides = [conditions(c, box, lambda key: key == tile["condition"]) for box in (one, other)]
         return [{*side.values()} for side in sides] in ([{True}, {False}], [{False}, {True}])
     if kind == "neimark-sacker":
-        return {inside, inside_} == {True, False} and all(0 not in value for value in spectrum(c, tile)[1:])
+        return k is not None and k_ is not None and abs(k - k_) == 2 and all(0 not in value for value in spectrum(c, tile)[1:3])
     if kind == "fold":
         return one["parameter"] == other["parameter"] and minus * minus_ < 0
     return kind == ("symmetry-breaking" if c["half"] else "period-doubling") and plus * plus_ < 0

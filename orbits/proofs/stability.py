@@ -177,8 +177,9 @@ def _bases(product: Any) -> list[Any]:
     if not np.all(np.isfinite(numbers)) or np.max(np.abs(numbers), initial=0.0) > 1e280:
         return []
     values, vectors = np.linalg.eig(numbers)
+    order = np.argsort(-np.abs(values), kind="stable")  # those outside the circle come first
     columns = []
-    for value, vector in zip(values, vectors.T):
+    for value, vector in zip(values[order], vectors.T[order]):
         if value.imag == 0.0:
             columns.append(vector.real)
         elif value.imag > 0.0:

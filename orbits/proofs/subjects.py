@@ -11,12 +11,14 @@ import numpy as np
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.margins import PER_NODE, margin_name
 from orbits.proofs.balls import Given, decimal
+from orbits.proofs.branches import Pieces
+from orbits.proofs.checks import check_symmetry, motif_of
 from orbits.proofs.equations import Motif
 from orbits.proofs.flights import parameter_names
 from orbits.proofs.obstacles import ProofError
-from orbits.proofs.pieces import Pieces, prove_piece
+from orbits.proofs.pieces import prove_piece
 from orbits.proofs.proof import Proof
-from orbits.proofs.prove import MULTIPLIERS, check_symmetry, motif_of, prove_orbit, prove_special
+from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special
 from orbits.proofs.resting import prove_stuck
 from orbits.proofs.varying import Varying
 from orbits.words import Word

@@ -24,7 +24,7 @@ from orbits.proofs.special import AtParameter
 from orbits.proofs.varying import Varying
 
 ROUNDS = 6
-SLACK = 1.3  # so much smaller than the tile is the image, that another arithmetic finds it inside as well
+SLACK = 2.0  # so much smaller than the tile is the image, that another arithmetic finds it inside as well
 LEVEL = 0.25  # least radius over the largest
 Place = tuple[int, int]
 """The unknown that is a tile's coordinate: node and component."""
@@ -120,7 +120,7 @@ def lay(along: Along, center: str, half: str, z: Sequence[Sequence[Any]], value:
         s = [ball(text) for text in slopes]
         F = _residual(along, m, p, s, ball(center), span)
         least = arb(2) ** (-60) * arb(half).min(arb(1))
-        radii = _levelled([2 * v.abs_upper() + least for v in _flat(_solved(along, m, [p], F))])
+        radii = _levelled([1.5 * SLACK * v.abs_upper() + least for v in _flat(_solved(along, m, [p], F))])
         for _ in range(ROUNDS):
             decimals = [upper_text(r) for r in radii]
             decimals[-1 if place is None else place] = "0"
@@ -136,7 +136,7 @@ def lay(along: Along, center: str, half: str, z: Sequence[Sequence[Any]], value:
                 SLACK * v.abs_upper() < arb(r) for j, (v, r) in enumerate(zip(step, decimals)) if j != fixed
             ):
                 return tile
-            radii = _levelled([(1.7 * v.abs_upper()).max(r / 4) + least for v, r in zip(step, radii)])
+            radii = _levelled([(1.3 * SLACK * v.abs_upper()).max(r / 4) + least for v, r in zip(step, radii)])
             if not all(r.is_finite() and r < 1 for r in radii):
                 return None
     except Singular:

@@ -14,30 +14,6 @@ from tests.contvines import fakes
 EXAMPLE = Path(__file__).parents[2] / "examples" / "friction.toml"
 
 
-@pytest.fixture
-def run(capsys, monkeypatch, tmp_path):
-    """Runs `contvines ...` in an empty folder; returns (exit status, stdout, stderr)."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-
-    def go(*words):
-        try:
-            main([str(w) for w in words])
-            status = 0
-        except SystemExit as end:
-            status = end.code or 0
-        out, err = capsys.readouterr()
-        return status, out, err
-
-    return go
-
-
-@pytest.fixture
-def vines(tmp_path):
-    save(fakes.pitchfork_graph(), tmp_path / "g.vines")
-    return tmp_path / "g.vines"
-
-
 def test_help_lists_every_command(run):
     status, out, _ = run("--help")
     assert status == 0

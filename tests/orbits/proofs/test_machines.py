@@ -173,3 +173,25 @@ def test_decimals_only():
             checker.number(text)
     tenth = checker.number("0.1")
     assert tenth * 10 - 1 in iv.mpf([-1, 1]) * iv.mpf("1e-30")
+
+
+def test_the_stuck_absorber_is_inside_the_cavity_and_stable_by_damping_alone():
+    """Without the absorber's mass nothing damps the oscillator (its drag is mass ratio times damping); beyond a wall nobody sticks."""
+    from orbits.proofs.resting import prove_stuck
+
+    given = {
+        "forcing": "0.1", "damping": "1", "excitation": "1", "restitution": "0.7", "friction": "0.5",
+        "gravity": "0.3", "mass_ratio": "0.01", "frequency": "0.5",
+    }  # fmt: skip
+    proof = prove_stuck("coupled", given)
+    assert proof.real and proof.stable and verified(proof)
+    sound = json.loads(json.dumps(proof.certificate()))
+    for change in (
+        lambda c: c["parameters"].__setitem__("mass_ratio", ["0", "0", 0]),
+        lambda c: c["parameters"].__setitem__("damping", ["0", "0", 0]),
+        lambda c: c["boxes"][0]["nodes"][0][1].__setitem__(0, "1.5"),
+    ):
+        wrong = json.loads(json.dumps(sound))
+        change(wrong)
+        with pytest.raises(checker.Refused):
+            checker.check(wrong)

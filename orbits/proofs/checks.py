@@ -1,0 +1,98 @@
+"""What is refused before a proof is tried: words without equations, halves without an image, parameters out of range."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from typing import Any
+
+import numpy as np
+
+from orbits.proofs.balls import Given
+from orbits.proofs.equations import MIRRORED, Motif
+from orbits.proofs.flights import parameter_names
+from orbits.proofs.obstacles import ProofError
+from orbits.proofs.varying import Varying
+
+SIDED = ("restitution", "friction", "distance")
+NEAR = 1e-6  # nodes of an orbit and of its mirror image
+
+
+def motif_of(
+    machine: str, events: Sequence[str], modes: Sequence[int], periods: int, half: bool, frictionless: bool
+) -> Motif:
+    """The part of a word that is solved for.
+
+    Raises
+    ------
+    ProofError
+        If the machine has no flights in closed form, or the word is empty.
+    """
+    parameter_names(machine)
+    if not events:
+        raise ProofError("the absorber is stuck throughout: the empty word has no equations to prove")
+    length = len(events) // 2 if half else len(events)
+    return Motif(machine, tuple(events[:length]), tuple(modes[:length]), periods, half, frictionless)
+
+
+def require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], nodes: np.ndarray) -> None:
+    """Refuse to prove half a word for the whole where the other half is not its mirror image.
+
+    Raises
+    ------
+    ProofError
+    """
+    n = len(motif)
+    image = -nodes[:n]
+    image[:, 0] = nodes[:n, 0] + np.pi * motif.periods
+    letters = tuple(MIRRORED.get(letter, letter) for letter in motif.events)
+    same = tuple(events[n:]) == letters and tuple(modes[n:]) == tuple(-mode for mode in motif.modes)
+    if not same or nodes.shape[0] != 2 * n or not np.max(np.abs(nodes[n:] - image)) < NEAR:
+        raise ProofError(
+            "the second half of the orbit is not the mirror image of the first: prove the whole word"
+        )
+
+
+def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | None = None) -> None:
+    """Refuse half a word where the mirror image of a motion is none: a cavity must be level and its sides exactly alike.
+
+    Raises
+    ------
+    ProofError
+    """
+    told = {**given, **(varying.numbers if varying else {})}
+    alike = motif.machine != "cavity" or (
+        Decimal(str(told["slope"])) == 0
+        and all(told[f"{name}_left"] == told[f"{name}_right"] for name in SIDED)
+        and not any(isinstance(given.get(f"{name}_left"), tuple) for name in SIDED)
+    )
+    if motif.half and (motif.periods % 2 == 0 or not alike):
+        raise ProofError(
+            "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
+        )
+
+
+def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
+    """Refuse parameters outside their range, and friction where the word has none.
+
+    Raises
+    ------
+    ProofError
+        Naming the parameter.
+    """
+    for name, value in p.items():
+        if name.startswith("restitution"):
+            good = value > 0 and value.upper() <= 1
+        elif name in ("frequency",) or (name == "mass_ratio" and motif.machine == "coupled"):
+            good = value > 0
+        else:
+            good = name == "slope" or value.lower() >= 0
+        if not (good and value.is_finite()):
+            raise ProofError(f"{name} = {value.str(12)} is out of range for the machine {motif.machine!r}")
+    limit = motif.flights(p).limit
+    if not (limit[1] >= 0 and limit[-1] >= 0):
+        raise ProofError("the slope leaves friction no load: keep it between -pi/2 and pi/2")
+    if motif.frictionless != bool(limit[1] == 0 and limit[-1] == 0):
+        raise ProofError(
+            "a word without friction's events needs friction exactly 0, and any other needs friction above 0"
+        )
