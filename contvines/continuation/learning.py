@@ -184,7 +184,8 @@ class Scout:
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         bends, first = np.asarray(self.problem.bends), self.first
         sure = bends | np.asarray(self.problem.known)
-        own = np.where(size > 0.0, size, first)
+        # a zero that rounding has moved has no size of its own
+        own = np.where(size > np.where(sure, first / BEYOND, 0.0), size, first)
         moved = extent[:-1] > np.where(
             bends, MOVES * np.minimum(first, own), BARELY * np.where(sure, first, own)
         )
