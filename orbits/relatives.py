@@ -60,17 +60,8 @@ class Relatives:
         if self.symmetric or not len(self.word):
             return ()
         found = []
-        places = self._mirror_places() if self.mirrored else 0
-        if places:
-            periods = 2 * self.periods * places // self.length if self.forced else 1
-            half = self.sibling(self.word.head(2 * places), periods, symmetric=True)
-            found.append(
-                Symmetry(
-                    "symmetry-breaking",
-                    lambda u: self._rotated(u, places, -1.0),
-                    lambda u: (half, half.reduce(self.expand(u))),
-                )
-            )
+        for places in self._mirror_places() if self.mirrored else ():
+            found.append(self._mirrored_on(places))
         if self.word.repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
             periods = self.periods // 2 if self.forced else 1
             root = self.sibling(self.word.head(len(self.word) // 2), periods, symmetric=False)
@@ -83,9 +74,22 @@ class Relatives:
             )
         return tuple(found)
 
-    def _mirror_places(self) -> int:
-        """Least rotation that makes the word its mirror image, an odd number of half forcing periods on; 0 if none does."""
+    def _mirrored_on(self, places: int) -> Symmetry:
+        periods = 2 * self.periods * places // self.length if self.forced else 1
+        half = self.sibling(self.word.head(2 * places), periods, symmetric=True)
+        return Symmetry(
+            "symmetry-breaking",
+            lambda u: self._rotated(u, places, -1.0),
+            lambda u: (half, half.reduce(self.expand(u))),
+        )
+
+    def _mirror_places(self) -> list[int]:
+        """Rotations that make the word its mirror image, an odd number of half forcing periods on, the least first.
+
+        A word that repeats a shorter one has several: its motions may be symmetric as a whole, or repeat a symmetric motion.
+        """
         mirror, n = self.word.mirror(), self.length
+        found = []
         for places in range(1, n // 2 + 1):
             if n % (2 * places):
                 continue
@@ -93,8 +97,8 @@ class Relatives:
             if self.forced and (self.periods % times or (self.periods // times) % 2 == 0):
                 continue
             if self.word.rotate(places) == mirror:
-                return places
-        return 0
+                found.append(places)
+        return found
 
     def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
         """Nodes some places on, at the same phase again, their states times `sign`."""
