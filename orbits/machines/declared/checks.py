@@ -47,6 +47,10 @@ def check_names(
             f"phase_rate = {phase_rate!r} is no parameter; name the forcing's frequency, one of "
             f"{', '.join(parameters) or 'none'}, or leave it out for a self-excited machine"
         )
+    if not len(contacts):
+        raise PageError(
+            "contacts = []: give at least one Wall, DryFriction or Switch; without any there are no events that a word could name"
+        )
     taken: dict[str, str] = {}
     for contact in contacts:
         if not isinstance(contact, (Wall, DryFriction, Switch)):
