@@ -215,9 +215,11 @@ def _repeated(
 
 def _stuck(orbit: Solution) -> Solution:
     if not orbit.real:
+        way = "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
+        if not orbit.model.has_mirror(orbit.params):  # on a slope it may slide down and lie on a wall
+            way += "; if gravity pulls it to a wall and keeps it there, there is no motion to follow: give more friction or a smaller slope"
         raise StartError(
-            f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); "
-            "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
+            f"word = '' is the stuck absorber, but friction does not hold it here (it is short of {-orbit.margin:.3g}); {way}"
         )
     return orbit
 

@@ -13,6 +13,7 @@ from orbits import Absorber, Cavity, ParameterError
 from orbits.attractors import find_attractor
 from orbits.problem import OrbitProblem
 from orbits.simulation import simulate
+from orbits.starts.find import StartError
 from orbits.words import Word
 
 LEVEL = {"gravity": 0.211, "mass_ratio": 0.006}
@@ -249,3 +250,13 @@ def test_refusals(wrong, words):
     with pytest.raises(ParameterError) as refusal:
         Cavity(**{"restitution": 0.76, "friction": 0.5, **LEVEL, **wrong})
     assert all(word in str(refusal.value) for word in words)
+
+
+def test_at_rest_on_a_wall_it_says_that_there_is_nothing_to_follow():
+    machine = Cavity(
+        restitution_left=0.5, restitution_right=0.5, friction=0.1, gravity=0.3, slope=0.5, mass_ratio=0.0
+    )
+    run = machine.simulate(periods=60, amplitude=0.05)
+    assert run.end[1] == pytest.approx(-1.0, abs=1e-6)  # it lies on the right wall
+    with pytest.raises(StartError, match="gravity pulls it to a wall and keeps it there"):
+        machine.orbit("", amplitude=0.05)
