@@ -23,6 +23,10 @@ SLOW = 0.2  # part of its range by which the parameter moves while the unknowns 
 MOVES = 1e-2  # an unknown that moves by less than this part of the length over which the equations bend stays where it is
 BARELY = 1e-4  # ... where they do not bend, of its size
 BEYOND = 1e12  # times the start: a length that is longer is rounding
+ROUNDING, MOST = (
+    1e-12,
+    64,
+)  # of the other unknowns, and of what an equation feels: smaller is rounding; so many are asked about
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
 SMALLEST_BEND = 1e-4
@@ -178,10 +182,24 @@ class Scout:
         self.before = extent
         return bool(moved < SLOW * in_all)
 
+    def _rounding(self, size: np.ndarray) -> dict[int, float]:
+        """Unknowns so small that no equation feels them, which are zeros moved by rounding; and how large one must be to be felt."""
+        found: dict[int, float] = {}
+        for j in np.flatnonzero((size > 0.0) & (size < ROUNDING * size.max()))[:MOST]:
+            unit = np.zeros(self.n)
+            unit[j] = 1.0
+            felt = self.problem.row_sizes(self.work, unit, 0.0)
+            reach = np.divide(self.rows, felt, out=np.full(self.n, np.inf), where=felt > 0.0).min()
+            if np.isfinite(reach) and size[j] < ROUNDING * reach:
+                found[int(j)] = float(reach)
+        return found
+
     def scales(self, given: np.ndarray | None) -> Scales:
         """What was seen; ``given`` wins over it."""
         extent = 0.5 * (self.high - self.low)
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
+        lost = self._rounding(size)
+        size[list(lost)] = 0.0
         bends, first = np.asarray(self.problem.bends), self.first
         sure = bends | np.asarray(self.problem.known)
         # a zero that rounding has moved has no size of its own
@@ -190,6 +208,8 @@ class Scout:
             bends, MOVES * np.minimum(first, own), BARELY * np.where(sure, first, own)
         )
         rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
+        for j, reach in lost.items():
+            moved[j], rest[j] = False, first[j] if sure[j] else reach
         seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
         own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
         far = (extent[:-1] > 1e-2 * size) | (np.where(bends, extent[:-1], 0.0) > first)

@@ -21,9 +21,9 @@ from .protocol import ProblemDefaults
 from .scales import Scales
 
 NOTICED = 1e-13  # noise of the unknowns below this is roundoff
-ROUNDING = (
-    64 * 2.0**-53
-)  # relative accuracy of a value that is found to roundoff; brackets may be narrower than that
+# relative accuracy of a value that is found to roundoff, for each unknown: brackets may be narrower than that
+ROUNDING = 64 * 2.0**-53
+TERMS = 62  # roundings of more unknowns than this cancel
 WORST = 1e-4  # more noise than this is not believed
 
 
@@ -198,7 +198,7 @@ class CallableProblem(ProblemDefaults):
     # ------------------------------------------------------------------ what is wrong
     def uncertainty(self) -> float:
         """Relative accuracy of what was evaluated last: of derivatives by differences, of noisy equations, and of rounding."""
-        errors, least = self.functions.errors, max(self.noise, ROUNDING)
+        errors, least = self.functions.errors, max(self.noise, ROUNDING * (2 + min(self.dimension, TERMS)))
         if self.scales is None or not errors.any():
             return least
         scale = self.scales.unknowns[: len(errors)]

@@ -88,3 +88,14 @@ def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
         for index, value in enumerate(values)
         if np.isfinite(value)
     ]
+
+
+UNBOUNDED = 1e15  # a multiplier so large grows without bound towards the border
+
+
+def limits_of(multipliers: np.ndarray) -> np.ndarray:
+    """One-sided limits of multipliers at a border; all nan where one of them grows without bound, as at a graze: there are none."""
+    limits = np.asarray(multipliers)
+    if np.any(np.abs(limits) >= UNBOUNDED):
+        return np.full(limits.shape, complex(np.nan, np.nan))
+    return limits

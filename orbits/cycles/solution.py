@@ -13,7 +13,7 @@ from orbits.cycles import measures as measuring
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
 from orbits.cycles.equations import equations
-from orbits.cycles.margins import Margin, margin_units, named_margins
+from orbits.cycles.margins import Margin, limits_of, margin_units, named_margins
 from orbits.cycles.sampling import sample
 
 REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
@@ -50,7 +50,7 @@ class Solution(Cycle):
         """
         found = replace(self)
         residual, _, margins = self._examined
-        found.__dict__["_examined"] = (residual, np.asarray(multipliers), margins)
+        found.__dict__["_examined"] = (residual, limits_of(multipliers), margins)
         return found
 
     @property

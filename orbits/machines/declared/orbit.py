@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
-from orbits.cycles.margins import Margin
+from orbits.cycles.margins import Margin, limits_of
 from orbits.doors import above
 from orbits.machines.declared.deviation import deviation
 from orbits.machines.declared.machine import Machine
@@ -94,7 +94,7 @@ class DeclaredOrbit:
         """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits."""
         found = replace(self)
         residual, _, margins = self._examined
-        found.__dict__["_examined"] = (residual, np.asarray(multipliers), margins)
+        found.__dict__["_examined"] = (residual, limits_of(multipliers), margins)
         return found
 
     @property
