@@ -74,6 +74,11 @@ def stable_manifolds(
         Smallest and largest coordinates of the plane.
     longest : float
         Sizes of the plane.
+
+    Returns
+    -------
+    list of Manifold
+        None for saddles of motions with more than two states.
     """
     found: list[Manifold] = []
     for branch in graph.branches.values():
@@ -100,10 +105,15 @@ def check_plane(graph: Graph, parameter: str, plane: tuple[str, str], others: Ma
     """
     if graph.parameter != parameter:
         raise ValueError(f"saddles: the graph's parameter is {graph.parameter}, not {parameter}")
-    problem = next((b.problem for b in graph.branches.values() if b.problem is not None and len(b)), None)
-    if problem is None:
-        raise ValueError("saddles: the graph has no branches with a problem")
-    names = section_of(problem, float(next(iter(graph.branches.values())).values[0])).names
+    names: tuple[str, ...] = ()
+    for branch in graph.branches.values():
+        if (
+            branch.problem is not None and branch.description.get("word") != ""
+        ):  # what never slides has no section
+            names = section_of(branch.problem, float(branch.values[0])).names
+            break
+    if not names:
+        raise ValueError("saddles: the graph has no motions that can be simulated period by period")
     if len(names) != 2:
         raise ValueError(
             f"saddles: stable manifolds are curves only where motions have two states; here these are {', '.join(names)}"

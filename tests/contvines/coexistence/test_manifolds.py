@@ -98,3 +98,16 @@ def test_on_the_command_line(tmp_path, absorber):
     said = CliRunner().invoke(app, words)
     assert said.exit_code == 0
     assert "stable manifold of LR on B1" in said.stdout
+
+
+def test_a_graph_that_begins_with_the_absorber_at_rest():
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)
+    resting = cv.diagram(machine.orbit("", amplitude=0.05), over="amplitude", within=(0.04, 0.06), depth=0)
+    with pytest.raises(ValueError, match="the graph has no motions that can be simulated period by period"):
+        cv.basins(machine, "amplitude", 0.05, points=4, saddles=resting)
+    resting.merge(
+        cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 0.6), depth=0)
+    )
+    assert {
+        curve.word for curve in cv.basins(machine, "amplitude", 0.3, points=4, saddles=resting).manifolds
+    } == {"LR"}
