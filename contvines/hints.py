@@ -26,7 +26,10 @@ def hinting(function: Callable[P, R]) -> Callable[P, R]:
 
     The names of its settings are known, too: they belong into ``settings``.
     """
-    names = list(inspect.signature(function).parameters)
+    known = inspect.signature(function).parameters
+    names = [name for name, entry in known.items() if entry.kind is not entry.VAR_KEYWORD]
+    if len(names) < len(known):
+        return function  # whatever else it is given it hands on
 
     @wraps(function)
     def asked(*arguments: P.args, **options: P.kwargs) -> R:

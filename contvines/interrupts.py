@@ -9,11 +9,15 @@ from another one at once, and again at the end if it was ignored inside.
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType, TracebackType
+from typing import Any
 
+# what `signal` hands on to: it makes enumerations of handlers, which takes longer than solving a point
+_plain: Any = sys.modules["_signal"]
 PACKAGE = __name__.partition(".")[0] + "."
 
 
@@ -21,6 +25,7 @@ class _State:
     wanted = False  # an interrupt has come that nobody has taken
     held = 0  # held sections that are open
     alone = False  # the outermost of them listens itself
+    listening = False  # somebody does already
 
 
 _state = _State()
@@ -33,6 +38,7 @@ def listening() -> Iterator[None]:
         yield
         return
     signal.signal(signal.SIGINT, _interrupted)
+    _state.listening = True
     try:
         yield
     except BaseException:
@@ -40,7 +46,7 @@ def listening() -> Iterator[None]:
         raise
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        _state.held = 0
+        _state.held, _state.listening = 0, False
     if _state.wanted:
         take()
         raise KeyboardInterrupt
@@ -50,7 +56,7 @@ def _unheard() -> bool:
     """Whether an interrupt would be raised by Python itself, at once."""
     return (
         threading.current_thread() is threading.main_thread()
-        and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        and _plain.getsignal(signal.SIGINT) is signal.default_int_handler
     )
 
 
@@ -76,8 +82,8 @@ class Section:
         self.held = held
 
     def __enter__(self) -> None:
-        if self.held and not _state.held and _unheard():
-            signal.signal(signal.SIGINT, _interrupted)
+        if self.held and not _state.held and not _state.listening and _unheard():
+            _plain.signal(signal.SIGINT, _interrupted)
             _state.alone = True
         _state.held += self.held
 
@@ -87,7 +93,7 @@ class Section:
         if self.held and _state.held:
             _state.held -= 1
             if _state.alone and not _state.held:
-                signal.signal(signal.SIGINT, signal.default_int_handler)
+                _plain.signal(signal.SIGINT, signal.default_int_handler)
                 _state.alone = False
                 if kind is not None:
                     take()

@@ -12,7 +12,7 @@ _PLACES = {
     "Cavity": "orbits.machines.cavity.machine",
     "Coupled": "orbits.machines.coupled.machine",
     "DryFriction": "orbits.contacts.dry_friction",
-    "Machine": "orbits.machines.declared.machine",
+    "Machine": "orbits.declared.machine",
     "Scales": "orbits.design.scales",
     "Orbit": "orbits.orbit",
     "OrbitProblem": "orbits.problem",
@@ -26,13 +26,13 @@ _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "
 lead(
     {
         "attractor": "orbits.attractors.recurrence:find_attractor",
-        "attractor_of_page": "orbits.machines.declared.attractor:find_attractor",
+        "attractor_of_page": "orbits.declared.attractor:find_attractor",
         "attractors": "orbits.attractors.sweep:different_attractors",
-        "attractors_of_page": "orbits.machines.declared.attractor:find_attractors",
-        "DeclaredPopulation": "orbits.machines.declared.population:DeclaredPopulation",
-        "DeclaredProblem": "orbits.machines.declared.problem:DeclaredProblem",
+        "attractors_of_page": "orbits.declared.attractor:find_attractors",
+        "DeclaredPopulation": "orbits.declared.population:DeclaredPopulation",
+        "DeclaredProblem": "orbits.declared.problem:DeclaredProblem",
         "find": "orbits.starts.find:find",
-        "find_on_page": "orbits.machines.declared.starts:find",
+        "find_on_page": "orbits.declared.starts:find",
         "of_branch": "orbits.proofs.subjects:of_branch",
         "of_orbit": "orbits.proofs.subjects:of_orbit",
         "of_point": "orbits.proofs.subjects:of_point",
@@ -45,7 +45,7 @@ lead(
         "scene": "orbits.plots.scene:scene",
         "scene_of_page": "orbits.plots.declared:scene",
         "simulate": "orbits.simulation.driver:simulate",
-        "simulate_page": "orbits.machines.declared.simulation:simulate",
+        "simulate_page": "orbits.declared.simulation:simulate",
     }
 )
 __all__ = sorted([*_PLACES, *_ROOMS])

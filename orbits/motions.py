@@ -44,6 +44,11 @@ class Simulated:
             found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
         return [found[key] for key in sorted(found)]
 
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable motion as `witness` tells of it."""
+        kind = "periodic" if self.word.impacts else "sliding" if len(self.word) else "stuck"
+        return {"word": self.word.spelled(), "periods": self.periods, "kind": kind}
+
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle.
 

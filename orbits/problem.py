@@ -230,10 +230,13 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""
-        over = over or self.parameter
-        return self.model.population(
-            over, **{n: v for n, v in {**self.parameters, **parameters}.items() if n != over}
-        )
+        numbers = dict(zip(self.model.parameter_names, map(float, self.params), strict=True))
+        return self.model.population(over or self.parameter, **{**numbers, **parameters})
+
+    def __repr__(self) -> str:
+        symmetric = ", symmetric" if self.symmetric else ""
+        word = f"word={self.spelling!r}, periods={self.periods}{symmetric}"
+        return f"OrbitProblem({self.model.name}, {word}, parameter={self.parameter!r})"
 
     @property
     def spelling(self) -> str:

@@ -103,7 +103,8 @@ class Relatives:
     def _rotated(self, u: np.ndarray, places: int, sign: float) -> np.ndarray:
         """Nodes some places on, at the same phase again, their states times `sign`."""
         nodes = self.expand(u)
-        image = np.roll(nodes, -places, axis=0) * np.r_[1.0, np.full(nodes.shape[1] - 1, sign)]
+        image = np.concatenate([nodes[places:], nodes[:places]])
+        image[:, 1:] *= sign
         if self.forced:
             turn = self.shift * places / self.length
             image[: self.length - places, 0] -= turn

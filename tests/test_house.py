@@ -64,13 +64,40 @@ def test_functions_are_short():
     assert not long, f"more than {FUNCTION} lines: {', '.join(long)}"
 
 
-def test_no_two_files_need_one_another():
-    """Found by removing what needs nothing that is left, again and again."""
-    paths = [path for package in PACKAGES for path in (ROOT / package).rglob("*.py")]
-    known = {module_of(path) for path in paths}
-    needs = {module_of(path): set(imports(path, known)) for path in paths}
-    assert sum(map(len, needs.values())) > 1000  # they were read
+def in_circles(needs):
+    """Names in or above a circle, found by removing what needs nothing that is left, again and again."""
+    needs = {name: set(wanted) for name, wanted in needs.items()}
     while free := [name for name, wanted in needs.items() if not wanted & needs.keys()]:
         for name in free:
             del needs[name]
-    assert not needs, f"in or above a circle: {', '.join(sorted(needs))}"
+    return sorted(needs)
+
+
+@cache
+def needs_of_files():
+    paths = [path for package in PACKAGES for path in (ROOT / package).rglob("*.py")]
+    known = {module_of(path) for path in paths}
+    return {module_of(path): frozenset(imports(path, known)) for path in paths}
+
+
+def test_no_two_files_need_one_another():
+    needs = needs_of_files()
+    assert sum(map(len, needs.values())) > 1000  # they were read
+    assert not in_circles(needs)
+
+
+def test_no_two_rooms_need_one_another():
+    """Folder by folder: what lies in it, folders taken as a whole, has an order from bottom to top."""
+    files = needs_of_files()
+    folders = {name.rpartition(".")[0] for name in files} - {""}
+    for folder in folders:
+        depth = folder.count(".") + 2
+        rooms: dict[str, set[str]] = {}
+        for name, wanted in files.items():
+            if name.startswith(f"{folder}."):
+                room = ".".join(name.split(".")[:depth])
+                there = {
+                    ".".join(other.split(".")[:depth]) for other in wanted if other.startswith(f"{folder}.")
+                }
+                rooms.setdefault(room, set()).update(there - {room})
+        assert not in_circles(rooms), folder

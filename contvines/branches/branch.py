@@ -139,6 +139,8 @@ class Branch:
         if self.problem is None:
             raise ValueError(without_problem(self.label, self.description))
         n = len(self)
+        if not isinstance(i, int | np.integer):
+            raise TypeError(f"{self.label}.orbit({i!r}): give the number of a point, from 0 to {n - 1}")
         if not -n <= i < n:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         found = self.problem.orbit(self.points[i], float(self.values[i]))

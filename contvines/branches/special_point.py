@@ -11,11 +11,12 @@ from ..doors import above
 from ..events.kinds import BORDERS
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
+from .later import Later
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class SpecialPoint:
     """A special point of a branch.
 
@@ -49,9 +50,9 @@ class SpecialPoint:
         All margins positive (a border point itself counts as real).
     criticality : {"supercritical", "subcritical"} or None
     coefficient : float or None
-        Normal-form coefficient (see :mod:`contvines.switching.normal_forms`).
+        Normal-form coefficient (see :mod:`contvines.switching.normal_forms`); worked out when it is first asked for.
     replay : float or None
-        Replay error by simulation.
+        Replay error by simulation; simulated when it is first asked for.
     multipliers_beyond : ndarray of complex or None
         At a border: multipliers of the solution on the other side.
     mirror : bool
@@ -84,8 +85,8 @@ class SpecialPoint:
     location_error: float = 0.0
     real: bool = True
     criticality: str | None = None
-    coefficient: float | None = None
-    replay: float | None = None
+    coefficient: Later = Later()  # noqa: RUF009  (a descriptor)
+    replay: Later = Later()  # noqa: RUF009
     multipliers_beyond: np.ndarray | None = field(default=None, repr=False)
     mirror: bool = False
     name: str = ""
@@ -147,6 +148,12 @@ class SpecialPoint:
     def circles(self, to: float | None = None, **options: Any) -> Any:
         """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
         return above("circles")(self, to, **options)
+
+    def __repr__(self) -> str:
+        virtual = "" if self.real else "virtual "
+        side = f", {self.criticality}" if self.criticality else ""
+        where = f"{self.parameter} = {self.value:.12g}"
+        return f"SpecialPoint({self.label}: {virtual}{self.kind} on {self.branch} at {where}{side})"
 
     def _repr_html_(self) -> str:
         return above("point_page")(self)

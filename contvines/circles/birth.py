@@ -80,7 +80,7 @@ def born(point: SpecialPoint) -> Birth:
     vector = right[:, place] / np.linalg.norm(right[:, place])
     left = np.linalg.inv(right)[place].conj()
     left = left / np.vdot(left, vector).conj()
-    q, _ = forms.null(multiplier / abs(multiplier))
+    q = forms.null(multiplier / abs(multiplier))[0] * forms.units
     h = 1e-6 * (float(np.linalg.norm(u)) or 1.0)
     image = sum(
         unit * (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)

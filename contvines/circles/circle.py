@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import html
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..doors import above
+from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 
 
@@ -151,14 +153,22 @@ class Circles:
         }
 
     def __str__(self) -> str:
+        lines = self._table().lines(terminal_width())
+        return "\n".join([fitted(self._title()), "", *lines, "", fitted(self.ended)])
+
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(self._title())}</p>{self._table().html()}<p>{html.escape(self.ended)}</p>"
+
+    def _title(self) -> str:
         kind = "stable" if self.coefficient < 0.0 else "unstable"
-        lines = [
+        return (
             f"{self.label}: {kind} circles from {self.parameter} = {self.value:.10g} on, "
-            f"{self.rotation:.8g} turns per period there, first Lyapunov coefficient {self.coefficient:.6g}",
-            "",
-        ]
+            f"{self.rotation:.8g} turns per period there, first Lyapunov coefficient {self.coefficient:.6g}"
+        )
+
+    def _table(self) -> Table:
         head = (self.parameter, "radius", "normal form", "turns per period", "simulated", "replay", "stable")
-        rows = [head] + [
+        rows = [
             (
                 f"{c.value:.10g}",
                 f"{c.radius:.6g}",
@@ -170,9 +180,7 @@ class Circles:
             )
             for c in self.circles
         ]
-        widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
-        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
-        return "\n".join([*lines, "", self.ended])
+        return Table(head, rows, ("replay", "normal form", "simulated"))
 
     def plot(self, **options: Any) -> Any:
         """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..branches.special_point import SpecialPoint
+from ..hints import hinting
 from ..interrupts import listening
 from .averages import rotation_number
 from .birth import Birth, born
@@ -33,6 +34,7 @@ LONGEST = 200  # periods of a locked motion
 DISPLACED = 1e-3  # relative displacement whose growth or decay says whether a circle is stable
 
 
+@hinting
 @listening()
 def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) -> Circles:
     """The invariant circles beside a Neimark-Sacker point, until they break.

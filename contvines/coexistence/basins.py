@@ -11,6 +11,7 @@ import numpy as np
 from ..doors import above
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
+from ..hints import hinting
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
@@ -132,6 +133,7 @@ def wilson(share: float, n: int) -> tuple[float, float]:
     return float(max(centre - half, 0.0)), float(min(centre + half, 1.0))
 
 
+@hinting
 def basins(
     machine: Any,
     over: str | None = None,

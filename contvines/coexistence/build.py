@@ -9,17 +9,20 @@ import numpy as np
 
 from ..continuation.settings import Settings
 from ..graph.automatic import new_run
-from ..graph.builder import begin, work
+from ..graph.builder import begin, trace_pending, work
 from ..graph.graph import Graph
 from ..graph.run import Progress, Run
+from ..hints import hinting
 from ..interrupts import listening
 from .census import Counted, census
+from .places import scattered, unasked
 from .population import Population, population_of
 
-BEYOND = 2e-3  # of the interval: so far outside a stable stretch it is asked what the motion becomes
-MOST_EXTRA = 24  # values added beyond the ends of stable stretches
+FEW = 16  # starts at each of the further values
+LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
 
 
+@hinting
 @listening()
 def atlas(
     machine: Any,
@@ -28,6 +31,7 @@ def atlas(
     values: int | Sequence[float] = 16,
     starts: int = 256,
     seed: int = 0,
+    scan: int | None = None,
     depth: int = 3,
     virtual: bool = False,
     user_functions: Mapping[str, Any] | None = None,
@@ -38,8 +42,9 @@ def atlas(
     """One graph with every attractor that many simulated starts find, and all that hangs together with them.
 
     At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
-    exactly, or the root of a new one, which is traced with everything that leaves it. Beyond the ends of stable
-    stretches it is asked once more.
+    exactly, or the root of a new one, which is traced with everything that leaves it. Then fewer starts are simulated at many
+    more values: in every stretch between two changes of what is known to be stable, and scattered evenly over the interval until
+    `scan` values in a row have met nothing new.
 
     Parameters
     ----------
@@ -54,7 +59,10 @@ def atlas(
     starts : int
         How many at each value.
     seed : int
-        Of the starts; equal seeds give equal graphs.
+        Of the starts and the further values; equal seeds give equal graphs.
+    scan : int, optional
+        So many further values in a row must meet nothing new, with 16 starts each; 0 leaves them out. By default they
+        have as many starts as the given values together.
     depth, virtual, user_functions, journal, progress, settings
         As for :func:`contvines.diagram`.
 
@@ -89,17 +97,24 @@ def atlas(
         progress,
         settings,
     )
-    run.graph.settings |= {"values": len(where), "starts": starts, "seed": seed}
-    everything: list[Counted] = []
+    if scan is None:
+        scan = -(-len(where) * starts // FEW)
+    if not (isinstance(scan, int) and scan >= 0):
+        raise ValueError(f"scan = {scan!r} must be a whole number, 0 or more")
+    run.graph.settings |= {"values": len(where), "starts": starts, "seed": seed, "scan": scan}
+    looking = _Looking(run, population, seed)
     for p in where:
-        everything += _at(run, population, p, starts, seed)
-    for p in _beyond(run.graph, where):
-        everything += _at(run, population, p, max(starts // 4, 16), seed)
+        looking.at(p, starts)
+    if scan:
+        looking.between(scan)
+        looking.everywhere(scan)
+        looking.between(scan)
+    everything = looking.found
     everything.sort(key=lambda counted: counted.attractor.value)
     run.graph.attractors = [counted.attractor for counted in everything]
     run.graph.message = run.graph.message or "finished"
     run.graph.finished = True
-    run.journal.checkpoint(run.graph)
+    run.checkpoint()
     return run.graph
 
 
@@ -128,8 +143,15 @@ def check_values(values: int | Sequence[float], within: tuple[float, float]) -> 
     return numbers
 
 
-def join(run: Run, found: Sequence[Counted]) -> None:
-    """Give each attractor the label of its branch; what lies on none is traced first, with all that leaves it."""
+def join(run: Run, found: Sequence[Counted]) -> int:
+    """Give each attractor the label of its branch; what lies on none is traced first, with all that leaves it.
+
+    Returns
+    -------
+    int
+        How many roots were added.
+    """
+    before = len(run.graph.branches)
     for counted in found:
         attractor = counted.attractor
         if counted.problem is None or counted.u is None:
@@ -138,14 +160,18 @@ def join(run: Run, found: Sequence[Counted]) -> None:
         if label is None:
             try:
                 begin(run, counted.problem, counted.u, attractor.value)
+                if run.graph.complete:
+                    work(run)
+                else:  # `max_branches` limits what is followed from the roots, not the roots
+                    trace_pending(run, run.queue.pop())
             except ValueError as refusal:
                 run.tell(f"a start at {attractor.value:.6g} is left: {refusal}", attractor.value)
                 continue
-            work(run)
             label = locate(run, counted)
         attractor.branch = label
         if label is not None:  # one motion, one spelling of its word
             attractor.word = str(run.graph.branches[label].description.get("word", attractor.word))
+    return len(run.graph.branches) - before
 
 
 def locate(run: Run, counted: Counted) -> str | None:
@@ -154,25 +180,34 @@ def locate(run: Run, counted: Counted) -> str | None:
     return None if known is None else known.label
 
 
-def _at(run: Run, population: Population, p: float, starts: int, seed: int) -> list[Counted]:
-    run.tell(f"{starts} starts at {population.parameter} = {p:.6g}", p)
-    found = census(population, p, starts, seed, run.journal)
-    join(run, found)
-    return found
+class _Looking:
+    """What has been simulated so far, and where next."""
 
+    def __init__(self, run: Run, population: Population, seed: int) -> None:
+        self.run, self.population, self.seed = run, population, seed
+        self.asked: list[float] = []
+        self.found: list[Counted] = []
 
-def _beyond(graph: Graph, where: Sequence[float]) -> list[float]:
-    """Values just outside the stable stretches of all real branches, where none of `where` is near."""
-    low, high = graph.within
-    step = BEYOND * (high - low)
-    spacing = (high - low) / max(len(where), 1)
-    asked: list[float] = []
-    for branch in graph.branches.values():
-        if not branch.real:
-            continue
-        for first, last in branch.stable_intervals():
-            for p in (first - step, last + step):
-                near = min((abs(p - v) for v in (*where, *asked)), default=np.inf)
-                if low <= p <= high and near > 0.1 * spacing and len(asked) < MOST_EXTRA:
-                    asked.append(float(p))
-    return sorted(asked)
+    def at(self, p: float, starts: int, seed: int | None = None) -> int:
+        """Simulate starts at a value; the number of branches that this has added."""
+        self.run.tell(f"{starts} starts at {self.population.parameter} = {p:.6g}", p)
+        counted = census(self.population, p, starts, self.seed if seed is None else seed, self.run.journal)
+        self.asked.append(p)
+        self.found += counted
+        return join(self.run, counted)
+
+    def between(self, most: int) -> None:
+        """One value at least in each stretch between two changes, new changes included, up to `most` values."""
+        while most > 0 and (wanted := unasked(self.run.graph, self.asked, most)):
+            most -= len(wanted)
+            for p in wanted:
+                self.at(p, FEW, self.seed + len(self.asked))
+
+    def everywhere(self, scan: int) -> None:
+        """Scattered values until `scan` of them in a row have added nothing."""
+        quiet = k = 0
+        while quiet < scan and k < LONGEST_SCAN * scan:
+            added = self.at(scattered(self.run.graph.within, self.seed, k), FEW, self.seed + len(self.asked))
+            quiet = 0 if added else quiet + 1
+            k += 1
+        self.run.graph.settings |= {"scanned": k, "quiet": quiet}

@@ -10,6 +10,8 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..doors import above
+from ..hints import hinting
+from ..text_table import Table, terminal_width
 from .robustness import Robustness, robustness
 
 if TYPE_CHECKING:
@@ -57,21 +59,25 @@ class Erosion:
         }
 
     def __str__(self) -> str:
-        lines = [
-            f"{self.label}  {self.word}",
-            "",
-            f"{self.parameter:>14}  {'share':>7}  {'smallest kick':>13}  to",
+        rows = [
+            (
+                f"{one.value:.8g}",
+                f"{one.share:.2%}",
+                f"{one.distance:.4g}" if np.isfinite(one.distance) else "none",
+                one.reaches,
+            )
+            for one in self.entries
         ]
-        for one in self.entries:
-            kick = f"{one.distance:13.4g}" if np.isfinite(one.distance) else f"{'none':>13}"
-            lines.append(f"{one.value:14.8g}  {one.share:7.2%}  {kick}  {one.reaches}".rstrip())
-        return "\n".join(lines)
+        numbers = (self.parameter, "share", "smallest kick")
+        table = Table((*numbers, "to"), rows, right=numbers)
+        return "\n".join([f"{self.label}  {self.word}", "", *table.lines(terminal_width())])
 
     def plot(self, **options: Any) -> Figure:
         """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""
         return above("plot_erosion")(self, **options)
 
 
+@hinting
 def erosion(
     branch: Branch,
     values: int | Sequence[float] = 16,

@@ -10,6 +10,8 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..circles.section import section_of
+from ..hints import hinting
+from ..text_table import fitted
 from .basins import wilson
 from .population import Population, population_of
 from .ranges import stable_range
@@ -85,9 +87,10 @@ class Robustness:
             text += "  no kick within the box of starts leads elsewhere"
         for name, (first, last) in self.parameters.items():
             text += f"\n  stable and real for {name} from {first:.8g} to {last:.8g}"
-        return text
+        return fitted(text)
 
 
+@hinting
 def robustness(
     branch: Branch,
     at: float,

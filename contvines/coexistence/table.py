@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
-from ..graph.table import Table
+from ..text_table import Table, fitted
 
 if TYPE_CHECKING:
     from .basins import Basins
@@ -25,7 +25,7 @@ def table(basins: Basins) -> str:
         images = f", {about.mirror_share:.1%} of them the mirror image" if about.mirror_share else ""
         periods = f"  k={about.periods}" if about.periods else ""
         lines.append(f"  {about.name}{periods}  {about.share:.2%} ({low:.2%} to {high:.2%}{images})")
-    return "\n".join([*lines, *(f"  {line}" for line in _boundary(basins))])
+    return fitted("\n".join([*lines, *(f"  {line}" for line in _boundary(basins))]))
 
 
 def page(basins: Basins) -> str:

@@ -42,9 +42,10 @@ def basins(
     from contvines.command.compose import checked_study, loose, machine, say
 
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     asked = checked_study(study)
     fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
     population = population_of(machine(asked), asked.parameter, **fixed)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from contvines.text_table import fitted
+
 if TYPE_CHECKING:
     from contvines.command.study import Study
 
@@ -116,7 +118,7 @@ def choose(
         }
         typer.echo(json_text(about))
     elif not quiet:
-        typer.echo(_told(choice, outcome, found, units, largest))
+        typer.echo(fitted(_told(choice, outcome, found, units, largest)))
     if plot is not None:
         from contvines.plots.figures import save_figure
 

@@ -50,22 +50,21 @@ def compared(
     graph: Any, kinds: list[str] | None, x: str | None = None, y: str | None = None, **options: Any
 ) -> Any:
     """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
-    from contvines.plots.diagram import plot_diagram
+    from contvines.plots.diagram import draw_diagram, plot_diagram
     from contvines.plots.figures import new_axes, styled
-    from contvines.plots.style import axis_label
 
     if not kinds:
         return plot_diagram(graph, x, y, **options)
-    with styled(options.get("style")):
-        _, axes = new_axes(None, figsize=options.pop("figsize", None))
-        over, shown = draw_compared(axes, graph, kinds, x, y)
-        axes.set_xlabel(axis_label(over, unit=graph.units.get(over)))
-        axes.set_ylabel(axis_label(shown, unit=graph.units.get(shown)))
-        return plot_diagram(graph, x, y, axes=axes, **options)
+    with styled(options.pop("style", None)):
+        figure, axes = new_axes(None, figsize=options.pop("figsize", None))
+        draw_compared(axes, graph, kinds, x, y)
+        limits = options.pop("xlim", None), options.pop("ylim", None)
+        draw_diagram(axes, graph, x, y, own=True, limits=limits, **options)
+        return figure
 
 
-def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: str | None) -> tuple[str, str]:
-    """Draw the lines on axes on which the graph is drawn next; returns what is on the axes.
+def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: str | None) -> None:
+    """Draw the lines on axes on which the graph is drawn next.
 
     Raises
     ------
@@ -99,4 +98,3 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
         axes.plot(
             values, response, color=color, linestyle=dashes, linewidth=1.4, zorder=1.7, label=NAMES[kind]
         )
-    return over, shown

@@ -5,6 +5,8 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.text_table import fitted
+
 if TYPE_CHECKING:
     from contvines.command.study import Study
     from contvines.graph.graph import Graph
@@ -135,4 +137,4 @@ def check_place(path: Path) -> None:
 def say(text: str, quiet: bool = False) -> None:
     """A remark for the user, on stderr so that results on stdout stay clean."""
     if not quiet:
-        print(text, file=sys.stderr)
+        print(fitted(text), file=sys.stderr)

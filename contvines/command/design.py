@@ -33,6 +33,11 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
 
     from .study import StudyError
 
+    if study.machine is not None:
+        raise StudyError(
+            f"{study.path}: [model] name = {study.name!r}: design figures are closed forms of the built-in absorbers; "
+            "contvines survey asks many machines of a page."
+        )
     if study.quantities:
         return _physical(study, cavity, natural_frequency)
     values = study.parameters
@@ -114,13 +119,10 @@ def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
 
 def table(title: str, lines: list[tuple[str, str, str, str, str]]) -> str:
     """The lines as text, as wide as they are: nothing is cut in a pipe."""
-    whole = [("quantity", "symbol", "value", "unit", ""), *lines]
-    widths = [max(len(line[i]) for line in whole) for i in range(5)]
-    texts = [
-        "  ".join(c.rjust(w) if i == 2 else c.ljust(w) for i, (c, w) in enumerate(zip(line, widths))).rstrip()
-        for line in whole
-    ]
-    return "\n".join([title, "", texts[0], "-" * max(map(len, texts)), *texts[1:]])
+    from contvines.text_table import Table, terminal_width
+
+    found = Table(("quantity", "symbol", "value", "unit", "meaning"), list(lines), ("meaning",), ("value",))
+    return "\n".join([title, "", *found.lines(terminal_width())])
 
 
 def as_json(design: Design) -> dict[str, Any]:
@@ -134,79 +136,92 @@ def as_json(design: Design) -> dict[str, Any]:
     return found
 
 
-def draw(design: Design) -> Figure:
-    """Amplitude bounds and operating ratio over friction and over the cavity's half-width; a map of both."""
+def draw(design: Design, size: tuple[float, float] | None = None) -> Figure:
+    """Amplitude bounds and operating ratio over friction and over the cavity's half-width; a map of both.
+
+    Parameters
+    ----------
+    design : Design
+    size : (float, float), optional
+        Inches; a small figure has the bounds over friction alone.
+    """
     import numpy as np
 
-    from contvines.plots.figures import new_figure, styled
+    from contvines.plots.figures import new_figure, settle, styled, thin_ticks
 
     mu0, b0 = float(design.friction), float(design.cavity)
     mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)
     b = np.linspace(0.35, 2.0, 201) * b0
+    columns = (
+        (mu, "friction", mu0, r"friction $\mu$", 1.0),
+        (b, "cavity", b0, "half-width $b$ [mm]", 1e3),
+    )
     with styled():
-        figure = new_figure(figsize=(10.5, 6.6))
+        size = size or (10.5, 6.6)
+        figure = new_figure(figsize=size)
+        if min(size[0] / 6.0, size[1] / 4.0) < 1.0:
+            axes = figure.add_subplot()
+            _bounds(axes, design, columns[0], 1.9)
+            axes.set_xlabel(columns[0][3])
+            axes.legend(loc="upper left")
+            settle(figure)
+            thin_ticks(axes)
+            return figure
         top, bottom = figure.subplots(2, 3, width_ratios=(1, 1, 1.15))
-        columns = (
-            (mu, "friction", mu0, r"friction $\mu$", 1.0),
-            (b, "cavity", b0, "half-width $b$ [mm]", 1e3),
-        )
         for column, (axis, name, here, label, unit) in enumerate(columns):
-            line = design.with_(**{name: axis})
-            low, high = np.broadcast_to(line.activation_threshold, axis.shape), line.upper_bound
             axes = top[column]
-            axes.fill_between(
-                axis * unit, 1e3 * low, 1e3 * high, color="#dbe6f1", lw=0, label="two symmetric impacts"
-            )
-            axes.plot(axis * unit, 1e3 * low, color="#0b3c6f", label=r"activation threshold $q_{1,\min}$")
-            axes.plot(
-                axis * unit, 1e3 * high, color="#0b3c6f", ls=(0, (5, 2.2)), label=r"upper bound $q_{1,\max}$"
-            )
-            stick = np.broadcast_to(line.sticking_limit(), axis.shape)
-            axes.plot(
-                axis * unit,
-                1e3 * stick,
-                color="#b5121b",
-                ls=(0, (1, 1.6)),
-                label=r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$",
-            )
-            room = 1.0 if column == 0 else 1.45  # for the legend
-            axes.set(
-                ylabel="oscillator $q_1$ [mm]" if column == 0 else "",
-                ylim=(0, 1.05e3 * room * max(high.max(), stick.max())),
-            )
+            _bounds(axes, design, columns[column], 1.0 if column == 0 else 1.45)
             if column == 1:
+                axes.set_ylabel("")
                 axes.legend(loc="upper left")
-            bottom[column].plot(axis * unit, line.operating_ratio, color="#0b3c6f")
+            ratio = design.with_(**{name: axis}).operating_ratio
+            bottom[column].plot(axis * unit, ratio, color="#0b3c6f")
             bottom[column].set(
                 xlabel=label, ylabel=r"operating ratio $\xi$" if column == 0 else "", ylim=(1, None)
             )
-            for panel in (axes, bottom[column]):
-                panel.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
-        maps = (
-            (
-                top[2],
-                design.with_(friction=mu[None, :], cavity=b[:, None]).upper_bound * 1e3,
-                r"upper bound $q_{1,\max}$ [mm]",
-            ),
-            (
-                bottom[2],
-                design.with_(friction=mu[None, :], cavity=b[:, None]).operating_ratio,
-                r"operating ratio $\xi$",
-            ),
-        )
-        for panel, values, title in maps:
-            known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
-            if known.size and known.max() > 1.001 * known.min():
-                levels = np.geomspace(known.min(), known.max(), 12)
-                shown = np.ma.masked_invalid(values)
-                panel.contourf(mu, 1e3 * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
-                lines = panel.contour(mu, 1e3 * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)
-                panel.clabel(lines, fmt="%.3g", fontsize=7.5)
-            panel.plot(mu0, 1e3 * b0, "o", color="#b5121b")
-            panel.set(ylabel="half-width $b$ [mm]", title=title)
-            panel.grid(False)
+            bottom[column].axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
+        over = design.with_(friction=mu[None, :], cavity=b[:, None])
+        _map(top[2], mu, b, over.upper_bound * 1e3, (mu0, b0), r"upper bound $q_{1,\max}$ [mm]")
+        _map(bottom[2], mu, b, over.operating_ratio, (mu0, b0), r"operating ratio $\xi$")
         bottom[2].set_xlabel(r"friction $\mu$")
     return figure
+
+
+def _bounds(axes: Any, design: Design, over: tuple[Any, str, float, str, float], room: float) -> None:
+    """Between which amplitudes of the oscillator two symmetric impacts are, and where the absorber sticks; `room` for a legend."""
+    import numpy as np
+
+    axis, name, here, _, unit = over
+    line = design.with_(**{name: axis})
+    low, high = np.broadcast_to(line.activation_threshold, axis.shape), line.upper_bound
+    stick = np.broadcast_to(line.sticking_limit(), axis.shape)
+    axes.fill_between(
+        axis * unit, 1e3 * low, 1e3 * high, color="#dbe6f1", lw=0, label="two symmetric impacts"
+    )
+    for values, color, style, label in (
+        (low, "#0b3c6f", "-", r"activation threshold $q_{1,\min}$"),
+        (high, "#0b3c6f", (0, (5, 2.2)), r"upper bound $q_{1,\max}$"),
+        (stick, "#b5121b", (0, (1, 1.6)), r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$"),
+    ):
+        axes.plot(axis * unit, 1e3 * values, color=color, ls=style, label=label)
+    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05e3 * room * max(high.max(), stick.max())))
+    axes.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
+
+
+def _map(panel: Any, mu: Any, b: Any, values: Any, here: tuple[float, float], title: str) -> None:
+    """A quantity over friction and half-width, as contours."""
+    import numpy as np
+
+    known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
+    if known.size and known.max() > 1.001 * known.min():
+        levels = np.geomspace(known.min(), known.max(), 12)
+        shown = np.ma.masked_invalid(values)
+        panel.contourf(mu, 1e3 * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
+        lines = panel.contour(mu, 1e3 * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)
+        panel.clabel(lines, fmt="%.3g", fontsize=7.5)
+    panel.plot(here[0], 1e3 * here[1], "o", color="#b5121b")
+    panel.set(ylabel="half-width $b$ [mm]", title=title)
+    panel.grid(False)
 
 
 def design(
@@ -220,12 +235,18 @@ def design(
     plot: Path | None = typer.Option(
         None, metavar="FILE.png", help="Where the picture goes; STUDY-design.png in this folder if not given."
     ),
+    size: tuple[float, float] | None = typer.Option(
+        None,
+        "--size",
+        metavar="WIDTH HEIGHT",
+        help="Inches; a small picture has the bounds over friction alone.",
+    ),
     no_plot: bool = typer.Option(False, "--no-plot", help="No picture."),
     json_: bool = typer.Option(False, "--json", help="Print one JSON object in SI units instead of a table."),
 ) -> None:
     """Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and
     sliding limits."""
-    from contvines.plots.figures import check_picture, save_figure
+    from contvines.plots.figures import check_picture, check_size, save_figure
 
     from .study import read_study
 
@@ -234,6 +255,7 @@ def design(
     plot = None if no_plot else plot or Path(f"{study.stem}-design.png")
     if plot is not None:
         check_picture(plot)
+    check_size(size)
     figures = machine(read_study(study), cavity, natural_frequency)
     if json_:
         from contvines.export import json_text
@@ -244,5 +266,5 @@ def design(
     if plot is not None:
         from contvines.command.compose import say
 
-        save_figure(draw(figures), plot)
+        save_figure(draw(figures, size), plot)
         say(f"drawn in {plot}")

@@ -26,7 +26,7 @@ def _of_study(path: Path) -> str:
     study = read_study(path)
     if study.name in NAMES:
         return model_class(study.name).default_measure
-    from orbits.machines.declared.measures import shown_first
+    from orbits.declared.measures import shown_first
 
     return shown_first(study.machine)
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.options import JsonOption, TrustOption
+from contvines.text_table import fitted
 
 
 def orbit(
@@ -36,7 +37,7 @@ def orbit(
 
         typer.echo(json_text(_plain(found)))
     else:
-        typer.echo(_describe(found))
+        typer.echo(fitted(_describe(found)))
     if plot is not None:
         from contvines.command.compose import say
         from contvines.plots.figures import save_figure
@@ -102,6 +103,7 @@ EVENTS = {
 def _describe(found: Any) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
     from contvines.graph.table import with_unit
+    from contvines.text_table import Table, terminal_width
 
     about = _plain(found)
     lines = []
@@ -117,15 +119,11 @@ def _describe(found: Any) -> str:
     nodes = about.get("nodes", [])
     if nodes:
         names = list(nodes[0])
-        table = [
-            [
-                with_unit(name, EVENTS.get(name) and about.get("units", {}).get(EVENTS[name]))
-                for name in names
-            ],
-            *[[_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names] for n in nodes],
-        ]
-        widths = [max(len(row[i]) for row in table) for i in range(len(names))]
-        lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths)) for row in table]
+        units = about.get("units", {})
+        head = tuple(with_unit(name, EVENTS.get(name) and units.get(EVENTS[name])) for name in names)
+        rows = [tuple(_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names) for n in nodes]
+        width = terminal_width()
+        lines += [f"  {line}" for line in Table(head, rows, right=head).lines(width and width - 2)]
     if "multipliers" in about:
         pairs = about["multipliers"]
         text = ", ".join(

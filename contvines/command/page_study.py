@@ -8,7 +8,14 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, ValidationError
 
-from contvines.command.schema import AtlasSection, ChartSection, ContinueSection, Section, SweepSection
+from contvines.command.schema import (
+    AtlasSection,
+    ChartSection,
+    ContinueSection,
+    Section,
+    SurveySection,
+    SweepSection,
+)
 from contvines.command.sentences import did_you_mean, sentence_of, together
 
 
@@ -36,6 +43,7 @@ class PageStudyFile(Section):
     sweep: SweepSection = SweepSection()
     atlas: AtlasSection = AtlasSection()
     chart: ChartSection | None = None
+    survey: SurveySection = SurveySection()
 
 
 def is_page(data: dict[str, Any]) -> bool:
@@ -43,6 +51,14 @@ def is_page(data: dict[str, Any]) -> bool:
     model = data.get("model")
     name = model.get("name") if isinstance(model, dict) else None
     return isinstance(name, str) and ".py" in name
+
+
+def _intervals(file: PageStudyFile) -> list[tuple[str, str, tuple[float, float]]]:
+    """(section, parameter, interval) of every parameter that the study varies."""
+    found = [("continue", file.continue_.parameter, file.continue_.within)]
+    if file.chart is not None and file.chart.within is not None:
+        found.append(("chart", file.chart.parameter, file.chart.within))
+    return [(section, name, (float(low), float(high))) for section, name, (low, high) in found]
 
 
 def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
@@ -53,7 +69,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
     ValueError
         With one sentence per value that cannot be used.
     """
-    from orbits.machines.declared.loading import load_page
+    from orbits.declared.loading import load_page
 
     try:
         file = PageStudyFile.model_validate(data)
@@ -103,6 +119,12 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
         if key not in (*machine.states, "phase"):
             wrong.append(f"[start] state has {key!r}; it may have {', '.join((*machine.states, 'phase'))}.")
     if not wrong:
+        for section, name, limits in _intervals(file):
+            for value in limits:
+                try:
+                    machine.check_value(name, value)
+                except ValueError as error:
+                    wrong.append(f"[{section}] within = {list(limits)!r}: {error}.")
         try:
             params = machine.vector(given)
             machine.word(file.start.word or "", params)
@@ -127,6 +149,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
         "sweep": file.sweep,
         "atlas": file.atlas,
         "chart": file.chart,
+        "survey": file.survey,
         "machine": machine,
         "loose": {**machine.parameters, **given},
         "state": file.start.state,

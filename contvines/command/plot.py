@@ -60,6 +60,13 @@ def plot(
     color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
     words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
     legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,
+    inset: Annotated[
+        bool | None,
+        typer.Option(
+            "--inset/--no-inset",
+            help="Draw the most crowded place once more where there is room; by default where marks hide one another.",
+        ),
+    ] = None,
     style: Annotated[
         str | None, typer.Option("--style", help="A style or style sheet of matplotlib's, before ours.")
     ] = None,
@@ -67,12 +74,13 @@ def plot(
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
     from contvines.command.compose import beside
-    from contvines.plots.figures import check_picture, check_style, save_figure
+    from contvines.plots.figures import check_picture, check_size, check_style, save_figure
     from contvines.store import load
 
     asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
     asked |= {"--compare": compare[0] if compare else None}
     check_compared(compare, True)
+    asked |= {"--no-inset" if inset is False else "--inset": None if inset is None else ""}
     asked |= {"--no-legend": None if legend else "", "--branch": branch}
     _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
@@ -83,14 +91,13 @@ def plot(
             raise ValueError(
                 f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
             )
-    if size is not None and not all(1.0 <= side <= 60.0 for side in size):
-        raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
+    check_size(size)
     graph = load(file, trust=trust)
     if hasattr(graph, "loci"):
         from contvines.plots.chart import plot_chart
 
-        _refuse_of_chart(file, kind, asked)
-        save_figure(plot_chart(graph, figsize=size, style=style), target)
+        _refuse_of_chart(file, kind, {name: value for name, value in asked.items() if name != "--no-legend"})
+        save_figure(plot_chart(graph, figsize=size, style=style, legend=legend), target)
         typer.echo(str(target))
         return
     say_what_lacks(graph)
@@ -109,6 +116,7 @@ def plot(
             legend=legend,
             xlim=xlim,
             ylim=ylim,
+            inset=True if inset is None else inset,
             figsize=size,
             style=style,
         )
@@ -140,7 +148,18 @@ def _refuse_of_chart(file: Path, kind: Picture, options: dict[str, Any]) -> None
 
 def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
     """Options that this kind of picture would ignore are refused."""
-    of_diagrams = ("-x", "-y", "--xlim", "--ylim", "--color", "--words", "--no-legend", "--compare")
+    of_diagrams = (
+        "-x",
+        "-y",
+        "--xlim",
+        "--ylim",
+        "--color",
+        "--words",
+        "--no-legend",
+        "--compare",
+        "--inset",
+        "--no-inset",
+    )
     takes = {
         Picture.diagram: (of_diagrams, "draws all branches"),
         Picture.multipliers: (("--branch",), "draws over the parameter"),

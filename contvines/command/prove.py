@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.options import TrustOption
+from contvines.text_table import fitted
 
 
 def prove(
@@ -67,7 +68,7 @@ def prove(
         typer.echo(json_.dumps(next(iter(about.values())) if alone else about, indent=1))
     else:
         for label, proof in proofs.items():
-            typer.echo(f"{label}: {proof}")
+            typer.echo(fitted(f"{label}: {proof}"))
     if output is not None:
         made = {label: proof.certificate() for label, proof in proofs.items() if proof.existence}
         output.write_text(json_.dumps(made, indent=1) + "\n", encoding="utf-8")
@@ -80,7 +81,12 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
         raise ValueError(
             f"{labels[0]}: a study has no labels yet; leave the label out, or give a .vines file."
         )
-    return {"start": first_orbit(checked_study(file)).prove(bits=bits)}
+    orbit = first_orbit(checked_study(file))
+    if not hasattr(orbit, "prove"):
+        raise ValueError(
+            f"{file}: its machine offers no proofs, for flights on a page have no closed form; machines of orbits that have one do"
+        )
+    return {"start": orbit.prove(bits=bits)}
 
 
 def _of_file(
@@ -144,8 +150,13 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
 
 
 def _check(file: Path, labels: list[str], json: bool) -> None:
-    from orbits.proofs.checker import Refused
-    from orbits.proofs.checker import check as verify
+    try:
+        from orbits.proofs.checker import Refused
+        from orbits.proofs.checker import check as verify
+    except ImportError:
+        raise ValueError(
+            "--check needs the package mpmath, which is not installed: pip install 'contvines[proofs]'"
+        ) from None
 
     verdicts: dict[str, dict[str, Any]] = {}
     for label, certificate in _certificates(file, labels).items():
@@ -154,13 +165,20 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
             continue
         try:
             verify(certificate)
-            verdicts[label] = {"verified": True, "claims": certificate["claims"]}
+            verdicts[label] = {"verified": True, "claims": _claims(certificate)}
         except Refused as refusal:
             verdicts[label] = {"verified": False, "why": str(refusal)}
     if json:
         typer.echo(json_.dumps(verdicts, indent=1))
     else:
         for label, verdict in verdicts.items():
-            typer.echo(f"{label}: {'verified' if verdict['verified'] else 'NOT verified: ' + verdict['why']}")
+            typer.echo(
+                fitted(f"{label}: {'verified' if verdict['verified'] else 'NOT verified: ' + verdict['why']}")
+            )
     if any(verdict["verified"] is False for verdict in verdicts.values()):
         raise typer.Exit(1)
+
+
+def _claims(certificate: Any) -> Any:
+    """What a certificate claims; of a branch the claims of its stretches in turn."""
+    return [_claims(one) for one in certificate] if isinstance(certificate, list) else certificate["claims"]

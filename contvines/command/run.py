@@ -86,7 +86,8 @@ def atlas(
     """Everything that coexists: many simulated starts, and branches through all they reach.
 
     [atlas] in the study says at how many values (or which), from how many
-    starts at each, drawn with which seed. An interrupted run goes on.
+    starts at each, drawn with which seed, and how many further values in a
+    row must meet nothing new. An interrupted run goes on.
     """
     _run("atlas", study, output, plot, quiet, x, y)
 

@@ -97,11 +97,13 @@ class SweepSection(Section):
 
 
 class AtlasSection(Section):
-    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed."""
+    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed, and how many
+    further values in a row must meet nothing new."""
 
     values: Annotated[int, Field(ge=1, le=10_000)] | list[float] = 16
     starts: Annotated[int, Field(ge=1, le=10_000_000)] = 256
     seed: Annotated[int, Field(ge=0)] = 0
+    scan: Annotated[int, Field(ge=0, le=1_000_000)] | None = None
 
 
 class ChartSection(Section):

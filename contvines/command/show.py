@@ -20,7 +20,7 @@ def show(file: FileArgument, json: JsonOption = False) -> None:
         say_unfinished(file)
     typer.echo(str(graph))
     if "page" in graph.model:
-        from orbits.machines.declared.stored import page_changed
+        from orbits.declared.stored import page_changed
 
         changed = page_changed(graph.model)
         if changed:

@@ -31,7 +31,10 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
 
     said = dict(study.survey.vary if vary is None else vary)
     model = machine(study)
-    known = list(model.tables.QUANTITIES) if study.quantities else list(PARAMETERS[study.name])
+    if study.machine is not None:
+        known = list(model.parameters)
+    else:
+        known = list(model.tables.QUANTITIES) if study.quantities else list(PARAMETERS[study.name])
     for name in said:
         if name not in known:
             raise ValueError(
@@ -54,8 +57,15 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
 def family_of(study: Study, model: Any) -> Any:
     """The machines of a study's survey."""
     from contvines.command.compose import loose
+    from orbits.declared.family import PageFamily
     from orbits.design import Family
 
+    if study.machine is not None:
+        _, _, name = study.name.partition(":")
+        return PageFamily(
+            study.machine.page.path, name, loose(study), study.word, study.periods, study.guess, study.state, study.parameter,
+            study.within,
+        )  # fmt: skip
     return Family(
         model, study.word, study.periods, study.guess, loose(study), over=study.parameter, within=study.within
     )
@@ -78,6 +88,11 @@ def outcomes_of(study: Study) -> list[Any]:
         try:
             if file.endswith(".py"):
                 found.append(UserOutcome.of(study.path.parent / file, function))
+            elif study.machine is not None and said in OWN:
+                raise ValueError(
+                    f"[survey] outcomes: {said!r} is told by the built-in machines alone; for a page give a function of your "
+                    'own: "file.py:function"'
+                )
             else:
                 found.append(outcome_named(said, OWN))
         except ValueError as error:

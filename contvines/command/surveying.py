@@ -30,7 +30,8 @@ def surveyed(study: "Study", target: Path, workers: int | None, cluster: str | N
             return kept
     outcomes, family = outcomes_of(study), family_of(study, model)
     journal = target.with_name(target.name + ".unfinished")
-    compile_ahead(study.name, "contvines.events.scan:prepare")
+    if study.machine is None:
+        compile_ahead(study.name, "contvines.events.scan:prepare")
     with without_main(), counted(len(plan), quiet) as tell:
         try:
             found = run(

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from contvines.text_table import fitted
+
 if TYPE_CHECKING:
     from contvines.command.study import Study
     from contvines.command.sweep_rows import Kept
@@ -54,7 +56,7 @@ def sweep(
     rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
     if not quiet:
-        typer.echo(_summary(rows, read.parameter))
+        typer.echo(fitted(_summary(rows, read.parameter)))
     if plot is not None:
         from contvines.command.sweep_picture import picture
         from contvines.plots.figures import save_figure
@@ -72,8 +74,8 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
 
     model = machine(study)
     if study.machine is not None:
-        from orbits.machines.declared.sweep import measure_names
-        from orbits.machines.declared.sweep import sweep as simulate
+        from orbits.declared.sweep import measure_names
+        from orbits.declared.sweep import sweep as simulate
     else:
         from orbits.attractors.sweep import measure_names
         from orbits.attractors.sweep import sweep as simulate

@@ -67,9 +67,43 @@ def compare(
     return norm, float(weighted @ before) / norm, error
 
 
+def orient(
+    tangent: np.ndarray,
+    along: np.ndarray,
+    border: np.ndarray,
+    weights: np.ndarray,
+    metric_u: float,
+    metric_p: float,
+) -> tuple[float, float, float]:
+    """See lengths."""
+    weighted = weights * tangent
+    norm = math.sqrt(float(weighted @ tangent)) if np.isfinite(tangent).all() else math.inf
+    return norm, float(weighted @ along), float(border @ tangent)
+
+
+def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> float:
+    """See lengths."""
+    a, b = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2
+    c, d = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0)
+    guess[:] = a * chord[0] + b * chord[1] + c * chord[2] + d * chord[3]
+    u[:] = guess[:-1]
+    return float(guess[-1])
+
+
+def distance(
+    u: np.ndarray, p: float, guess: np.ndarray, weights: np.ndarray, metric_u: float, metric_p: float
+) -> float:
+    """See lengths."""
+    gap = u - guess[:-1]
+    return math.sqrt(float((weights[:-1] * gap) @ gap) + metric_p * (p - guess[-1]) ** 2)
+
+
 def put(to: np.ndarray, source: np.ndarray, divisor: float) -> None:
     """See lengths."""
-    np.divide(source, divisor, out=to)
+    if divisor == 1.0:
+        to[:] = source
+    else:
+        np.divide(source, divisor, out=to)
 
 
 def extrapolate(

@@ -19,17 +19,31 @@ from .step_rule import BY_ANGLE, StepRule, by_angle
 
 
 class Bound(NamedTuple):
-    """``march`` and ``solve`` with the kernels of a problem inside."""
+    """``march``, ``solve``, ``point`` and ``chord_point`` with the kernels of a problem inside."""
 
     march: Callable[..., Any]
     solve: Callable[..., Any]
+    point: Callable[..., Any]
+    chord_point: Callable[..., Any]
 
 
 # Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
 # and out of every call would cost more than the mathematics of a small problem.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 
-SUMS = ("correction_size", "add", "remainder", "fix_parameter", "plane", "compare", "put", "extrapolate")
+SUMS = (
+    "correction_size",
+    "add",
+    "remainder",
+    "fix_parameter",
+    "plane",
+    "compare",
+    "orient",
+    "hermite",
+    "distance",
+    "put",
+    "extrapolate",
+)
 
 _bound: dict[tuple[Any, ...], Bound] = {}
 
@@ -60,7 +74,9 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         improve = copy_with(corrector.improve, **sums)
         correct = copy_with(corrector.correct, improve=improve, **sums, **functions)
         march = copy_with(loop.march, correct=correct, judge=rule.judge, **sums, **functions)
-        return Bound(march, copy_with(corrector.solve, improve=improve, **sums, **functions))
+        solve = copy_with(corrector.solve, improve=improve, **sums, **functions)
+        point = copy_with(corrector.point, solve=solve, **sums)
+        return Bound(march, solve, point, copy_with(corrector.chord_point, point=point, **sums))
     from numba import njit
 
     from ..problems.kernels import kernels_digest
@@ -77,7 +93,9 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
     kept = njit(cache=not own, **OPTIONS)
     march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
-    return Bound(march, compile_(copy_with(corrector.solve, suffix, improve=improve, **sums, **functions)))
+    solve = compile_(copy_with(corrector.solve, suffix, improve=improve, **sums, **functions))
+    point = compile_(copy_with(corrector.point, suffix, solve=solve, **sums))
+    return Bound(march, solve, point, compile_(copy_with(corrector.chord_point, suffix, point=point, **sums)))
 
 
 def compiled_rule(rule: StepRule) -> Any:

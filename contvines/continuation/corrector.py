@@ -3,13 +3,15 @@
 Runs compiled and interpreted: see :mod:`contvines.continuation.march`.
 """
 
-from .lengths import add, correction_size, remainder
+from .lengths import add, correction_size, distance, hermite, orient, put, remainder
 
 # what `solve` does
 LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
 
+TIGHT = 1e-12  # tolerance of single points
 SMALL = 1e-11  # corrections below this, and the tolerance, end the iteration however they came about
 ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative to scale + abs(unknown)
+STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
 STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
 HUGE = 1e6  # larger corrections are a divergence
 
@@ -148,3 +150,101 @@ def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent
                 break
             settled = verdict > 0
     return p, -1, residual, sign, size
+
+
+def point(
+    data,
+    work,
+    u,
+    p,
+    border,
+    target,
+    along,
+    max_sweeps,
+    step,
+    tangent,
+    row,
+    scale,
+    weights,
+    metric_u,
+    metric_p,
+    noise,
+):
+    """`solve` for everything, to roundoff; then `tangent` is a unit vector with <along, tangent> >= 0.
+
+    Returns
+    -------
+    p, sweeps, residual, sign, size
+        As `solve` does; `sign` belongs to the tangent. sweeps = -3: the tangent is not finite.
+    """
+    p, sweeps, residual, sign, size = solve(
+        data, work, u, p, border, target, TIGHT, max_sweeps, step, tangent, row, EVERYTHING, scale, noise
+    )
+    if sweeps >= 0:
+        norm, same, across = orient(tangent, along, border, weights, metric_u, metric_p)
+        if not norm < 1e300:
+            return p, -3, residual, sign, size
+        if same < 0.0:
+            norm, across = -norm, -across
+        put(tangent, tangent, norm)
+        if across < 0.0:
+            sign = -sign
+    return p, sweeps, residual, sign, size
+
+
+def chord_point(
+    data,
+    work,
+    chord,
+    s,
+    start,
+    length,
+    border,
+    along,
+    u,
+    step,
+    tangent,
+    guess,
+    row,
+    scale,
+    weights,
+    metric_u,
+    metric_p,
+    noise,
+):
+    """The point of a branch whose distance along a chord is `s` times its length, to roundoff; see `point`.
+
+    Parameters
+    ----------
+    chord : ndarray, shape (4, N + 1)
+        Of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its tangent likewise.
+    s, start, length : float
+        border.(u, p) is to be start + s length.
+
+    Returns
+    -------
+    p, sweeps, residual, sign, size
+        sweeps = -4: the point found belongs to another branch.
+    """
+    p = hermite(chord, s, u, guess)
+    p, sweeps, residual, sign, size = point(
+        data,
+        work,
+        u,
+        p,
+        border,
+        start + s * length,
+        along,
+        40,
+        step,
+        tangent,
+        row,
+        scale,
+        weights,
+        metric_u,
+        metric_p,
+        noise,
+    )
+    if sweeps >= 0 and distance(u, p, guess, weights, metric_u, metric_p) > STRAY * length:
+        sweeps = -4
+    return p, sweeps, residual, sign, size

@@ -17,7 +17,7 @@ from .approach import approach
 from .binding import bind
 from .settings import Settings
 
-TIGHT = 1e-12
+NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 NO_ROW = np.zeros(1)
 
 
@@ -73,19 +73,22 @@ class Engine:
         self.row_sizes = np.ones(n) if scales is None else scales.rows
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
+        self.metric_u, self.metric_p = 1.0 / n, float(self.weights[n])
         self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
         self.u = np.zeros(n)
         control = np.zeros(source.CONTROL_SIZE)
-        control[source.METRIC_U], control[source.METRIC_P] = 1.0 / n, self.weights[n]
+        control[source.METRIC_U], control[source.METRIC_P] = self.metric_u, self.metric_p
         control[source.ANGLE] = settings.angle
         control[source.MIN_STEP], control[source.MAX_STEP] = settings.min_step, settings.max_step
-        control[source.TOLERANCE], control[source.SWEEPS] = settings.tolerance, settings.max_iterations
+        # a tolerance below what the noise of the equations allows is none
+        control[source.TOLERANCE] = max(settings.tolerance, NOISY * self.noise)
+        control[source.SWEEPS] = settings.max_iterations
         control[source.LOWER], control[source.UPPER] = self.lower, self.upper
         control[source.ROW_MARGINS] = 2 * self.m
         control[source.NOISE] = self.noise
         self.control = control
         self._rows = np.zeros((0, self.row_size))
-        self.at_parameter = np.zeros(n + 1)
+        self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
 
     def parameter_unit(self, p: float) -> float:
@@ -151,35 +154,56 @@ class Engine:
         sweeps: int,
         along: np.ndarray | None,
     ) -> Solved | None:
-        here = np.empty(self.n)
+        here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
         here[:] = u
-        row = np.zeros(self.row_size)
-        step, tangent = self.step, self.tangent
         with self.section:
-            p, sweeps, residual, sign, size = self.bound.solve(
+            p, sweeps, residual, sign, size = self.bound.point(
                 self.data,
                 self.work,
                 here,
                 p,
                 border,
                 target,
-                TIGHT,
+                self.nothing if along is None else along,
                 sweeps,
-                step,
+                self.step,
                 tangent,
                 row,
-                corrector.EVERYTHING,
                 self.scale,
+                self.weights,
+                self.metric_u,
+                self.metric_p,
                 self.noise,
             )
-        if sweeps < 0 or not np.isfinite(tangent).all():
-            return None
-        tangent = self.unit(tangent)
-        if along is not None and self.inner(along, tangent) < 0.0:
-            tangent = -tangent
-        if float(np.dot(border, tangent)) < 0.0:
-            sign = -sign
-        return Solved(here, float(p), tangent, row, float(sign), float(residual), float(size))
+        return Solved(here, p, tangent, row, sign, residual, size) if sweeps >= 0 else None
+
+    def on_chord(
+        self, chord: np.ndarray, s: float, start: float, length: float, border: np.ndarray, along: np.ndarray
+    ) -> Solved | None:
+        """The point of a branch at a distance along a chord; see :func:`contvines.continuation.corrector.chord_point`."""
+        here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
+        with self.section:
+            p, sweeps, residual, sign, size = self.bound.chord_point(
+                self.data,
+                self.work,
+                chord,
+                s,
+                start,
+                length,
+                border,
+                along,
+                here,
+                self.step,
+                tangent,
+                self.border,
+                row,
+                self.scale,
+                self.weights,
+                self.metric_u,
+                self.metric_p,
+                self.noise,
+            )
+        return Solved(here, p, tangent, row, sign, residual, size) if sweeps >= 0 else None
 
     def at_value(self, u: np.ndarray, p: float, along: np.ndarray | None = None) -> Solved | None:
         """The solution at a fixed parameter value, or None."""
@@ -220,7 +244,7 @@ class Engine:
             float(p),
             self.border,
             0.0,
-            TIGHT,
+            corrector.TIGHT,
             0,
             self.step,
             self.tangent,
@@ -242,7 +266,7 @@ class Engine:
             0.0,
             border,
             target,
-            TIGHT,
+            corrector.TIGHT,
             0,
             self.step,
             self.tangent,

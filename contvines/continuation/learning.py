@@ -27,6 +27,7 @@ ROUNDING, MOST = (
     1e-12,
     64,
 )  # of the other unknowns, and of what an equation feels: smaller is rounding; so many are asked about
+FAINT = 1e-6  # an unknown that began at zero and got no further than this part of its length was moved by what CLOSE leaves
 CLOSE = 1e-7  # corrections at which a point is good enough
 SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
 SMALLEST_BEND = 1e-4
@@ -203,7 +204,8 @@ class Scout:
         bends, first = np.asarray(self.problem.bends), self.first
         sure = bends | np.asarray(self.problem.known)
         # a zero that rounding has moved has no size of its own
-        own = np.where(size > np.where(sure, first / BEYOND, 0.0), size, first)
+        least = np.where(np.asarray(self.problem.u0) == 0.0, FAINT, 1.0 / BEYOND)
+        own = np.where(size > np.where(sure, least * first, 0.0), size, first)
         moved = extent[:-1] > np.where(
             bends, MOVES * np.minimum(first, own), BARELY * np.where(sure, first, own)
         )

@@ -71,6 +71,45 @@ def compare(tangent, before, u, guess_u, p, guess, weights, metric_u, metric_p):
     return norm, cosine, math.sqrt(error + metric_u * part_error)
 
 
+def orient(tangent, along, border, weights, metric_u, metric_p):
+    """Length of a tangent, its inner product with another vector, and border.tangent; the length is infinite where one is not finite."""
+    n = tangent.shape[0] - 1
+    finite = tangent[n] - tangent[n]
+    part_norm, part_same = 0.0, 0.0
+    across = border[n] * tangent[n]
+    for j in range(n):
+        finite += tangent[j] - tangent[j]
+        part_norm += tangent[j] * tangent[j]
+        part_same += tangent[j] * along[j]
+        across += border[j] * tangent[j]
+    norm = math.sqrt(metric_u * part_norm + metric_p * tangent[n] * tangent[n])
+    same = metric_u * part_same + metric_p * tangent[n] * along[n]
+    return norm if finite == 0.0 else math.inf, same, across
+
+
+def hermite(chord, s, u, guess):
+    """Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p. See :class:`contvines.events.segment.Segment`."""
+    n = u.shape[0]
+    a = (1.0 + 2.0 * s) * (1.0 - s) ** 2
+    b = s * (1.0 - s) ** 2
+    c = s * s * (3.0 - 2.0 * s)
+    d = s * s * (s - 1.0)
+    for j in range(n + 1):
+        guess[j] = a * chord[0, j] + b * chord[1, j] + c * chord[2, j] + d * chord[3, j]
+    for j in range(n):
+        u[j] = guess[j]
+    return guess[n]
+
+
+def distance(u, p, guess, weights, metric_u, metric_p):
+    """Distance of (u, p) from a guess."""
+    n = u.shape[0]
+    square = 0.0
+    for j in range(n):
+        square += (u[j] - guess[j]) ** 2
+    return math.sqrt(metric_u * square + metric_p * (p - guess[n]) ** 2)
+
+
 def put(to, source, divisor):
     """Copy a vector, divided by a number."""
     for j in range(source.shape[0]):

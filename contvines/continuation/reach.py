@@ -2,8 +2,8 @@
 
 Where typical sizes of the unknowns are known (they were given, or are 1) a branch has run away when it is further from its start
 than so many of them. Sizes that were learned near the start say little of what lies far from it: there a branch has run away
-when its distance has doubled while the parameter has hardly moved; until then it is followed, with steps that
-grow with the distance.
+when its distance doubles within ever smaller changes of the parameter, so small that it would be out of all bounds long before the
+end of the interval. Powers of the parameter double within ever larger ones and are followed, with steps that grow with the distance.
 """
 
 from __future__ import annotations
@@ -13,7 +13,10 @@ import numpy as np
 from .chunk import Chunk
 from .engine import Engine, Solved
 
-MOVED = 0.05  # part of its range so far by which the parameter moves while the distance doubles, on branches that go on
+# doublings of the distance, to FAR, for which the rest of the interval has to have room, on branches that go on
+DOUBLINGS = 26
+# a doubling that takes so much less than the one before, and so little of the interval, is one of the last
+SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
@@ -34,7 +37,8 @@ class Reach:
         # largest distances so far, each twice the one before, and the extremes of the parameter since
         self.doubled = engine.settings.escape
         self.slow = 0  # points in a row that came next to nowhere
-        self.low = self.high = self.lowest = self.highest = start.p
+        self.low = self.high = start.p
+        self.moved = np.inf  # change of the parameter while the distance doubled last
 
     def growth(self, point: Solved) -> float:
         """Factor of the longest step at a point."""
@@ -49,6 +53,9 @@ class Reach:
             away = _away(chunk.points, self.start.u, escape, self.engine.scale[:-1])
             return int(np.argmax(away)) if away.any() else None
         distances = self._distances(chunk.points)
+        if not distances.max() > 0.5 * self.doubled:
+            self.low = self.high = float(chunk.values[-1])
+            return None
         for i in range(1, len(chunk)):
             value = float(chunk.values[i])
             self.low, self.high = min(self.low, value), max(self.high, value)
@@ -56,11 +63,14 @@ class Reach:
                 if distances[i] <= 0.5 * self.doubled:
                     self.low = self.high = value
                 continue
-            self.lowest, self.highest = min(self.lowest, self.low), max(self.highest, self.high)
-            still = self.high - self.low < MOVED * (self.highest - self.lowest)
-            if self.doubled > escape and (still or distances[i] > FAR * escape):
+            moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
+            room = self.engine.upper - value if ahead else value - self.engine.lower
+            last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
+            bound = moved <= self.moved and (last or DOUBLINGS * moved < room)
+            if self.doubled > escape and (bound or distances[i] > FAR * escape):
                 return i
-            self.doubled, self.low, self.high = 2.0 * self.doubled, value, value
+            self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
+            self.moved = moved
         return None
 
     def creeps(self, chunk: Chunk) -> bool:

@@ -89,7 +89,8 @@ def chunks(
                 room, longest = AGAIN, min(retrace.longest, longest)
                 h = min(h, longest)
             if not engine.problem.kernels.compiled:
-                room = min(room, max(most, FEWEST))
+                # points are dear, and a branch that closes is found to only at the end of a chunk
+                room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
             room = min(room, max(settings.max_points - total, 1))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
             closed = closing.cut(chunk)
@@ -130,6 +131,8 @@ def _march(
         rows[i], signs[i], corrections[i] = point.row, point.sign, point.correction
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     engine.control[source.MAX_STEP] = longest
+    # an interpreted loop is faster with Python's own numbers
+    control: Any = engine.control if engine.problem.kernels.compiled else engine.control.tolist()
     with engine.section:
         filled, h, status = engine.bound.march(
             engine.data,
@@ -142,7 +145,7 @@ def _march(
             corrections,
             first,
             float(h),
-            engine.control,
+            control,
             engine.weights,
             engine.scale,
             engine.u,

@@ -15,6 +15,7 @@ from .segment import Segment
 
 TIED = 1e-9  # margins that differ by less vanish together
 BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
+SLOPED = 1e-6  # distance (in the metric) from which the slope of a margin can be told
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
 
@@ -62,7 +63,15 @@ def _located(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | N
     def margin(point: Solved) -> float:
         return min(float(engine.margins(point.row)[chosen].min()), 1.0)
 
-    return locate(segment, margin, fallback_zero=real)
+    root = locate(segment, margin, fallback_zero=real)
+    if root is None or root.position > 0.0 or not margin(root.point) < 0.0:
+        return root
+    # the segment begins behind the border, by what counts as rounding: where the margin is flat that may be seen in the parameter
+    ahead = segment.at(min(1.0, max(BEHIND[0], SLOPED / segment.length)))
+    fall = 0.0 if ahead is None else margin(root.point) - margin(ahead)
+    if ahead is None or not fall > 0.0:
+        return root
+    return root._replace(error=abs(margin(root.point) / fall * (ahead.p - root.point.p)))
 
 
 def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray[np.intp]:

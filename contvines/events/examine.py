@@ -23,10 +23,14 @@ from .users import user_function
 NAMES = ("plus", "minus", "pair")
 FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
+EXACT = (
+    1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
+)
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
 CLOSE = 1e-6  # distance from a border up to which the rest of a segment is looked at (in the metric)
+CLEAR = 1e-4  # distance from a meeting (in the metric) within which tangents and multipliers are those of its singular equations
 DEEPEST = 10  # parts of parts of a segment that are looked at
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
@@ -74,8 +78,11 @@ class Examiner:
         events = self._meetings(segment)
         if events:
             # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
-            short = (1.0 - BESIDE) * min(e.position for e in events)
-            last = segment.at(short) if short > 0.0 else None
+            first = min(e.position for e in events)
+            short = first - max(BESIDE * first, CLEAR / segment.length)
+            if not short > 0.0:
+                return events
+            last = segment.at(short)
             if last is not None:
                 return events + self.before(segment, short, last, real, depth)
         a, b = segment.a, segment.b
@@ -104,6 +111,8 @@ class Examiner:
                         folds.append(self._located(root, "astray", 0))
                     else:
                         crossings.append(self._located(root, "branch-point", k))
+        for fold in folds:
+            crossings += self._around(segment, fold, before, after)
         outside = (after - before) @ np.array([1, 1, 2])
         if discarded and outside != 0 and depth < DEEPEST:
             middle = segment.at(0.5)
@@ -117,8 +126,12 @@ class Examiner:
             events.append(double)
         if a.sign * b.sign < 0.0 and (singular + len(met)) % 2 == 0:
             root = self._determinant(segment)
-            if root is not None and not _near(root.position, met + [e.position for e in folds]):
-                events.append(self._located(root, "branch-point", 0))
+            if root is not None and not _near(root.position, met):
+                turning = [e for e in folds if _near(e.position, [root.position])]
+                # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
+                if not turning or (root.point.residual <= EXACT and self._singular(root.point)):
+                    events = [e for e in events if e not in turning]
+                    events.append(self._located(root, "branch-point", 0))
         return events + borders
 
     def _exchange(self, segment: Segment) -> Located | None:
@@ -143,6 +156,27 @@ class Examiner:
             return None
         root = locate_singular(segment, test, rough.position) or rough
         return self._located(root, "branch-point", 0)
+
+    def _around(
+        self, segment: Segment, fold: Located, before: np.ndarray, after: np.ndarray
+    ) -> list[Located]:
+        """Multipliers that pass the circle before a fold and come back behind it, so that the ends of the segment do not tell."""
+        here = counts(self.engine.spectrum(fold.point.row[None, :]), self.kind)[0]
+        found: list[Located] = []
+        for column, name in enumerate(NAMES):
+            if name == "plus" or before[column] != after[column]:
+                continue
+            low, high = sorted((int(before[column]), int(here[column])))
+            for k in range(low + 1, high + 1):
+                for first, second, start, length in (
+                    (segment.a, fold.point, 0.0, fold.position),
+                    (fold.point, segment.b, fold.position, 1.0 - fold.position),
+                ):
+                    root = locate(Segment(self.engine, first, second), self._multiplier(name, k), jump=0.05)
+                    if root is not None and root.continuous:
+                        event = self._located(root, self._kind(name), k)
+                        found.append(event._replace(position=start + length * root.position))
+        return found
 
     def _kind(self, name: str) -> str:
         if name == "minus":
@@ -178,13 +212,16 @@ class Examiner:
 
         Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
         """
+        stationary = abs(point.tangent[-1]) <= STATIONARY * self.engine.parameter_unit(point.p)
+        return stationary and not self._singular(point)
+
+    def _singular(self, point: Solved) -> bool:
+        """Whether [[F_u, F_p], [tangent]] is singular but for rounding."""
         engine = self.engine
-        if abs(point.tangent[-1]) > STATIONARY * engine.parameter_unit(point.p):
-            return False
         engine.residual(point.u, point.p)
         side = np.append(engine.row_sizes * np.random.default_rng(7).standard_normal(engine.n), 0.0)
         image = engine.apply_inverse(engine.weights * point.tangent, side)
-        return bool(np.isfinite(image).all() and engine.norm(image) < FAR)
+        return not (np.isfinite(image).all() and engine.norm(image) < FAR)
 
     def _turns_back(self, segment: Segment, root: Root) -> bool:
         """Whether the parameter has an extremum where a multiplier passes +1, though the ends do not tell."""

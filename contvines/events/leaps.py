@@ -15,6 +15,7 @@ from .segment import Segment
 
 SHORTEST = 3e-7  # two branches whose gap is narrower than this cannot be told from a branch point
 INEXACT = 1e-9  # special points are located far better than this wherever there is one
+NOISY = 2e3  # times the noise of the equations: places are no better than this
 BESIDE = 1e-3  # distance from a singular point at which signs can be trusted
 
 
@@ -39,8 +40,9 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
 def _inexact(segment: Segment, event: Located) -> bool:
     unit = segment.engine.parameter_unit(event.point.p)
     size = segment.engine.size(event.point.u)
+    inexact = max(INEXACT, NOISY * segment.engine.noise)
     return (
-        event.kind == "astray" or event.error > 10.0 * INEXACT * unit or event.point.residual > INEXACT * size
+        event.kind == "astray" or event.error > 10.0 * inexact * unit or event.point.residual > inexact * size
     )
 
 

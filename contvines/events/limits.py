@@ -17,11 +17,17 @@ from .segment import Segment
 
 BESIDE = 1e-3  # part of a segment before the border by which the tangent is told
 SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
-DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7)  # from the border, in the metric: spacings of points
+DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
 PLACES = np.arange(1.0, 5.0)
-CONVERGED = 1e-4  # relative difference of extrapolations from two spacings
+CONVERGED = (
+    1e-4,
+    1e-2,
+    1e-2,
+)  # relative difference of extrapolations from two spacings, by the number of poles
 SURELY = 1e-9
+STRAIGHT = 3e-5  # from its beginning, up to which a short segment's branch is looked for along its tangent
+STRAYING = 0.5  # part of that distance by which it may be missed
 AGREEING = 1e-7  # relative difference of coefficients: those computed at the border are not rounding
 POLES = 2  # multipliers that grow without bound, at most
 UNBOUNDED = 1e15  # stands for a multiplier that does
@@ -64,7 +70,7 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     None if none converges, or if they agree with the polynomial computed at the border.
     """
     best: list[np.ndarray] | None = None
-    error = CONVERGED
+    error = np.inf
     wider: list[np.ndarray] | None = None  # from the spacing before
     for spacing in DISTANCES:
         values = _polynomials(segment, position, spacing)
@@ -75,9 +81,9 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
             return None
         if wider is not None:
             changes = [_apart(*pair) for pair in zip(here, wider)]
-            poles = next((k for k, change in enumerate(changes) if change < CONVERGED), POLES)
+            poles = next((k for k, change in enumerate(changes) if change < CONVERGED[k]), POLES)
             fewer = best is not None and poles < len(best) - 1
-            if changes[poles] < error or (fewer and changes[poles] < CONVERGED):
+            if changes[poles] < CONVERGED[poles] and (changes[poles] < error or fewer):
                 best, error = here[: poles + 1], changes[poles]
         if best is not None and len(best) == 1 and error < SURELY:
             break
@@ -99,12 +105,26 @@ def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarra
     """Characteristic polynomials of the multipliers at four points before the border, shape (4, m + 1)."""
     engine, values = segment.engine, []
     for place in PLACES:
-        s = position - place * spacing / segment.length
-        point = segment.at(s) if s >= -1.0 else None
+        point = _before(segment, position - place * spacing / segment.length)
         if point is None:
             return None
         values.append(_characteristic(engine.spectrum(point.row)))
     return np.array(values) if np.isfinite(values).all() else None
+
+
+def _before(segment: Segment, s: float) -> Solved | None:
+    """The point at s, which may lie before the segment: a branch that begins beside its border has no points further away."""
+    if s >= -1.0:
+        return segment.at(s)
+    engine, a, distance = segment.engine, segment.a, -s * segment.length
+    if distance > STRAIGHT:
+        return None
+    guess = segment.za - distance * a.tangent
+    border = engine.weights * a.tangent
+    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), a.tangent)
+    if found is None or engine.norm(engine.join(found.u, found.p) - guess) > STRAYING * distance:
+        return None
+    return found
 
 
 def _characteristic(spectrum: np.ndarray) -> np.ndarray:

@@ -38,7 +38,7 @@ class Root(NamedTuple):
 def locate(
     segment: Segment,
     test: Callable[[Solved], float],
-    tolerance: float = 1e-14,
+    tolerance: float = 1e-12,
     fallback_zero: bool = False,
     jump: float = np.inf,
 ) -> Root | None:

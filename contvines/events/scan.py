@@ -1,7 +1,7 @@
 """Scanning points of a branch: in which segments may there be something to locate?
 
-One pass over the arrays of a chunk; what it marks is examined by :mod:`contvines.events.watch`. The source runs compiled,
-for compiled problems, and interpreted.
+One pass over the arrays of a chunk; what it marks is examined by :mod:`contvines.events.watch`. The loops here are compiled, for
+compiled problems; :mod:`contvines.events.scan_arrays` does the same with numpy for others.
 """
 
 from __future__ import annotations
@@ -18,19 +18,28 @@ import numpy as np
 from ..continuation import march
 from ..continuation.engine import Engine
 from ..continuation.march import MARGIN
-from . import multipliers
+from . import bits, multipliers
+from .bits import (
+    APART,
+    BORDER,
+    DAMPED,
+    FLOW,
+    FOLD,
+    HUMP,
+    KINDS,
+    MAP,
+    MEETING,
+    MULTIPLIER,
+    REAL,
+    SHALLOW,
+    SINGULAR,
+)
 from .multipliers import PAST
+from .scan_arrays import mark_segments as with_arrays
 from .symmetry import SymmetryTest
 
 FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
 COLUMNS = 16  # a cycle is known from any of its nodes: a few unknowns tell whether it is its own image
-APART = 1e-6  # parts that a symmetry changes below this are zero
-
-# what a segment may hold, as bits
-FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED, HUMP = 1, 2, 4, 8, 16, 32, 64, 128
-
-NONE, MAP, FLOW, REAL = 0, 1, 2, 3
-KINDS = {"none": NONE, "map": MAP, "flow": FLOW, "real": REAL}
 
 
 def mark_segments(
@@ -141,17 +150,17 @@ def mark_segments(
                     gaps[now, s, j] -= turns * shift[j]
         if i == 0:
             continue
-        bits = 0
+        found = 0
         if (slopes[i - 1] >= 0.0) != (slopes[i] >= 0.0) and (
             abs(slopes[i - 1]) > flat or abs(slopes[i]) > flat
         ):
-            bits |= FOLD
+            found |= FOLD
         if (signs[i - 1] >= 0.0) != (signs[i] >= 0.0):
-            bits |= SINGULAR
+            found |= SINGULAR
         if plus != old_plus or minus != old_minus or pairs != old_pairs:
-            bits |= MULTIPLIER
+            found |= MULTIPLIER
         if (smallest[i - 1] < MARGIN) != (smallest[i] < MARGIN) and (smallest[i] < MARGIN) == real:
-            bits |= BORDER
+            found |= BORDER
         for s in range(orders.shape[0]):
             here, there, dot = 0.0, 0.0, 0.0
             for j in range(columns):
@@ -159,8 +168,8 @@ def mark_segments(
                 there = max(there, abs(gaps[1 - now, s, j]))
                 dot += gaps[0, s, j] * gaps[1, s, j]
             if dot < 0.0 and here > APART and there > APART:
-                bits |= MEETING
-        flags[i - 1] = bits
+                found |= MEETING
+        flags[i - 1] = found
         square = 0.0
         for j in range(size):
             change = points[i, j] - points[i - 1, j]
@@ -215,7 +224,8 @@ def _compiled() -> Callable[..., Any]:
 
     inner = {f.__name__: njit(forceinline=True, **OPTIONS)(f) for f in (dips, turns_twice)}
     # numba looks at this file only, not at where the constants come from
-    sources = (Path(__file__), Path(str(multipliers.__file__)), Path(str(march.__file__)))
+    sources = [Path(str(module.__file__)) for module in (bits, multipliers, march)]
+    sources.append(Path(__file__))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
     return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(
@@ -252,7 +262,7 @@ class Scanner:
     def __init__(self, engine: Engine, symmetries: list[SymmetryTest]) -> None:
         self.engine = engine
         self.kind = KINDS[engine.detection]
-        self.mark = _compiled() if engine.problem.kernels.compiled else mark_segments
+        self.mark = _compiled() if engine.problem.kernels.compiled else with_arrays
         columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
         self.plain = plain = bool((engine.scale[:-1] == 1.0).all())
         affine = [test.affine for test in symmetries if test.affine is not None and plain]

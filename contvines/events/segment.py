@@ -26,27 +26,13 @@ class Segment:
         self.border = engine.weights * self.direction
         bend = engine.inner(a.tangent - b.tangent, a.tangent - b.tangent)
         self.arc = self.length * (1.0 + bend / 24.0)
-
-    def guess(self, s: float) -> np.ndarray:
-        """Cubic Hermite interpolation of (u, p)."""
-        d, t = self.arc, s
-        h00, h10 = (1 + 2 * t) * (1 - t) ** 2, t * (1 - t) ** 2
-        h01, h11 = t * t * (3 - 2 * t), t * t * (t - 1)
-        return h00 * self.za + h10 * d * self.a.tangent + h01 * self.zb + h11 * d * self.b.tangent
+        self.chord = np.array([self.za, self.arc * a.tangent, self.zb, self.arc * b.tangent])
+        self.start = float(self.border @ self.za)
 
     def at(self, s: float) -> Solved | None:
         """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
-        if s == 0.0:
-            return self.engine.polish(
-                self.a.u, self.a.p, self.border, float(self.border @ self.za), self.direction
-            )
-        if s == 1.0:
-            return self.engine.polish(
-                self.b.u, self.b.p, self.border, float(self.border @ self.zb), self.direction
-            )
-        guess = self.guess(s)
-        target = float(self.border @ self.za) + s * self.length
-        found = self.engine.solve(guess[:-1], guess[-1], self.border, target, self.direction)
-        if found is None or self.engine.norm(self.engine.join(found.u, found.p) - guess) > 0.3 * self.length:
-            return None
-        return found
+        engine = self.engine
+        if s == 0.0 or s == 1.0:
+            end, z = (self.a, self.za) if s == 0.0 else (self.b, self.zb)
+            return engine.polish(end.u, end.p, self.border, float(self.border @ z), self.direction)
+        return engine.on_chord(self.chord, float(s), self.start, self.length, self.border, self.direction)

@@ -11,6 +11,7 @@ from .columns import branch_columns, graph_columns, measures_of
 if TYPE_CHECKING:
     from ..branches.branch import Branch
     from ..graph.graph import Graph
+    from ..loci.chart import Chart
 
 MISSING = "this needs {0}: pip install 'contvines[tables]'"
 
@@ -24,6 +25,45 @@ def graph_frame(graph: Graph) -> Any:
         If pandas is not installed.
     """
     return _pandas().DataFrame(graph_columns(graph)).set_index(["branch", "index"])
+
+
+def graph_dataset(graph: Graph) -> Any:
+    """All points of all branches as a data set over the dimension ``row``, whose coordinates are branch and index.
+
+    Raises
+    ------
+    ValueError
+        If pandas or xarray is not installed.
+    """
+    frame = graph_frame(graph).reset_index()
+    frame.index.name = "row"
+    _xarray()
+    found = frame.to_xarray().set_coords(["branch", "index"])
+    found.attrs["parameter"] = graph.parameter
+    for name, unit in graph.units.items():
+        if name in found:
+            found[name].attrs["units"] = unit
+    return found
+
+
+def chart_frame(chart: Chart) -> Any:
+    """All points of all loci, indexed by locus and point: kind, word, both parameters, and whether the motion is real."""
+    p, q = chart.parameters
+    parts = [
+        {
+            "locus": locus.label,
+            "index": i,
+            "kind": locus.kind,
+            "word": str(locus.branch.description.get("word") or ""),
+            p: float(value[0]),
+            q: float(value[1]),
+            "real": bool(real),
+        }
+        for locus in chart.loci.values()
+        for i, (value, real) in enumerate(zip(locus.values, locus.real, strict=True))
+    ]
+    names = ["locus", "index", "kind", "word", p, q, "real"]
+    return _pandas().DataFrame(parts, columns=names).set_index(["locus", "index"])
 
 
 def branch_frame(branch: Branch) -> Any:
@@ -40,10 +80,7 @@ def branch_dataset(branch: Branch) -> Any:
     ValueError
         If xarray is not installed.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise ValueError(MISSING.format("xarray")) from None
+    xarray = _xarray()
     units = dict(branch.description.get("units") or {})
     variables: dict[str, Any] = {
         "unknowns": (("point", "unknown"), branch.points),
@@ -65,6 +102,14 @@ def branch_dataset(branch: Branch) -> Any:
         "special": ("point", special),
     }
     return xarray.Dataset(variables, coordinates, about)
+
+
+def _xarray() -> Any:
+    try:
+        import xarray
+    except ImportError:
+        raise ValueError(MISSING.format("xarray")) from None
+    return xarray
 
 
 def _pandas() -> Any:

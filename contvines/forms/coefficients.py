@@ -60,14 +60,31 @@ class Forms:
         The special point.
     rough : bool
         A few digits only, for scanning.
+
+    Attributes
+    ----------
+    units : ndarray, shape (N,)
+        Typical sizes, in which the unknowns are counted inside: vectors that go in and out of `null`, `chain`, `line` and `rest` are in these
+        units, and so are J and K.
+    rate : float
+        Typical size of an eigenvalue; time is counted in its inverse.
     """
 
     def __init__(self, problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> None:
         self.rough = rough
-        self.problem, self.u, self.p = problem, np.array(u, dtype=float), float(p)
-        self.n = len(self.u)
-        self.work = problem.workspace()
+        self.problem, self.p, self.n = problem, float(p), len(u)
         self.flow = problem.spectrum != "map"
+        scales = problem.scales
+        known = scales is not None and len(scales.unknowns) == self.n
+        self.units = (
+            np.asarray(scales.unknowns, dtype=float) if known and scales is not None else np.ones(self.n)
+        )
+        self.rate = float(scales.rate) if scales is not None and self.flow else 1.0
+        self._twice = np.tile(self.units, 2)
+        self._plain = not known and self.rate == 1.0
+        self.u = np.array(u, dtype=float) / self.units
+        self.reach = max(float(np.sqrt(np.mean(self.u**2))), 1.0)
+        self.work = problem.workspace()
         here = self._jacobian((problem.kernels, problem.data, self.work), self.u)
         if here is None:
             raise ValueError("the equations cannot be evaluated here")
@@ -76,28 +93,42 @@ class Forms:
             self.K = -np.eye(self.n)
             self.open, self.open_work, self.whole = problem, self.work, self.u
         else:
-            problem.kernels.linearise(problem.data, self.u, self.p, self.work)
+            here = self.u * self.units
+            problem.kernels.linearise(problem.data, here, self.p, self.work)
             problem.kernels.flip(problem.data, self.work, -1.0)
-            self.K = 0.5 * (self.J - problem.kernels.matrix(problem.data, self.work))
-            embedding = problem.offspring(
-                problem.flip_kind, self.u, self.p, np.zeros(self.n + 1), -1.0 + 0.0j
-            )[0]
+            self.K = 0.5 * (self.J - self._in_units(problem.kernels.matrix(problem.data, self.work)))
+            embedding = problem.offspring(problem.flip_kind, here, self.p, np.zeros(self.n + 1), -1.0 + 0.0j)[
+                0
+            ]
             self.open = embedding.problem
-            self.open_work, self.whole = self.open.workspace(), np.array(embedding.u, dtype=float)
+            self.open_work = self.open.workspace()
+            self.whole = np.array(embedding.u, dtype=float) / self._twice
         self.open_calls = (self.open.kernels, self.open.data, self.open_work)
         self.lines: dict[bytes, Line] = {}
 
     @property
     def eigenvalues(self) -> NDArray[np.complex128]:
-        """Of J: those of an equilibrium, in the user's own unit of time."""
-        return np.asarray(np.linalg.eigvals(self.J), dtype=complex)
+        """Of an equilibrium, in the user's own unit of time."""
+        return np.asarray(self.rate * np.linalg.eigvals(self.J), dtype=complex)
+
+    def _in_units(self, matrix: np.ndarray) -> np.ndarray:
+        """A Jacobian of one period, or of two, in units of the unknowns and of time."""
+        if self._plain:
+            return matrix
+        units = self._units_of(matrix.shape[0])
+        return matrix * units / (self.rate * units[:, None])
+
+    def _units_of(self, count: int) -> np.ndarray:
+        """Of the unknowns of one period, or of two."""
+        return self.units if count == self.n else self._twice
 
     def _jacobian(self, calls: tuple[Any, Any, Any], u: np.ndarray) -> np.ndarray | None:
         """The Jacobian of a problem, given by its kernels, data and workspace."""
         kernels, data, work = calls
-        if not kernels.linearise(data, np.ascontiguousarray(u), self.p, work) < 1e300:
+        here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
+        if not kernels.linearise(data, here, self.p, work) < 1e300:
             return None
-        return kernels.matrix(data, work)
+        return self._in_units(kernels.matrix(data, work))
 
     # ------------------------------------------------------------------ open ends
     def closed_by(self, factor: complex) -> np.ndarray:
@@ -117,9 +148,9 @@ class Forms:
         """What the doubled cycle has in its second half if the perturbation goes on with multiplier one."""
         if not x.any():
             return np.zeros(self.n)
-        tangent = np.append(x, 0.0)
-        embedding = self.problem.offspring(self.problem.flip_kind, self.u, self.p, tangent, -1.0 + 0.0j)[0]
-        return np.asarray(embedding.tangent, dtype=float)[self.n : 2 * self.n]
+        here, tangent = self.u * self.units, np.append(x * self.units, 0.0)
+        embedding = self.problem.offspring(self.problem.flip_kind, here, self.p, tangent, -1.0 + 0.0j)[0]
+        return np.asarray(embedding.tangent, dtype=float)[self.n : 2 * self.n] / self.units
 
     def line(self, x: np.ndarray, factor: complex) -> Line:
         """Derivatives of the rows of one period along a real perturbation whose closure is multiplied."""
@@ -135,36 +166,21 @@ class Forms:
                 found = self._jacobian(self.open_calls, u)
                 return None if found is None else found[: self.n]
 
-            found = along_line(rows, self.whole, direction, self._reach(direction), self.rough)
+            found = along_line(rows, self.whole, direction, self.reach, self.rough)
             if found is None:
                 raise ValueError("the equations cannot be evaluated near the special point")
             self.lines[key] = found
         return self.lines[key]
 
-    def _reach(self, direction: np.ndarray) -> float:
-        """Size of the largest entry of a direction where some unknown changes by its typical size."""
-        scales = self.problem.scales
-        if scales is None:
-            return max(float(np.sqrt(np.mean(self.u**2))), 1.0)
-        parts = np.abs(direction).reshape(-1, self.n)
-        shares = float((parts / scales.unknowns).max())
-        return float(parts.max()) / shares if shares > 0.0 else 1.0
-
     # ------------------------------------------------------------------ one real critical direction
     def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
-        """Right null vector of J closed by a multiplier, of length one as normal forms measure it, and the left one.
-
-        They are found with unknowns and rows in units of their scales.
-        """
-        scales = self.problem.scales
-        units, rows = (1.0, 1.0) if scales is None else (scales.unknowns, scales.rows)
-        left, _, right = np.linalg.svd(self.closed_by(factor) * units / np.reshape(rows, (-1, 1)))
-        v, w = right[-1].conj() * units, left[:, -1].conj() / rows
-        return self.unit(v), w / np.linalg.norm(w)
+        """Right null vector of J closed by a multiplier, of length one as normal forms measure it, and the left one."""
+        left, _, right = np.linalg.svd(self.closed_by(factor))
+        return self.unit(right[-1].conj()), left[:, -1].conj()
 
     def unit(self, vector: np.ndarray) -> np.ndarray:
-        """A direction with length one over the unknowns, of a cycle over its first point."""
-        return vector / (self.problem.amplitude(vector) or np.nan)
+        """A direction with length one over the user's unknowns, of a cycle over its first point."""
+        return vector / (self.problem.amplitude(vector * self.units) or np.nan)
 
     def chain(self, factor: float) -> np.ndarray:
         """The null vector and the next one of a double multiplier's Jordan chain, shape (N, 2)."""
@@ -180,16 +196,17 @@ class Forms:
         NaN where they cannot be evaluated.
         """
         moved = self.whole + (here if following is None else np.append(here, self._carrier @ following))
+        moved, rows = moved * self._units_of(len(moved)), self.rate * self.units
         if isinstance(self.open, Evaluable):  # no derivatives are asked for
             with np.errstate(all="ignore"):
                 try:
-                    return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n]
+                    return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n] / rows
                 except (ValueError, ArithmeticError):
                     return np.full(self.n, np.nan)
         kernels, data, work = self.open_calls
-        if not kernels.linearise(data, np.ascontiguousarray(moved), self.p, work) < 1e300:
+        if not kernels.linearise(data, moved, self.p, work) < 1e300:
             return np.full(self.n, np.nan)
-        return np.array(work[0].reshape(-1)[: self.n])
+        return np.array(work[0].reshape(-1)[: self.n]) / rows
 
     @cached_property
     def _carrier(self) -> np.ndarray:
@@ -198,11 +215,15 @@ class Forms:
     def quadratic(self, along: np.ndarray | None = None) -> Coefficient:
         """a at a fold: z + a z^2, or z' = a z^2; its sign is that along a direction, if one is given."""
         v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
-        if along is not None and v @ along < 0.0:
+        if along is not None and v @ (along / self.units) < 0.0:
             v = -v
         line, weight = self.line(v, 1.0), float(w @ self.K @ v) or np.nan
         value = -0.5 * float(w @ line.second @ self.extended(v, 1.0)) / weight
-        return Coefficient(value, abs(0.5 * self.n * line.second_error / weight))
+        return self._timed(value, abs(0.5 * self.n * line.second_error / weight))
+
+    def _timed(self, value: float, error: float) -> Coefficient:
+        """A coefficient of a rate of change, in the user's own unit of time."""
+        return Coefficient(self.rate * value, self.rate * error)
 
     def size_of_quadratic(self, along: np.ndarray) -> float:
         """What the quadratic coefficient would be if the second derivative pointed along the left null vector.
@@ -210,11 +231,11 @@ class Forms:
         At a cusp it may vanish; what the third derivative makes of it a little further along counts, too.
         """
         v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
-        if v @ along < 0.0:
+        if v @ (along / self.units) < 0.0:
             v = -v
         line, x = self.line(v, 1.0), self.extended(v, 1.0)
         size = float(np.linalg.norm(line.second @ x) + NEAR * np.linalg.norm(line.third @ x))
-        return 0.5 * size / (abs(float(w @ self.K @ v)) or np.nan)
+        return 0.5 * self.rate * size / (abs(float(w @ self.K @ v)) or np.nan)
 
     def cubic(self, factor: float) -> Coefficient:
         """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
@@ -231,7 +252,7 @@ class Forms:
             h = self._solve(regular, -(line.second @ x))
         total = w @ (line.third @ x) + 3.0 * w @ (line.second @ self.extended(h, 1.0))
         error = abs(self.n * (line.third_error + 3.0 * line.second_error) / (6.0 * weight))
-        return Coefficient(-float(total) / (6.0 * weight), error)
+        return self._timed(-float(total) / (6.0 * weight), error)
 
     @staticmethod
     def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
@@ -247,7 +268,7 @@ class Forms:
         multiplier : complex
             m on the unit circle (i omega for flows); the raw one of the problem's own period.
         """
-        multiplier = 1j * multiplier.imag if self.flow else multiplier / abs(multiplier)
+        multiplier = 1j * multiplier.imag / self.rate if self.flow else multiplier / abs(multiplier)
         pair = self._pair(multiplier)
         one, first = pair.vector, pair.a.second + 1j * pair.b.second
         mixed = 0.0 if self.flow else 1.0
@@ -259,7 +280,7 @@ class Forms:
         error = float(abs(self.n * (pair.a.third_error + 3.0 * pair.a.second_error) / pair.weight))
         if self.flow:
             omega = abs(multiplier.imag)
-            return Coefficient(c.real / omega, error / omega), c
+            return Coefficient(c.real / omega, error / omega), self.rate * c
         return Coefficient(float((c / multiplier).real), error), c
 
     def _pair(self, multiplier: complex) -> Pair:

@@ -33,6 +33,13 @@ from .coefficients import Forms
 from .manifold import Monomial, reduced
 
 NEAR = 1e-4  # distance at which a multiplier is one of those that a strong resonance has
+#: of flows, how the coefficients grow with the unit of rates; those that are not named do not
+RATES: dict[str, dict[str, int]] = {
+    "cusp": {"c": 1},
+    "bogdanov-takens": {"a": 2, "b": 1},
+    "zero-hopf": {"b": 1, "c": 1, "e": 1},
+    "double-hopf": {"p11": 1, "p12": 1, "p21": 1, "p22": 1},
+}
 CONJUGATE = np.array([[1.0, 1j], [1.0, -1j]])
 THIRD, QUARTER = np.exp(2j * np.pi / 3.0), 1j
 
@@ -53,9 +60,15 @@ def normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, floa
     ValueError
         If the equations cannot be evaluated near the point.
     """
-    one = 0.0 if forms.flow else 1.0
+    found = _normal_form(kind, forms, [pair / forms.rate for pair in pairs])
+    powers = RATES.get(kind, {}) if forms.flow else {}
+    return {name: value * forms.rate ** powers.get(name, 0) for name, value in found.items()}
+
+
+def _normal_form(kind: str, forms: Forms, pairs: list[complex]) -> dict[str, float]:
+    """The same in the unit of time that `forms` counts in."""
     if kind == "cusp":
-        return {"c": forms.cubic(one).value}
+        return {"c": forms.cubic(0.0 if forms.flow else 1.0).value / forms.rate}
     if kind in ("generalized-period-doubling", "degenerate-symmetry-breaking"):
         return _flip(forms)
     if kind in ("bogdanov-takens", "resonance-1-1", "resonance-1-2", "resonance-1-3", "resonance-1-4"):

@@ -54,7 +54,7 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
         return Pitch(None, None, "")
     try:
         forms = Forms(problem, u, p)
-        values: Any = np.linalg.eigvals(forms.J) if flow else np.asarray(spectrum, dtype=complex)
+        values: Any = forms.eigenvalues if flow else np.asarray(spectrum, dtype=complex)
         upper = values[values.imag > 0.0]
         if not len(upper):
             return Pitch(None, None, "")

@@ -20,9 +20,13 @@ from typing import Any
 
 import numpy as np
 
-NODES = 16  # samples along a line
+NODES = 26  # samples along a line
 SPREAD = 1.3  # directions per monomial
-RADII = tuple(0.6 * 0.55**i for i in range(9))  # relative to the scale of the unknowns
+WIDEST, NARROWEST, NARROWER = (
+    0.6,
+    4e-3,
+    0.7,
+)  # radii of the samples, the first one relative to the reach of the equations
 ENOUGH = 1e-10  # relative change of the coefficients from one radius to the next that asks for no other
 CUTOFF = 1e-9  # singular values below this are zeros
 
@@ -224,19 +228,24 @@ def reduced(
     ValueError
         If the equations cannot be evaluated near the point, or the coefficients are not known to two digits.
     """
-    scale = max(float(np.sqrt(np.mean(forms.u**2))), 1.0)
-    best: dict[str, float] = {}
+    # the vectors are as long as the user's units say; the reduction is made with longer or shorter ones, of length one in those of `forms`
+    lengths = np.linalg.norm(vectors, axis=0)
+    if np.count_nonzero(linear - np.diag(np.diag(linear))):
+        lengths[:] = lengths[0]  # a Jordan chain
+    best: dict[Monomial, np.ndarray] = {}
     error, before = np.inf, None
-    for radius in RADII:
+    steps = int(np.ceil(np.log(NARROWEST / (WIDEST * forms.reach)) / np.log(NARROWER)))
+    for radius in WIDEST * forms.reach * NARROWER ** np.arange(steps + 1):
         try:
-            now = dict(wanted(Reduction(forms, vectors, linear, real, stay, radius * scale).to(degree).N))
+            own = Reduction(forms, vectors / lengths, linear, real, stay, radius).to(degree).N
         except ValueError:
             continue
+        now = dict(wanted(own))
         if before is not None:
             sizes = 1e-12 + max(abs(v) for v in now.values())
             change = max(abs(now[name] - before[name]) for name in now) / sizes
             if change < error:
-                error, best = change, now
+                error, best = change, own
                 if error < ENOUGH:
                     break
             elif change > 100.0 * error:
@@ -244,4 +253,4 @@ def reduced(
         before = now
     if not error < 1e-2:
         raise ValueError("the coefficients are not known to two digits")
-    return best
+    return dict(wanted({a: part * np.prod(lengths ** np.array(a)) / lengths for a, part in best.items()}))

@@ -21,11 +21,12 @@ from ..events.watch import AT_BORDER, Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .leaving import leave
-from .marking import mark, may_be_one, origin_index
+from .marking import is_border, mark, may_be_one, origin_index
 from .pending import Origin, Pending
 from .run import Run
 
-NOWHERE = 1e-12  # a branch shorter than this is none
+NOWHERE = 1e-12  # a branch shorter than this is none, and ...
+BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
@@ -74,18 +75,27 @@ def work(run: Run) -> None:
                         "the graph is not complete; raise max_branches, or lower depth"
                     )
                     graph.complete = False
+                    tell_waiting(run)
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
         except KeyboardInterrupt:
             take()
             graph.message = "interrupted; run the same command again to go on"
-            run.journal.checkpoint(graph)
+            run.checkpoint()
             raise
         graph.finished = True
         graph.message = graph.message or "finished"
-        run.journal.checkpoint(graph)
+        run.checkpoint()
     run.tell(graph.message, float("nan"))
+
+
+def tell_waiting(run: Run) -> None:
+    """Say at the special points whose branches wait why these are not followed; of a single branch nobody expects others."""
+    most = run.settings.max_branches
+    for pending in run.queue if most > 1 else ():
+        if pending.point is not None:
+            run.remark(pending.point, f"a branch that leaves here is not followed: max_branches = {most}")
 
 
 def trace_pending(run: Run, pending: Pending) -> None:
@@ -146,6 +156,10 @@ def trace_pending(run: Run, pending: Pending) -> None:
     if pending.kind is Origin.BORDER and of_no_length(run, engine, half):
         run.numbers["B"] -= 1
         return  # a solution of the border itself, once more: nothing was crossed
+    if pending.kind is Origin.BORDER and begins_elsewhere(run, engine, half, pending):
+        run.numbers["B"] -= 1
+        run.remark(str(pending.point), "a solution found nearby lies on a branch that does not begin here")
+        return
     half = filled(engine, half, origin_index(half, pending))
     origin = origin_index(half, pending)
     branch = make_branch(label, engine, half, real, endings, closed, pending.point, origin)
@@ -156,15 +170,26 @@ def trace_pending(run: Run, pending: Pending) -> None:
     for point in new:
         leave(run, point, branch, pending.depth)
     run.points += len(branch)
-    run.journal.checkpoint(run.graph)
+    run.checkpoint()
     run.tell(f"{label} finished", float(branch.values[-1]))
 
 
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
-    """Whether a branch ends both ways where it begins, but for rounding."""
+    """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
     whole = half.joined()
     across = engine.join(np.ptp(whole.points, axis=0), 0.0)
-    return bool(np.ptp(whole.values) <= NOWHERE * run.unit(half.end) and engine.norm(across) <= NOWHERE)
+    length, unit = np.ptp(whole.values), run.unit(half.end)
+    if length <= BRIEF * unit and whole.smallest.max() <= NOWHERE:
+        return True
+    return bool(length <= NOWHERE * unit and engine.norm(across) <= NOWHERE)
+
+
+def begins_elsewhere(run: Run, engine: Engine, half: HalfBranch, pending: Pending) -> bool:
+    """Whether a branch looked for beyond a border ends at other borders, both ways: it was only passing by."""
+    ends = {i: e for i, e in half.events if i in (0, len(half) - 1) and e.kind in BORDERS}
+    return len(ends) == 2 and not any(
+        is_border(run, engine.problem, e, str(pending.point)) for e in ends.values()
+    )
 
 
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
@@ -188,10 +213,20 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 # off a fold or branch point, which would else lie on neither of the two halves
                 step = run.settings.first_step
             if step > 0.0:
-                first = beside(engine, first, step) or beside(engine, first, -step) or first
+                first = off(engine, first, step, pending.kind is Origin.BORDER)
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
+
+
+def off(engine: Engine, point: Solved, step: float, real: bool) -> Solved:
+    """A point of the same branch at a small distance, ahead if there is one: of a real branch, which may be shorter, a real one."""
+    for length in (step, 0.1 * step, 0.01 * step):
+        for side in (length, -length):
+            found = beside(engine, point, side)
+            if found is not None and not (real and float(engine.smallest_margin(found.row)) < MARGIN):
+                return found
+    return point
 
 
 def beside(engine: Engine, point: Solved, step: float) -> Solved | None:

@@ -219,6 +219,10 @@ class Graph:
         """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
         return above("graph_frame")(self)
 
+    def to_xarray(self) -> Any:
+        """All points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
+        return above("graph_dataset")(self)
+
     def export(self, path: str | Path, to: str | None = None) -> Path:
         """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat") is read off the name by default.
 

@@ -98,10 +98,13 @@ def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
             + t * t * (t - 1) * d * tb
         )
 
-    low, high, flow = 0.0, 1.0, za[-1] - p
+    # only the parameter's cubic has to be solved
+    a, b, c, e = float(za[-1]), float(d * ta[-1]), float(zb[-1]), float(d * tb[-1])
+    low, high, flow = 0.0, 1.0, a - p
     for _ in range(50):
         middle = 0.5 * (low + high)
-        value = at(middle)[-1] - p
+        t, rest = middle, 1.0 - middle
+        value = rest * rest * ((1.0 + 2.0 * t) * a + t * b) + t * t * ((3.0 - 2.0 * t) * c - rest * e) - p
         if (value > 0.0) == (flow > 0.0):
             low, flow = middle, value
         else:

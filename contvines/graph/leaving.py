@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,8 @@ FAMILY = (
     "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
     "give the problem conditions= that pick one of them"
 )
+
+DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
 def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
@@ -91,13 +94,10 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         for departure in found:
             transcritical = abs(departure.slope) > 0.1 * run.unit(point.value) * departure.amplitude
             if point.criticality is None and not transcritical:
-                point.criticality, point.coefficient = criticality(
-                    departure.curvature / target.amplitude(departure.direction) ** 2,
-                    speed,
-                    flip=name == "minus",
-                )
-                if point.criticality is not None and (exact := _cubic(point, name)) is not None:
-                    point.coefficient = exact
+                curvature = departure.curvature / target.amplitude(departure.direction) ** 2
+                point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
+                exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)
+                point.coefficient = rough if point.criticality is None else exactly
             elif transcritical:
                 run.remark(point.label, TRANSCRITICAL)
             if departure.family:
@@ -123,12 +123,13 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             )
 
 
-def _cubic(point: SpecialPoint, name: str) -> float | None:
-    """The coefficient from derivatives of the equations, where these can be had."""
-    if len(point.u) > DERIVATIVES:
-        return None
+def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
+    """The coefficient from derivatives of the equations, where these can be had; else the one of the branch that leaves."""
+    if len(u) > DERIVATIVES:
+        return rough
     with OPEN:
-        return cubic_form(point.problem, point.u, point.value, flip=name == "minus")
+        exact = cubic_form(problem, u, p, flip=name == "minus")
+    return rough if exact is None else exact
 
 
 def _is_image(part: np.ndarray) -> bool:
@@ -216,10 +217,12 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         seeds = _seeds(run, leaving)
         if not seeds:
             run.remark(point.label, point.problem.dead_end(leaving))
+        elif all(_cost(seed) + depth > run.depth for seed in seeds):
+            run.remark(point.label, DEEPER.format(depth=run.depth))
         for seed in seeds:
             persistence = bool(seed["persistence"])
             note = seed["note"] or ("persistence" if persistence else "nonsmooth fold")
-            cost = 0 if persistence else 1
+            cost = _cost(seed)
             if depth + cost > run.depth:
                 continue
             run.queue.append(
@@ -261,6 +264,11 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 origin=origin,
             )
         )
+
+
+def _cost(seed: dict[str, Any]) -> int:
+    """How many switches deeper a branch beyond a border is: one that goes on in the same direction is as deep."""
+    return 0 if seed["persistence"] else 1
 
 
 def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,7 @@ from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
-from ..continuation.engine import Engine
+from ..continuation.engine import Engine, Solved
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
 from ..forms.criticality import pair_form
@@ -28,6 +29,7 @@ BACK_AT_BORDER = (
     1e-6  # a branch seeded beyond a border comes back to it within this part of the parameter's unit
 )
 TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
+TURNING_KINDS = ("branch-point", "symmetry-breaking")
 BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
 AT_BORDER = 1e-4  # border points of one value further apart than this are two
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
@@ -39,7 +41,7 @@ def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pe
     fresh: list[SpecialPoint] = []
     ends: dict[int, Ending] = {}
     last = len(branch) - 1
-    events = list(half.events)
+    events = _without_turnings(run, engine, half.events)
     if not branch.closed:
         for index, side in ((0, 0), (last, 1)):
             if branch.endings[side].reason is Reason.LEFT_INTERVAL:
@@ -156,20 +158,13 @@ def _known(
         source = run.graph.special[pending.point]
         gaps = np.abs(branch.values[[0, -1]] - source.value)
         home = abs(source.value - point.p) <= gaps.min()  # the other end is a border of its own, however near
-        if (
-            home
-            and abs(source.value - point.p) <= BACK_AT_BORDER * run.unit(point.p)
-            and may_be_one(problem, point.u, point.p, source)
-        ):
+        if home and is_border(run, problem, event, source.label):
             return source.label
     if kind in BORDERS and at_end:
         for other in run.queue:
             if other.kind is not Origin.BORDER or other.point is None:
                 continue
-            source = run.graph.special[other.point]
-            if abs(source.value - point.p) > BACK_AT_BORDER * run.unit(point.p):
-                continue
-            if not may_be_one(problem, point.u, point.p, source):
+            if not is_border(run, problem, event, other.point):
                 continue
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
@@ -196,16 +191,40 @@ def _known(
     return None
 
 
+def _without_turnings(
+    run: Run, engine: Engine, events: list[tuple[int, Located]]
+) -> list[tuple[int, Located]]:
+    """Events of one branch without folds that are its own branch points: a side branch only turns there."""
+    places = [event.point for _, event in events if event.kind in TURNING_KINDS]
+    return [
+        (index, event)
+        for index, event in events
+        if event.kind != "fold"
+        or not any(_turns(run, engine, event.point, place.u, place.p) for place in places)
+    ]
+
+
+def _turns(run: Run, engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
+    """Whether a fold is so close to a point that it is that point."""
+    if u.shape != fold.u.shape:
+        return False
+    gap = engine.join(u - fold.u, p - fold.p)
+    return abs(gap[-1]) <= TURNING * run.unit(fold.p) and engine.norm(gap) <= BESIDE
+
+
 def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
     """Label of a branch point at which a side branch only turns: the parameter is stationary there, but it is no fold."""
-    point = event.point
     for known in run.graph.special.values():
-        if known.kind not in ("branch-point", "symmetry-breaking") or known.u.shape != point.u.shape:
-            continue
-        gap = engine.join(known.u - point.u, known.value - point.p)
-        if abs(gap[-1]) <= TURNING * run.unit(point.p) and engine.norm(gap) <= BESIDE:
+        if known.kind in TURNING_KINDS and _turns(run, engine, event.point, known.u, known.value):
             return known.label
     return None
+
+
+def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
+    """Whether a branch has come to a border that is known by this label."""
+    known, point = run.graph.special[label], event.point
+    near = abs(known.value - point.p) <= BACK_AT_BORDER * run.unit(point.p)
+    return near and may_be_one(problem, point.u, point.p, known)
 
 
 def may_be_one(problem: Problem, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
@@ -267,7 +286,7 @@ def _special(
         index=index,
         problem=engine.problem,
     )
-    special.replay = _replay(run, special)
+    special.replay = partial(_replay, special.problem, special.u, special.value) if special.real else None
     _doubt(engine, special)
     if event.role is Role.MEETING:
         special.met_from = branch.label
@@ -281,17 +300,11 @@ def _special(
     return special
 
 
-def _replay(run: Run, special: SpecialPoint) -> float | None:
-    if not special.real:
-        return None
-    key = f"{run.serial}/replay/{special.label}"
-    known = run.journal.recall(key)
-    if known is None:
-        with OPEN:
-            error = special.problem.replay(special.u, special.value)
-        known = {"error": None if error is None else float(error)}
-        run.journal.record(key, known)
-    return known["error"]
+def _replay(problem: Problem, u: np.ndarray, p: float) -> float | None:
+    """Deviation of a simulation from the solution; None where there is none."""
+    with OPEN:
+        error = problem.replay(u, p)
+    return None if error is None else float(error)
 
 
 def _ending(run: Run, label: str, kind: str, branch: Branch, meets: bool) -> Ending:

@@ -6,15 +6,29 @@ import html
 
 from ..branches.branch import Branch
 from ..branches.special_point import SpecialPoint
+from ..number_text import number_text as number
+from ..text_table import Table
 from .graph import Graph
-from .table import Table, branches_table, describe, ends, number, special_table, title
+from .table import (
+    attractors_table,
+    branches_table,
+    describe,
+    ends,
+    simulated,
+    special_table,
+    title,
+)
 
 
 def graph_page(graph: Graph) -> str:
-    """Both tables of a graph."""
+    """All tables of a graph."""
     about = f"<p>{title(graph)}</p>" + (f"<p>{html.escape(graph.start)}</p>" if graph.start else "")
     parts = [about, branches_table(graph).html()]
-    return "".join([*parts, special_table(graph).html()] if graph.special else parts)
+    if graph.special:
+        parts.append(special_table(graph).html())
+    if graph.attractors:
+        parts += [attractors_table(graph).html(), f"<p>{html.escape(simulated(graph))}</p>"]
+    return "".join(parts)
 
 
 def branch_page(branch: Branch) -> str:

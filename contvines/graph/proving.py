@@ -70,7 +70,7 @@ def kept(proof: Any) -> dict[str, Any]:
         "stable": proof.stable,
         "radius": proof.radius,
         "obstacles": [str(obstacle) for obstacle in proof.obstacles],
-        "certificate": proof.certificate() if proof.existence or parts else None,
+        "certificate": (proof.certificate() or None) if proof.existence or parts else None,
         **({"stretches": [_stretch(*part) for part in zip(parts, proof.places)]} if parts else {}),
     }
 

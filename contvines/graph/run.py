@@ -15,6 +15,7 @@ from ..continuation.engine import Engine, parameter_unit
 from ..continuation.settings import Settings
 from ..events.located import Located
 from ..events.watch import Watch
+from ..journal import NullJournal
 from ..problems.protocol import Problem
 from .graph import Graph, Switch
 from .identity import Register
@@ -84,6 +85,13 @@ class Run:
                     message, len(graph.branches), len(graph.special), self.points, value, len(self.queue)
                 )
             )
+
+    def checkpoint(self) -> None:
+        """Keep the graph as it is now; what is to be worked out of its points is, before a write that nothing may interrupt."""
+        if not isinstance(self.journal, NullJournal):
+            for point in self.graph.special.values():
+                _ = point.coefficient, point.replay
+        self.journal.checkpoint(self.graph)
 
     def unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with: see :func:`parameter_unit`."""

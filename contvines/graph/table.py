@@ -2,82 +2,24 @@
 
 from __future__ import annotations
 
-import html
-import shutil
-import sys
-import textwrap
-from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..branches.special_point import TRANSCRITICAL
+from ..events.kinds import BORDERS
+from ..number_text import number_text
+from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
 from .shortening import short_word, short_words
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
+    from .attractor import Attractor
     from .graph import Graph
 
-GAP = "  "
 AT_END = 1e-9  # part of the interval: special points closer to its end are at it
-LEAST = 16  # characters for the last column, before its text goes on in further lines
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of text.
-
-    Attributes
-    ----------
-    head : tuple of str
-    rows : list of tuple of str
-    spare : tuple of str
-        Columns that may be left out where room is short, the first one first.
-    """
-
-    head: tuple[str, ...]
-    rows: list[tuple[str, ...]]
-    spare: tuple[str, ...] = ()
-
-    def lines(self, width: int | None = None) -> list[str]:
-        """The table in at most `width` characters: without spare columns, the last one on several lines; None: all of it."""
-        columns = list(range(len(self.head)))
-        columns = [c for c in columns if self.head[c] or any(row[c] for row in self.rows)]
-        everything = [self.head, *self.rows]
-
-        def widths() -> list[int]:
-            return [max(len(row[c]) for row in everything) for c in columns]
-
-        def needed() -> int:
-            sizes = widths()
-            return sum(sizes[:-1]) + len(GAP) * (len(sizes) - 1) + min(sizes[-1], LEAST)
-
-        if width is not None:
-            for name in self.spare:
-                if needed() <= width:
-                    break
-                columns = [c for c in columns if self.head[c] != name]
-        sizes = widths()
-        left = sum(sizes[:-1]) + len(GAP) * (len(sizes) - 1)
-        room = None if width is None else max(width - left, LEAST)
-        lines = []
-        for row in everything:
-            cells = [row[c].ljust(size) for c, size in zip(columns[:-1], sizes[:-1], strict=True)]
-            last = row[columns[-1]]
-            parts = [last] if room is None or len(last) <= room else textwrap.wrap(last, room) or [""]
-            lines.append(GAP.join([*cells, parts[0]]).rstrip())
-            lines += [" " * left + part for part in parts[1:]]
-        return lines
-
-    def html(self) -> str:
-        """The table as HTML."""
-        head = "".join(f"<th style='text-align:left'>{html.escape(cell)}</th>" for cell in self.head)
-        body = "".join(
-            "<tr>"
-            + "".join(f"<td style='text-align:left'>{html.escape(cell)}</td>" for cell in row)
-            + "</tr>"
-            for row in self.rows
-        )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def table(graph: Graph, width: int | None = None) -> str:
@@ -90,20 +32,21 @@ def table(graph: Graph, width: int | None = None) -> str:
         Characters to a line; None: as many as it takes.
     """
     about = [title(graph), graph.start] if graph.start else [title(graph)]
-    lines = [*about, "", *branches_table(graph).lines(width)]
+    lines = [
+        *(fitted(line, width) if width else line for line in about),
+        "",
+        *branches_table(graph).lines(width),
+    ]
     if graph.special:
         lines += ["", *special_table(graph).lines(width)]
+    if graph.attractors:
+        lines += ["", *attractors_table(graph).lines(width), "", simulated(graph)]
     return "\n".join(lines)
 
 
 def shown(graph: Graph) -> str:
     """The same as it fits the terminal, if one shows it."""
     return table(graph, terminal_width())
-
-
-def terminal_width() -> int | None:
-    """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
-    return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None
 
 
 def title(graph: Graph) -> str:
@@ -118,11 +61,12 @@ def title(graph: Graph) -> str:
 def branches_table(graph: Graph) -> Table:
     """A row per branch: what it is, where it is and is stable, and the special points at its ends, or why it ends."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    number = partial(number_text, digits=6, unit=size_of(graph.within))
     rows = []
     for branch in graph.branches.values():
         low, high = branch.range
-        stable = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in branch.stable_intervals()) or "-"
-        where = f"{number(low, 6)}..{number(high, 6)}"
+        stable = ", ".join(f"{number(a)}..{number(b)}" for a, b in branch.stable_intervals()) or "-"
+        where = f"{number(low)}..{number(high)}"
         proved = told(graph, branch.label)
         rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
     head = (
@@ -151,11 +95,56 @@ def special_table(graph: Graph) -> Table:
             if switch.point == point.label:
                 arrow = f"{switch.source} -> {switch.target}"
                 targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
+        if not targets and point.kind in BORDERS and point.real and point.remarks:
+            targets.append(f"({'; '.join(point.remarks)})")
         about = " ".join(filter(None, remarks))
-        rows.append(
-            (point.label, point.kind, point.branch, number(point.value, 12), about, "; ".join(targets))
-        )
+        value = number_text(point.value, 12, size_of(graph.within))
+        rows.append((point.label, point.kind, point.branch, value, about, "; ".join(targets)))
     return Table(("point", "kind", "on", name, "", "leads to"), rows, ("",))
+
+
+def attractors_table(graph: Graph) -> Table:
+    """A row per motion that simulated starts have met: where, and its share of the starts, over the interval and at most."""
+    name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    values = np.array(sorted({a.value for a in graph.attractors}))
+    low, high = graph.within
+    edges = np.concatenate([[low], 0.5 * (values[1:] + values[:-1]), [high]])
+    parts = dict(zip(values.tolist(), (np.diff(edges) / (high - low)).tolist(), strict=True))
+    met: dict[tuple[str, str, int], list[Attractor]] = {}
+    for about in graph.attractors:
+        key = (about.branch or "", about.name, about.periods)
+        met.setdefault(key, []).append(about)
+    rows = []
+    number = partial(number_text, digits=6, unit=size_of(graph.within))
+    for (label, motion, periods), seen in met.items():
+        share = sum(a.share * parts[a.value] for a in seen)
+        span = f"{number(seen[0].value)}..{number(seen[-1].value)}"
+        where = span if len(seen) > 1 else number(seen[0].value)
+        rows.append(
+            (
+                f"{short_word(motion)} k={periods}" if periods else motion,
+                label,
+                where,
+                str(len(seen)),
+                f"{share:.2%}",
+                f"{max(a.share for a in seen):.0%}",
+            )
+        )
+    return Table(
+        ("attractor", "branch", f"met at {name}", "values", "share of starts", "at most"), rows, ("values",)
+    )
+
+
+def simulated(graph: Graph) -> str:
+    """At how many values an atlas has simulated, and how long nothing new was met, in a sentence."""
+    count = len({a.value for a in graph.attractors})
+    line = f"starts simulated at {count} value{'' if count == 1 else 's'} of {graph.parameter}"
+    scanned, quiet = graph.settings.get("scanned"), graph.settings.get("quiet", 0)
+    if not scanned:
+        return line
+    if quiet >= graph.settings["scan"]:
+        return f"{line}; of {scanned} scattered ones the last {quiet} met nothing new"
+    return f"{line}; {scanned} scattered ones met something new again and again, the last {quiet} did not: raise scan to look on"
 
 
 def describe(branch: Branch) -> str:
@@ -182,9 +171,10 @@ def ends(branch: Branch) -> str:
     return " .. ".join(told)
 
 
-def number(value: float, digits: int) -> str:
-    """A number for people: what is only rounding is 0."""
-    return "0" if abs(value) < 1e-15 else f"{value:.{digits}g}"
+def size_of(within: tuple[float, float]) -> float:
+    """What rounding is measured by: the larger end of an interval, 1 where there is none."""
+    found = max(abs(end) for end in within)
+    return found if 0.0 < found < float("inf") else 1.0
 
 
 def with_unit(name: str, unit: str | None) -> str:

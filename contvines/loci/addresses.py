@@ -60,6 +60,45 @@ def _put(address, content):
     _write(address, content)
 
 
+_types: dict[Any, Any] = {}
+_rooms: dict[Any, int] = {}
+
+
+def type_of(content: Any) -> Any:
+    """numba's type of a tuple of arrays and numbers, asked for once for each sort of content."""
+    key = sort_of(content)
+    found = _types.get(key)
+    if found is None:
+        found = _types[key] = typeof(content)
+    return found
+
+
+def sort_of(content: Any) -> Any:
+    """What the type depends on; numba's types themselves are slow as keys."""
+    if isinstance(content, np.ndarray):
+        flags = content.flags
+        return (
+            content.dtype,
+            content.ndim,
+            flags.c_contiguous,
+            flags.f_contiguous,
+            flags.writeable,
+            flags.aligned,
+        )
+    if isinstance(content, tuple):
+        return type(content), tuple(map(sort_of, content))
+    return type(content)
+
+
+def _room_for(content: Any) -> int:
+    """Bytes that a tuple takes."""
+    key = sort_of(content)
+    if key not in _rooms:
+        context: Any = cpu_target.target_context
+        _rooms[key] = context.get_abi_sizeof(context.get_value_type(type_of(content)))
+    return _rooms[key]
+
+
 class Stored:
     """A tuple of arrays and numbers, stored for compiled code.
 
@@ -69,8 +108,7 @@ class Stored:
     """
 
     def __init__(self, content: Any) -> None:
-        context: Any = cpu_target.target_context
-        size = context.get_abi_sizeof(context.get_value_type(typeof(content)))
+        size = _room_for(content)
         self.content = content  # the arrays live as long as this
         self.room = np.zeros(size // 8 + 1)
         self.address = int(self.room.ctypes.data)
@@ -188,7 +226,7 @@ def addresses(kernels: dict[str, Any], data: Any, work: Any, digest: str) -> np.
         _flip: (WHOLE, WHOLE, NUMBER),
         _transpose: (WHOLE, WHOLE, VECTOR, WHOLE),
     }
-    loaders = {"data_at": _loader(typeof(data)), "work_at": _loader(typeof(work))}
+    loaders = {"data_at": _loader(type_of(data)), "work_at": _loader(type_of(work))}
     found = []
     for function, arguments in signatures.items():
         outlined = copy_with(function, f"_{digest}", kernel=kernels[function.__name__[1:]], **loaders)

@@ -44,14 +44,12 @@ def locus_kernels(problem: Problem) -> tuple[Kernels, np.ndarray]:
                 {name: _direct(f) for name, f in given.items()}, lambda function: function, "", False
             )
         return _interpreted[key], np.zeros(0, np.int64)
-    from numba import typeof
-
-    from .addresses import addresses
+    from .addresses import addresses, sort_of, type_of
 
     data, work = problem.data, problem.workspace()
-    key = (*key, typeof(data), typeof(work))
+    key = (*key, sort_of(data), sort_of(work))
     if key not in _addresses:
-        types = hashlib.blake2b(repr((typeof(data), typeof(work))).encode(), digest_size=4).hexdigest()
+        types = hashlib.blake2b(repr((type_of(data), type_of(work))).encode(), digest_size=4).hexdigest()
         _addresses[key] = addresses(given, data, work, f"{kernels_digest(kernels)}_{types}")
     return _compiled_once(), _addresses[key]
 

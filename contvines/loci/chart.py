@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from ..doors import above
+from ..events.kinds import CODIMENSION_TWO
 from ..graph.persistence import branch_of, content_of
+from ..hints import did_you_mean
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
 from .plane_point import PlanePoint
 from .regions import Region
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @dataclass(eq=False)
@@ -78,7 +78,17 @@ class Chart:
         )
 
     def of_kind(self, kind: str) -> list[PlanePoint]:
-        """The points of codimension two of a kind."""
+        """The points of codimension two of a kind.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind.
+        """
+        if kind not in CODIMENSION_TWO:
+            named = next((name for name, entry in CODIMENSION_TWO.items() if entry.label == kind), None)
+            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, CODIMENSION_TWO)
+            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(CODIMENSION_TWO)}")
         return [point for point in self.points.values() if point.kind == kind]
 
     def to_dict(self) -> dict[str, Any]:
@@ -99,6 +109,21 @@ class Chart:
     def plot(self, **options: Any) -> Any:
         """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
         return above("plot_chart")(self, **options)
+
+    def to_pandas(self) -> Any:
+        """All points of all loci as a data frame; see :func:`contvines.export.frames.chart_frame`."""
+        return above("chart_frame")(self)
+
+    def export(self, path: str | Path, to: str | None = None) -> Path:
+        """Write the chart for other programs; `to` ("csv", "json") is read off the name by default.
+
+        Raises
+        ------
+        ValueError
+            If there is no such format, or the place cannot be written.
+        """
+        place = Path(path)
+        return above("export_chart")(self, to or place.suffix.lstrip(".").lower(), place)
 
     def save(self, path: str | Path) -> None:
         """Write the chart to a .vines file, as graphs are; ``contvines.load`` reads both."""

@@ -8,12 +8,14 @@ from typing import Any
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
+from ..hints import hinting
 from ..interrupts import listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
 from .following import locus
 
 
+@hinting
 @listening()
 def chart(
     graph: Graph,

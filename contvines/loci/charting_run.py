@@ -23,6 +23,7 @@ from .crossings import crossings
 from .departures import Candidate, leaving
 from .following import checked_ends, trace_locus
 from .kinds import PREFIXES, condition
+from .known_motions import KnownMotions, together
 from .layout import MARGIN
 from .locus import Locus
 from .plane_point import PlanePoint
@@ -208,17 +209,17 @@ class Charting:
                 0.0 if gaps[i] == gaps[i + 1] else float(np.clip(gaps[i] / (gaps[i] - gaps[i + 1]), 0.0, 1.0))
             )
             guess = (1.0 - share) * locus.branch.points[i] + share * locus.branch.points[i + 1]
-            if abs(guess[size] - candidate.p) > 0.1 * unit[0]:
+            if abs(locus.problem.split(guess)[1] - candidate.p) > 0.1 * unit[0]:
                 continue
             found = engine.at_value(guess, candidate.q)
             U = guess if found is None else found.u
             reach = 1e-4 if found is None else SAME
-            if abs(U[size] - candidate.p) > reach * unit[0]:
+            u, p = locus.problem.split(U)
+            if abs(p - candidate.p) > reach * unit[0]:
                 continue
             if border:
                 return True
-            here = locus.problem.base.canonical(U[:size], float(U[size]))
-            if same_form(here, form):
+            if same_form(locus.problem.base.canonical(u, float(p)), form, engine.scale):
                 return True
         return False
 
@@ -232,7 +233,7 @@ class Charting:
             if known is None:
                 point.label = self.label(PREFIXES[point.kind])
                 point.on = [locus.label]
-                point.coefficients = coefficients(point)
+                point.coefficients = point.coefficients or coefficients(point)
                 self.chart.points[point.label] = known = point
                 fresh.append(point)
             elif locus.label not in known.on:
@@ -259,18 +260,23 @@ class Charting:
             curves.append(values)
         problem = next(iter(self.graph.branches.values())).problem
         regions = divide(curves, self.chart.within)
+        known = KnownMotions(
+            self.graph.branches.values(), self.chart.loci.values(), self.over, self.chart.within
+        )
         for i, region in enumerate(regions):
             self.tell(f"region {i + 1} of {len(regions)}")
-            region.attractors = self.witness(problem, region.at)
+            region.attractors = self.witness(problem, region.at, known)
         self.chart.regions = regions
 
-    def witness(self, problem: Problem, place: tuple[float, float]) -> list[dict[str, Any]]:
-        """What is stable at a place, by simulation; empty where the problem cannot be simulated."""
+    def witness(
+        self, problem: Problem, place: tuple[float, float], motions: KnownMotions
+    ) -> list[dict[str, Any]]:
+        """What is stable at a place, by simulation and by continuation; empty where the problem cannot be simulated."""
         key = f"region/{place[0]!r}/{place[1]!r}"
         known = self.journal.recall(key)
         if known is None:
             there = problem.against(problem.parameter, {self.over: place[1]})
-            known = {"attractors": there.witness(place[0])}
+            known = {"attractors": together(there.witness(place[0]), motions.at(place))}
             self.journal.record(key, known)
         return list(known["attractors"])
 

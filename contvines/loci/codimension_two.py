@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from .conditions import References, Test, own_conditions, test_of
-from .kinds import Look, looks
+from .kinds import TOUCH, Look, looks
 from .layout import FLIP, FOLD, MARGIN, PAIR
 from .locus import Locus
 from .plane import Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
 from .starts import SINGULAR
+from .touching import touching_form
 
 COSTLY = ("quadratic", "cubic", "lyapunov")
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
@@ -28,7 +29,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     problem = locus.problem
     plane = Plane(problem)
     points, values = locus.branch.points, locus.branch.values
-    places = [Place(U[: problem.size], float(U[problem.size]), float(q)) for U, q in zip(points, values)]
+    places = [Place(u, float(p), float(q)) for (u, p), q in zip(map(problem.split, points), values)]
     wanted = looks(plane.problem, problem.condition)
     if problem.condition == MARGIN and _singular(plane, places):
         return []  # nothing can be told from equations that are singular all along
@@ -58,7 +59,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
             if not (a * b < 0.0 or at_end):
                 continue
             share = float(np.clip(a / (a - b), 0.0, 1.0)) if a != b else 0.5
-            guess, gap = _between(places[i], places[i + 1], share), _gap(places[i], places[i + 1])
+            guess, gap = _between(places[i], places[i + 1], share), _gap(problem, places[i], places[i + 1])
             if look in costly:  # first with a few digits
                 rough = test_of(look, problem, at, rough=True)
                 assert rough is not None
@@ -68,6 +69,8 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
                 guess, gap = Place(near.u, *near.value), 0.1 * gap
             point = solved(plane, problem, at, look.kind, test, guess, gap)
             if point is not None and not set(point.margins) - set(problem.masked):
+                if look is TOUCH:
+                    point.coefficients = touching_form(plane, Place(point.u, *point.value), problem.index)
                 found.append((i, point))
     found += _at_borders(locus, plane, places)
     return sorted((pair for pair in found if not _at_end(locus, pair[1])), key=lambda pair: pair[0])
@@ -119,11 +122,9 @@ def _between(a: Place, b: Place, share: float) -> Place:
     )
 
 
-def _gap(a: Place, b: Place) -> float:
+def _gap(locus: LocusProblem, a: Place, b: Place) -> float:
     gap = np.append(np.abs(a.u - b.u), [abs(a.p - b.p), abs(a.q - b.q)])
-    return REACH * float(
-        (gap / np.append(1.0 + np.abs(a.u), [max(abs(a.p), 1e-3), max(abs(a.q), 1e-3)])).max()
-    )
+    return REACH * float((gap / locus.sizes_at(*a)).max())
 
 
 def solved(
@@ -139,7 +140,8 @@ def solved(
         return None
     place, error = result
     low, high = locus.bounds
-    if not low - 1e-9 <= place.p <= high + 1e-9:
+    slack = 1e-9 * (high - low) if np.isfinite(high - low) else 0.0
+    if not low - slack <= place.p <= high + slack:
         return None
     residual = plane.at(place)
     if not _holds(kind, plane):
@@ -222,7 +224,7 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
                 kind,
                 lambda x, j=j: float(x.row[2 * x.m + j]),
                 guess,
-                max(_gap(places[i], places[i + 1]), 1e-3),
+                max(_gap(problem, places[i], places[i + 1]), 1e-3),
             )
             if point is not None and not any(
                 _same(point, other) and point.kind == other.kind for _, other in found

@@ -41,7 +41,7 @@ def critical_pairs(forms: Forms) -> list[complex]:
         distance = np.abs(upper.real) / size
     else:
         line = Linearisation(forms.problem)
-        line.at(forms.u, forms.p)
+        line.at(forms.u * forms.units, forms.p)
         spectrum = line.spectrum()
         upper = spectrum[spectrum.imag > 1e-6]
         distance = np.abs(np.abs(upper) - 1.0)

@@ -12,6 +12,7 @@ from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null
 from .plane import Plane
 from .problem import LocusProblem
+from .touching import slope_along_branch
 
 UNSURE = 1e-3  # a coefficient whose error exceeds this part of its natural size is not known
 
@@ -55,15 +56,15 @@ class References:
 def own_conditions(plane: Plane, locus: LocusProblem, at: References) -> list[Test]:
     """The conditions of the locus itself, with references held fixed."""
     if locus.condition == FOLD:
-        return [lambda x: x.singular_test(at.plus.left, at.plus.right)]
+        return [lambda x: x.singular_test(at.plus.column, at.plus.row)]
     if locus.condition == FLIP:
         assert at.minus is not None
         minus = at.minus
-        return [lambda x: x.singular_test(minus.left, minus.right, flipped=True)]
+        return [lambda x: x.singular_test(minus.column, minus.row, flipped=True)]
     if locus.condition == BRANCH:
         return [
-            lambda x: x.singular_test(at.plus.left, at.plus.right),
-            lambda x: x.unfolding_test(at.plus.left, at.plus.right),
+            lambda x: x.singular_test(at.plus.column, at.plus.row),
+            lambda x: x.unfolding_test(at.plus.column, at.plus.row),
         ]
     if locus.condition == PAIR:
         return [lambda x: x.pair(at.reference)[0]]
@@ -83,13 +84,15 @@ def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False
     if look.test == "lyapunov":
         return lambda x: _lyapunov(x, at.reference, rough)
     if look.test == "plus":
-        return lambda x: x.singular_test(plus.left, plus.right)
+        return lambda x: x.singular_test(plus.column, plus.row)
     if look.test == "minus":
-        return None if minus is None else lambda x: x.singular_test(minus.left, minus.right, flipped=True)
+        return None if minus is None else lambda x: x.singular_test(minus.column, minus.row, flipped=True)
     if look.test == "pair":
         return lambda x: x.pair(at.reference)[0]
     if look.test == "second-pair":
         return None if np.isnan(at.second) else lambda x: x.pair(at.second)[0]
+    if look.test == "touch":
+        return lambda x: slope_along_branch(x, plus, locus.index)
     if look.test == "double":
         return lambda x: x.two_nearest(look.value)
     return lambda x: x.pair(at.reference)[1] - look.value
@@ -97,7 +100,7 @@ def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False
 
 def _bend(plane: Plane, null: Null) -> float:
     """The quadratic coefficient of a fold, along the null vector that goes with the reference; NaN if it is not known."""
-    v, _ = plane.first.null(null.left, null.right)
+    v, _ = plane.first.null(null.column, null.row)
     forms = _forms(plane)
     found = forms.quadratic(v)
     return found.value if found.error <= UNSURE * forms.size_of_quadratic(v) else np.nan

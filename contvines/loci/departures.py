@@ -61,11 +61,13 @@ def leaving(point: PlanePoint, locus: Locus, bounds: tuple[float, float], over: 
             Candidate(problem, problem.margin_kind(j), point.u, p, q, j, point.label) for j in point.margins
         ]
     if point.kind == "generalized-period-doubling":
-        found += _fold_of_doubled(point, bounds, over)
+        found += _fold_of_doubled(point, bounds, over, locus.within)
     return found
 
 
-def _fold_of_doubled(point: PlanePoint, bounds: tuple[float, float], over: str) -> list[Candidate]:
+def _fold_of_doubled(
+    point: PlanePoint, bounds: tuple[float, float], over: str, within: tuple[float, float]
+) -> list[Candidate]:
     """The fold of the doubled cycle, which begins where the doubling turns from super- to subcritical."""
     problem, (p, q) = point.problem, point.value
     line = Linearisation(problem)
@@ -78,25 +80,25 @@ def _fold_of_doubled(point: PlanePoint, bounds: tuple[float, float], over: str) 
     n = len(point.u)
     direction = np.asarray(child.tangent, dtype=float)[:-1].copy()
     direction[n:] *= -1.0
-    direction /= np.linalg.norm(direction)
+    units = np.tile(line.units, 2)
+    direction /= np.linalg.norm(direction / units)
     base = np.asarray(child.u, dtype=float)
     for amplitude in AMPLITUDES:
-        size = amplitude * (1.0 + float(np.abs(base).max()))
+        size = amplitude * (1.0 + float(np.abs(base / units).max()))
         guess = base + size * direction
         locus = begin(child.problem, "fold", guess, p, over, 0, bounds)
-        wide = max(abs(q), 1.0)
-        engine = Engine(locus, (q - wide, q + wide), Settings())
+        engine = Engine(locus, within, Settings())
         border = np.zeros(locus.dimension + 1)
-        border[: 2 * n] = direction
-        solved = engine.solve(np.append(guess, p), q, border, float(direction @ guess))
-        if solved is None or np.abs(solved.u[: 2 * n] - guess).max() > 10.0 * size:
+        border[: 2 * n] = direction / units**2
+        solved = engine.solve(locus.joined(guess, p), q, border, float(border[: 2 * n] @ guess))
+        if solved is None or np.abs((solved.u[: 2 * n] - guess) / units).max() > 10.0 * size:
             continue
         return [
             Candidate(
                 locus.at(solved.p),
                 "fold",
                 solved.u[: 2 * n],
-                float(solved.u[2 * n]),
+                float(locus.split(solved.u)[1]),
                 solved.p,
                 0,
                 point.label,

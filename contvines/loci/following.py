@@ -18,6 +18,7 @@ from ..continuation.starts import check_interval
 from ..continuation.status import Status
 from ..events.located import Located, Role
 from ..events.watch import Watch
+from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
@@ -27,9 +28,13 @@ from .problem import LocusProblem
 from .sides import impossible_side
 from .starts import begin, first_point, regular_side
 
-UNFOLDED = 1e-7  # an unfolding beyond this (relative to the largest unknown) says that a branch point does not persist
+NEARLY = 1e-5  # distance of a motion from its image, relative to the sizes, at which Newton's method may fail because they become one
+UNFOLDED = (
+    1e-7  # an unfolding beyond this (in units of the equations) says that a branch point does not persist
+)
 
 
+@hinting
 @listening()
 def locus(
     point: SpecialPoint,
@@ -176,7 +181,7 @@ def trace_locus(
     if problem.condition == BRANCH and _unfolds(problem, branch.points):
         return None
     turns = tuple(
-        Turn(i, (float(e.point.u[problem.size]), float(e.point.p)))
+        Turn(i, (float(problem.split(e.point.u)[1]), float(e.point.p)))
         for i, e in whole.events
         if e.kind == "fold"
     )
@@ -187,8 +192,7 @@ def trace_locus(
 
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
-    sizes = 1.0 + np.abs(points[:, : problem.size]).max(axis=1)
-    return bool((np.abs(points[:, problem.size + 1]) > UNFOLDED * sizes).any())
+    return bool((np.abs(points[:, problem.size + 1]) > UNFOLDED).any())
 
 
 def _border(half: HalfBranch) -> Located | None:
@@ -198,12 +202,26 @@ def _border(half: HalfBranch) -> Located | None:
     return last if last.role is Role.BORDER else None
 
 
+def _becoming(problem: LocusProblem, half: HalfBranch) -> str:
+    """What the motion becomes where Newton's method fails: a shorter one run twice, or a symmetric one; empty where neither."""
+    if half.status not in (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE, Status.CREEPING):
+        return ""
+    U, q, _ = half.at(len(half) - 1)
+    u, p = problem.split(U)
+    sizes = problem.sizes_at(u, float(p), q)[:-2]
+    for symmetry in problem.at(q).symmetries:
+        if np.abs((symmetry.apply(u) - u) / sizes).max() < NEARLY:
+            what = "a shorter one, run twice" if symmetry.kind == "period-doubling" else "symmetric"
+            return f"the motion becomes {what}, at {problem.inner} = {p:.7g}, {problem.over} = {q:.7g}"
+    return ""
+
+
 def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
     """Why this side of the locus ends."""
     border = _border(half)
     if border is None:
-        return half.status.sentence(problem.over, half.end)
-    kind, p, q = problem.margin_kind(border.index), border.point.u[problem.size], border.point.p
+        return _becoming(problem, half) or half.status.sentence(problem.over, half.end)
+    kind, p, q = problem.margin_kind(border.index), problem.split(border.point.u)[1], border.point.p
     place = f"{problem.inner} = {p:.10g}, {problem.over} = {q:.10g}"
     if kind == "end":
         return f"reaches the end of the interval of {problem.inner}, {place}"

@@ -1,6 +1,7 @@
 """Kernels of a locus: the special points of F(u, p) = 0 as solutions of a larger system, against a second parameter q.
 
-Unknowns are U = (u, p), at branch points (u, p, e); q is the parameter in which the locus is continued. The equations are
+Unknowns are U = (u, p), at branch points (u, p, e), p in units of data[UNIT]; q is the parameter in which the locus is continued. The
+equations are
 
     F(u, p, q) + e b = 0,    g(u, p, q) = 0    (at branch points two of them),
 
@@ -52,6 +53,7 @@ from .layout import (
     POINT,
     REFERENCE,
     RESIDUAL,
+    ROWS,
     SCALES,
     SECOND,
     SLOPES,
@@ -60,6 +62,7 @@ from .layout import (
     SPARE,
     TRIAL,
     TRIAL_F,
+    UNIT,
     VALUES,
     B,
     C,
@@ -82,7 +85,7 @@ def locus_linearise(data, U, q, work):
     borders, lines, values, residuals = work[BORDERS], work[LINES], work[VALUES], work[RESIDUAL]
     n, size = F.shape[0], U.shape[0]
     kind, calls = data[KIND], data[CALLS]
-    u, p = U[:n], U[n]
+    u, p = U[:n], data[UNIT] * U[n]
     for i in range(size):
         point[i] = U[i]
     point[size] = q
@@ -97,7 +100,7 @@ def locus_linearise(data, U, q, work):
     if not largest < 1e300:
         return math.inf
     for i in range(n):
-        columns[0, i] = Q[i]
+        columns[0, i] = data[UNIT] * Q[i]
         residuals[i] = F[i]
         if kind == BRANCH:
             residuals[i] += U[n + 1] * borders[B, i]
@@ -235,17 +238,17 @@ def locus_bordered(data, work, border, target, step, tangent):
 
 
 def renew(data, work, b, c, null):
-    """Borders from the null vectors: c along `null`, b along the left one; the linearisation is in BASE."""
+    """Borders from the null vectors: c along `null`, b along the left one, in units of the scales; the linearisation is in BASE."""
     n = b.shape[0] - 1
-    lines, left = work[LINES], work[SOLUTIONS][LEFT]
+    lines, left, scales, rows = work[LINES], work[SOLUTIONS][LEFT], work[SCALES], work[ROWS]
     size = 0.0
     for i in range(n):
-        size += null[i] * null[i]
+        size += (null[i] / scales[i]) ** 2
     if not 0.0 < size < math.inf:
         return
     size = math.sqrt(size)
     for i in range(n):
-        c[i] = null[i] / size
+        c[i] = null[i] / scales[i] / scales[i] / size
         lines[0, i] = b[i]
     lines[0, n] = 0.0
     transpose(data[CALLS], data[FIRST], work[BASE], c[:n], work[TRIAL])
@@ -255,12 +258,12 @@ def renew(data, work, b, c, null):
     bordered(data[CALLS], data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
     size = 0.0
     for i in range(n):
-        size += left[i] * left[i]
+        size += (left[i] * rows[i]) ** 2
     if not 0.0 < size < math.inf:
         return
     size = math.sqrt(size)
     for i in range(n):
-        b[i] = left[i] / size
+        b[i] = left[i] * rows[i] * rows[i] / size
 
 
 def locus_inspect(data, U, q, work, row):
@@ -279,7 +282,7 @@ def locus_inspect(data, U, q, work, row):
         renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[SPARE])
         flip(data[CALLS], first, base, 1.0)
     own = row.shape[0] - 3
-    inspect(data[CALLS], first, U[:n], U[n], base, row[:own])
+    inspect(data[CALLS], first, U[:n], data[UNIT] * U[n], base, row[:own])
     row[own] = U[n] - reference[3]
     row[own + 1] = reference[4] - U[n]
     row[own + 2] = math.inf

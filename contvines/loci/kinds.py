@@ -43,7 +43,7 @@ class Look(NamedTuple):
     ----------
     test : str
         "quadratic", "cubic", "lyapunov", "plus", "minus", "pair", "second-pair", "double" (two multipliers at ``value``), "angle"
-        (the cosine of a pair is ``value``).
+        (the cosine of a pair is ``value``), "touch" (the margin has a double zero along the branch).
     kind : str
     value : float
     """
@@ -51,6 +51,9 @@ class Look(NamedTuple):
     test: str
     kind: str
     value: float = 0.0
+
+
+TOUCH = Look("touch", "degenerate-border")
 
 
 def looks(problem: Problem, condition: int) -> list[Look]:
@@ -62,7 +65,7 @@ def looks(problem: Problem, condition: int) -> list[Look]:
     if condition == FOLD:
         found.append(Look("quadratic", "cusp"))
     if spectrum == "none":
-        return found if condition != MARGIN else [Look("plus", "border-fold")]
+        return found if condition != MARGIN else [Look("plus", "border-fold"), TOUCH]
     if condition in (FOLD, BRANCH) and m >= 2:
         found.append(Look("double", "bogdanov-takens" if flow else "resonance-1-1", 0.0 if flow else 1.0))
         if pairs:
@@ -91,7 +94,7 @@ def looks(problem: Problem, condition: int) -> list[Look]:
         if m >= 4:
             found.append(Look("second-pair", "double-hopf" if flow else "double-neimark-sacker"))
     if condition == MARGIN:
-        found.append(Look("plus", "border-fold"))
+        found += [Look("plus", "border-fold"), TOUCH]
         if not flow:
             found.append(Look("minus", "border-symmetry-breaking" if half else "border-flip"))
         if m >= 2:

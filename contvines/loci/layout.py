@@ -3,7 +3,7 @@
 FOLD, FLIP, MARGIN, PAIR, BRANCH = range(5)
 
 # entries of `data`
-FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
+FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW, UNIT = range(8)
 
 # entries of `work`
 (
@@ -28,8 +28,9 @@ FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW = range(7)
     REFERENCE,
     SMALL,
     MASKED,
-) = range(21)
+    ROWS,
+) = range(22)
 
-STEP = 1e-7  # of the differences, relative to the scales of the unknowns
+STEP = 1e-7  # of the differences, relative to the scales of unknowns and parameters
 AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS

@@ -14,11 +14,23 @@ SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff
 
 
 class Null(NamedTuple):
-    """Unit null vectors, right and left, of a nearly singular matrix, and the test g that is zero where it is singular."""
+    """The null direction of a nearly singular matrix, the borders that belong to it, and the test g that is zero where it is singular.
+
+    With unknowns and equations in units of their scales the borders are the left and the right null vector, of unit length.
+    """
 
     right: np.ndarray
-    left: np.ndarray
+    column: np.ndarray
+    row: np.ndarray
     test: float
+
+
+def sizes_of(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """Typical sizes of a problem's unknowns and equations; 1 where it has natural units."""
+    scales, n = problem.scales, int(problem.dimension)
+    if scales is None or len(scales.unknowns) != n:
+        return np.ones(n), np.ones(n)
+    return np.asarray(scales.unknowns, dtype=float), np.asarray(scales.rows, dtype=float)
 
 
 class Linearisation:
@@ -33,6 +45,7 @@ class Linearisation:
     def __init__(self, problem: Problem) -> None:
         self.problem, self.kernels, self.data = problem, problem.kernels, problem.data
         self.size = int(problem.dimension)
+        self.units, self.rows = sizes_of(problem)
         self.work, self.other = problem.workspace(), problem.workspace()
         column = self.kernels.column
         self.F, self.Q = self.work[0].reshape(-1), self.work[column].reshape(-1)
@@ -80,23 +93,28 @@ class Linearisation:
 
         ``near`` are those of a neighbour.
         """
-        sweeps, g = 1, np.nan
+        sweeps = 1
         if near is None:
             sweeps = SWEEPS
             v, w = np.random.default_rng(5).standard_normal((2, self.size)) / np.sqrt(self.size)
+            b, c = self.rows * w, v / self.units
         else:
-            v, w = near.right, near.left
+            b, c = near.column, near.row
         if flipped:
             self.flip(-1.0)
         for _ in range(sweeps):
-            v, g = self.null(w, v)
-            v /= np.linalg.norm(v)
-            w, _ = self.left(w, v)
-            w /= np.linalg.norm(w)
-        v, g = self.null(w, v)
+            c = self.border_of(self.null(b, c)[0])
+            w = self.left(b, c)[0] * self.rows
+            b = self.rows * (w / np.linalg.norm(w))
+        v, g = self.null(b, c)
         if flipped:
             self.again()
-        return Null(v / np.linalg.norm(v), w, g)
+        return Null(v / np.linalg.norm(v / self.units), b, c, g)
+
+    def border_of(self, direction: np.ndarray) -> np.ndarray:
+        """The row along a direction of the unknowns, of unit length in units of their scales."""
+        scaled = direction / self.units
+        return scaled / np.linalg.norm(scaled) / self.units
 
     def row(self) -> np.ndarray:
         """Multipliers as (re, im) pairs, then margins."""

@@ -80,7 +80,8 @@ class Locus:
     @property
     def values(self) -> np.ndarray:
         """(p, q) of the points, shape (n, 2)."""
-        return np.column_stack([self.branch.points[:, self.size], self.branch.values])
+        unit = self.branch.description.get("unit", 1.0)
+        return np.column_stack([unit * self.branch.points[:, self.size], self.branch.values])
 
     @property
     def ended(self) -> tuple[str, str]:
@@ -107,7 +108,7 @@ class Locus:
             guess = (1.0 - share) * self.branch.points[i] + share * self.branch.points[i + 1]
             point = engine.at_value(guess, value)
             if point is not None:
-                found.append(float(point.u[self.size]))
+                found.append(float(self.problem.split(point.u)[1]))
         kept: list[float] = []
         for p in sorted(found):
             if not kept or p - kept[-1] > 1e-10 * (1.0 + abs(p)):

@@ -104,15 +104,14 @@ class Plane:
             F = 0 is asked for up to one multiple of the left null vector.
         """
         u, p, q = np.array(guess.u), guess.p, guess.q
-        widths = [max(abs(p), self._width(p)), max(abs(q), 1e-3)]
-        scale = np.append(1.0 + np.abs(u), widths)
+        scale = self.locus.sizes_at(u, p, q)
         last = np.inf
         for _ in range(12):
             if not self.at(Place(u, p, q)) < 1e300:
                 return None
             line, second = self.first, self.second
             null = line.null_vectors()
-            b, c = null.left, null.right
+            b, c = null.column, null.row
             sides = (-line.residual, -line.slope, -second.slope)
             solved = [line.solve(side, b, c) for side in sides]
             v, g = line.null(b, c)
@@ -147,10 +146,6 @@ class Plane:
         if far.max() > reach or not self.at(Place(u, p, q)) < 1e-6:
             return None
         return Place(u, p, q), last
-
-    def _width(self, p: float) -> float:
-        low, high = self.locus.bounds
-        return high - low if np.isfinite(high - low) else max(abs(p), 1e-3)
 
     def _slope(
         self,

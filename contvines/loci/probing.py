@@ -33,6 +33,7 @@ from .layout import (
     TRIAL,
     TRIAL_F,
     TRIAL_Q,
+    UNIT,
     VALUES,
     WHICH,
     B,
@@ -121,7 +122,7 @@ def tests(data, work, u, p, q, values):
         )
     elif kind == BRANCH:
         for i in range(n):
-            F[i] = Q[i]
+            F[i] = data[UNIT] * Q[i]
             Q[i] = borders[B, i]
             lines[0, i] = borders[C, i]
         lines[0, n] = 0.0
@@ -144,7 +145,7 @@ def slopes_along(data, work, direction, slopes):
     point, scales, shifted, values = work[POINT], work[SCALES], work[SHIFTED], work[VALUES]
     n, last = work[BASE_F].shape[0], point.shape[0] - 1
     count = last - n
-    length = abs(direction[last]) / scales[last]
+    length = abs(direction[last]) / max(scales[last], abs(point[last]))
     for i in range(n + 1):
         length = max(length, abs(direction[i]) / max(scales[i], abs(point[i])))
     if not length > 1e-14:
@@ -155,6 +156,6 @@ def slopes_along(data, work, direction, slopes):
     for i in range(n + 1):
         shifted[i] = point[i] + h * direction[i]
     q = point[last] + h * direction[last]
-    tests(data, work, shifted[:n], shifted[n], q, slopes)
+    tests(data, work, shifted[:n], data[UNIT] * shifted[n], q, slopes)
     for k in range(count):
         slopes[k] = (slopes[k] - values[k]) / h

@@ -12,6 +12,10 @@ from .binding import locus_kernels
 from .kinds import condition
 from .layout import BRANCH, FLIP, MARGIN, PAIR
 
+LEAST = (
+    1e-6  # of its interval: a second parameter that starts closer to zero than this says nothing of its size
+)
+FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
 UNSEEN = 1e-12  # typical sizes below this part of the largest one are those of zeros
 
 
@@ -39,6 +43,7 @@ class Work(NamedTuple):
     reference: np.ndarray
     small: np.ndarray
     masked: np.ndarray
+    rows: np.ndarray
 
 
 class LocusProblem(ProblemDefaults):
@@ -64,6 +69,8 @@ class LocusProblem(ProblemDefaults):
         Position of the pair of multipliers; see ``pair_of``.
     masked : sequence of int
         Margins that are zero all along the locus, as those of a border are.
+    unit : float
+        In which the first parameter is counted among the unknowns.
 
     Raises
     ------
@@ -83,6 +90,7 @@ class LocusProblem(ProblemDefaults):
         borders: np.ndarray | None = None,
         reference: float = 0.0,
         masked: Sequence[int] = (),
+        unit: float = 1.0,
     ) -> None:
         kernels = problem.kernels
         names = list(problem.parameters)
@@ -119,6 +127,9 @@ class LocusProblem(ProblemDefaults):
         self.bounds = (float(bounds[0]), float(bounds[1]))
         self.reference = float(reference)
         self.masked = tuple(int(j) for j in masked)
+        self.unit = float(unit)
+        # typical sizes of unknowns, both parameters, and equations; workspaces look at these arrays
+        self.sizes, self.rows = np.ones(self.size + 3), np.ones(self.size)
         self.borders = self._fresh_borders() if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
@@ -133,6 +144,7 @@ class LocusProblem(ProblemDefaults):
             self.index,
             self.n_multipliers,
             problem.spectrum == "flow",
+            self.unit,
         )
         shift = problem.period_shift
         if shift is not None and np.any(shift):
@@ -157,7 +169,6 @@ class LocusProblem(ProblemDefaults):
         base, trial = self.first.workspace(), self.first.workspace()
         column = problem.kernels.column
         tests = self.dimension - n
-        scales = np.ones(n + 3)
         return Work(
             residual=np.zeros(self.dimension),
             base=self._place(base),
@@ -173,32 +184,60 @@ class LocusProblem(ProblemDefaults):
             borders=self.borders.copy(),
             row=np.zeros(2 * problem.n_multipliers + problem.n_margins),
             shifted=np.zeros(n + 1),
-            scales=scales,
+            scales=self.sizes,
             values=np.zeros(max(tests, 2)),
             slopes=np.zeros(max(tests, 2)),
             lines=np.zeros((2, n + 1)),
-            reference=np.array([self.reference, 0.0, 0.0, *self.bounds]),
+            reference=np.array([self.reference, 0.0, 0.0, *(bound / self.unit for bound in self.bounds)]),
             small=np.zeros((3, 5)),
             masked=np.array(self.masked, np.int64).reshape(-1),
+            rows=self.rows,
         )
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
         scale = np.ones(self.dimension + 1)
-        if self.compiled:
-            return scale
-        if np.isfinite(self.bounds).all():
-            typical = self.base.scale_within(self.bounds)
-            largest = float(typical[:-1].max())
-            # an unknown that is zero all along the branch has shown no size of its own
-            scale[: self.size] = np.where(typical[:-1] < UNSEEN * largest, largest, typical[:-1])
-            scale[self.size] = typical[-1]
+        if not self.compiled:
+            scales = self.base.scales
+            if scales is None and np.isfinite(self.bounds).all():
+                self.base.scale_within(self.bounds)
+                scales = self.base.scales
+            if scales is not None:
+                largest = float(scales.unknowns.max())
+                # an unknown that is zero all along the branch has shown no size of its own
+                own = np.where(scales.unknowns < UNSEEN * largest, largest, scales.unknowns)
+                if (
+                    self.base.scales_learned
+                ):  # a locus goes further: as far as the second parameter alone moves the motion
+                    moved = self.second.scale_within(within)[:-1]
+                    own = np.maximum(own, np.minimum(moved, FURTHER * own))
+                scale[: self.size], scale[self.size] = own, scales.parameter
+                self.rows[:] = scales.rows
+            scale[-1] = self._size_of_second(within)
+        self.sizes[: self.size + 1] = scale[: self.size + 1]
+        self.sizes[self.dimension] = self._size_of_second(within)
         return scale
+
+    def _size_of_second(self, within: tuple[float, float]) -> float:
+        """Of the second parameter: what it is at the start, or the interval where that says little."""
+        width, start = within[1] - within[0], abs(self.base.parameters[self.over])
+        return min(width, start) if start > LEAST * width else width
+
+    def sizes_at(self, u: np.ndarray, p: float, q: float) -> np.ndarray:
+        """What changes of (u, p, q) are compared with near a place."""
+        own = np.append(
+            self.sizes[: self.size], [self.unit * self.sizes[self.size], self.sizes[self.dimension]]
+        )
+        return np.maximum(own, np.abs(np.append(u, [p, q])))
 
     # ------------------------------------------------------------------ what a solution is
     def split(self, U: np.ndarray) -> tuple[np.ndarray, Any]:
         """(u, p) of a solution."""
-        return np.asarray(U[..., : self.size]), U[..., self.size]
+        return np.asarray(U[..., : self.size]), self.unit * U[..., self.size]
+
+    def joined(self, u: np.ndarray, p: float) -> np.ndarray:
+        """The unknowns of a special point."""
+        return np.concatenate([u, [p / self.unit], np.zeros(self.dimension - self.size - 1)])
 
     def at(self, q: float) -> Any:
         """The problem of the branches at a value of the second parameter."""
@@ -219,7 +258,9 @@ class LocusProblem(ProblemDefaults):
         """Of the special point, with its parameter value."""
         inner, value = self.split(np.asarray(u, dtype=float))
         key, vector = self.base.canonical(inner, float(value))
-        return (self.kind, self.index if self.condition == MARGIN else 0, key), np.append(vector, value)
+        return (self.kind, self.index if self.condition == MARGIN else 0, key), np.append(
+            vector, value / self.unit
+        )
 
     @property
     def measure_names(self) -> tuple[str, ...]:
@@ -257,6 +298,7 @@ class LocusProblem(ProblemDefaults):
             "bounds": list(self.bounds),
             "reference": self.reference,
             "masked": list(self.masked),
+            **({"unit": self.unit} if self.unit != 1.0 else {}),
             "borders": self.borders.tolist(),
             "problem": about,
             "factory": "contvines.loci.problem:from_description" if about.get("factory") else None,
@@ -280,4 +322,5 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Loc
         np.array(description["borders"]),
         description["reference"],
         description["masked"],
+        description.get("unit", 1.0),
     )

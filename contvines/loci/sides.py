@@ -14,9 +14,10 @@ STEP = 1e-6  # along the motions, relative to the parameter and to each unknown
 
 def impossible_side(problem: LocusProblem, branch: Branch) -> int:
     """On which side of a border, in the plane (q, p), its margin is negative."""
-    i, n = len(branch) // 2, problem.size
+    i = len(branch) // 2
     at = problem.at(float(branch.values[i]))
-    u, p = branch.points[i, :n], float(branch.points[i, n])
+    u, p = problem.split(branch.points[i])
+    p = float(p)
     line = Linearisation(at)
     place = 2 * int(at.n_multipliers) + problem.index
     line.at(u, p)
@@ -24,11 +25,12 @@ def impossible_side(problem: LocusProblem, branch: Branch) -> int:
     null = line.null_vectors()
     if abs(null.test) < SINGULAR:
         return 0
-    b, c = null.left, null.right
+    b, c = null.column, null.row
     x, s = line.solve(-line.slope, b, c)
     v, g = line.null(b, c)
     direction = x - (s / g) * v  # du/dp along the motions themselves
-    step = STEP * min(1.0 + abs(p), float((1.0 + np.abs(u)).min() / max(np.abs(direction).max(), 1e-300)))
+    sizes = problem.sizes_at(u, p, float(branch.values[i]))
+    step = STEP * min(float(sizes[-2]), 1.0 / max(float((np.abs(direction) / sizes[:-2]).max()), 1e-300))
     line.at(u + step * direction, p + step)
     rise = line.row()[place] - start
     along = branch.tangents[i]

@@ -19,6 +19,7 @@ from .problem import LocusProblem
 
 ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
 MET = 1e-7  # margins below this are those of a border that is met from its other side
+PLAIN = 16.0  # parameters up to this size, and down to its inverse, are counted as they are
 SINGULAR = 1e-9  # a test below this: the equations are singular
 
 
@@ -50,20 +51,20 @@ def begin(
     wanted = condition(problem, kind)
     if wanted == MARGIN:
         index = problem.smooth_margin(index)
-    locus = LocusProblem(problem, kind, over, index, bounds)
+    locus = LocusProblem(problem, kind, over, index, bounds, unit=unit_of(problem, bounds, p))
     line = Linearisation(problem)
     line.at(u, p)
     n = locus.size
     null = line.null_vectors()
     if wanted in (FOLD, BRANCH):
-        locus.borders[0, :n], locus.borders[1, :n] = null.left, null.right
+        locus.borders[0, :n], locus.borders[1, :n] = null.column, null.row
     else:  # a regular matrix: any borders that are not special
-        b = np.random.default_rng(6).standard_normal(n) / np.sqrt(n)
-        v, _ = line.null(b, null.right)
-        locus.borders[0, :n], locus.borders[1, :n] = b, v / np.linalg.norm(v)
+        b = line.rows * (np.random.default_rng(6).standard_normal(n) / np.sqrt(n))
+        v, _ = line.null(b, null.row)
+        locus.borders[0, :n], locus.borders[1, :n] = b, line.border_of(v)
     if wanted == FLIP:
         null = line.null_vectors(flipped=True)
-        locus.borders[2, :n], locus.borders[3, :n] = null.left, null.right
+        locus.borders[2, :n], locus.borders[3, :n] = null.column, null.row
     if wanted == MARGIN:
         margins = line.row()[2 * int(problem.n_multipliers) :]
         locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < ZERO)) or (index,)
@@ -74,6 +75,14 @@ def begin(
         pair_of(row, int(problem.n_multipliers), problem.spectrum == "flow", nearest, found)
         locus.reference = float(found[1])
     return locus
+
+
+def unit_of(problem: Problem, bounds: tuple[float, float], p: float) -> float:
+    """The unit of the first parameter as an unknown among those of a machine: 1, or a power of two where it is of another order."""
+    if not problem.kernels.compiled:
+        return 1.0  # all unknowns have scales of their own
+    size = max(map(abs, bounds)) if np.isfinite(bounds).all() else abs(p)
+    return 1.0 if size == 0.0 or 1.0 / PLAIN <= size <= PLAIN else 2.0 ** round(np.log2(size))
 
 
 def regular_side(point: SpecialPoint) -> SpecialPoint:
@@ -125,7 +134,7 @@ def first_point(
 ) -> tuple[Engine, Solved | None]:
     """An engine for the locus and the solved special point; None if it does not converge or is another one."""
     engine = Engine(locus, within, settings)
-    U = np.concatenate([u, [p], np.zeros(locus.dimension - locus.size - 1)])
+    U = locus.joined(u, p)
     found = engine.start(U, float(q))
     if found is None:
         return engine, None

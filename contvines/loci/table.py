@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import html
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..graph.shortening import short_word
-from ..graph.table import Table, terminal_width
+from ..graph.table import size_of
+from ..number_text import number_text
+from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
     from .chart import Chart
@@ -23,7 +25,7 @@ def table(chart: Chart, width: int | None = None) -> str:
     width : int, optional
         Characters to a line; None: as many as it takes.
     """
-    lines = [_title(chart)]
+    lines = [fitted(_title(chart), width) if width else _title(chart)]
     for part in _tables(chart):
         lines += ["", *part.lines(width)]
     if chart.message not in ("", "finished"):
@@ -51,13 +53,22 @@ def _title(chart: Chart) -> str:
 def _tables(chart: Chart) -> list[Table]:
     """Loci, then points and regions where there are any."""
     p, q = chart.parameters
+    sizes = [size_of(within) for within in chart.within]
+
+    def across(locus: Locus, which: int) -> str:
+        ends = locus.values[:, which].min(), locus.values[:, which].max()
+        return "..".join(number_text(end, 6, sizes[which]) for end in ends)
+
+    def at(value: Any, which: int, digits: int) -> str:
+        return number_text(value[which], digits, sizes[which])
+
     loci = [
         (
             locus.label,
             locus.kind + _realness(locus),
             short_word(str(locus.branch.description.get("word") or "")),
-            f"{locus.values[:, 1].min():.6g}..{locus.values[:, 1].max():.6g}",
-            f"{locus.values[:, 0].min():.6g}..{locus.values[:, 0].max():.6g}",
+            across(locus, 1),
+            across(locus, 0),
             str(len(locus)),
             "closed" if locus.closed else "; ".join(dict.fromkeys(locus.ended)),
         )
@@ -68,8 +79,8 @@ def _tables(chart: Chart) -> list[Table]:
         (
             point.label,
             point.kind,
-            f"{point.value[1]:.12g}",
-            f"{point.value[0]:.12g}",
+            at(point.value, 1, 12),
+            at(point.value, 0, 12),
             ", ".join(point.on),
             _notes(point),
         )
@@ -77,8 +88,8 @@ def _tables(chart: Chart) -> list[Table]:
     ]
     regions = [
         (
-            f"{region.at[1]:.4g}",
-            f"{region.at[0]:.4g}",
+            at(region.at, 1, 4),
+            at(region.at, 0, 4),
             f"{100.0 * region.share:.1f} %",
             ", ".join(map(short_word, region.words)) or "-",
         )
@@ -94,7 +105,7 @@ def _realness(locus: Locus) -> str:
 
 
 def _notes(point: PlanePoint) -> str:
-    parts = [f"{name} = {value:.6g}" for name, value in point.coefficients.items()]
+    parts = [f"{name} = {number_text(value, 6)}" for name, value in point.coefficients.items()]
     if not point.real:
         parts.append("virtual")
     return ", ".join([*parts, point.note] if point.note else parts)

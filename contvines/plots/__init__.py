@@ -3,14 +3,21 @@
 from importlib import import_module
 
 _HOMES = {
+    "plot_atlas": "contvines.plots.atlas",
+    "plot_basins": "contvines.plots.basins",
+    "plot_chart": "contvines.plots.chart",
+    "plot_circles": "contvines.plots.circles",
     "plot_diagram": "contvines.plots.diagram",
+    "plot_erosion": "contvines.plots.erosion",
     "plot_multipliers": "contvines.plots.multipliers",
     "plot_network": "contvines.plots.network",
     "plot_portrait": "contvines.plots.portrait",
+    "plot_survey": "contvines.plots.survey",
+    "plot_sweep": "contvines.plots.sweep",
     "save_figure": "contvines.plots.figures",
 }
 
-__all__ = ["plot_diagram", "plot_multipliers", "plot_network", "plot_portrait", "save_figure"]
+__all__ = [*_HOMES]
 
 
 def __getattr__(name: str):

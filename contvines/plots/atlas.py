@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..graph.shortening import short_word
 from .basins import COLORS
-from .diagram import plot_diagram
-from .figures import freeze, new_figure, settle, styled
+from .diagram import draw_diagram
+from .figures import freeze, new_figure, settle, styled, thin_ticks
+from .legends import NARROW, draw_legend, place_legend
 from .picture import lay_out_again
 from .style import axis_label
 
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
 
     from ..graph.graph import Graph
 
-MOST = 8  # words with a colour of their own; the rest share one
+MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one
+LOW = 3.4  # inches
 
 
 def plot_atlas(
@@ -28,6 +30,8 @@ def plot_atlas(
     x: str | None = None,
     y: str | None = None,
     *,
+    axes: Sequence[Axes] | None = None,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
     **options: Any,
@@ -39,47 +43,84 @@ def plot_atlas(
     graph : Graph
         With ``attractors``.
     x, y, options
-        As for :func:`contvines.plots.diagram.plot_diagram`.
+        As for :func:`contvines.plots.diagram.plot_diagram`; x is the parameter of the shares, too.
+    axes : two Axes, optional
+        Drawn on, the diagram on the first; without, a new figure of `figsize` inches. A small one has no key of the diagram.
+    legend : bool or str
+        Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`, for both panels.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
 
     Raises
     ------
     ValueError
-        If the graph has no attractors.
+        If the graph has no attractors, or `axes` are not two.
     """
     if not graph.attractors:
         raise ValueError("the graph has no attractors: contvines atlas makes one with, from a study")
+    if axes is not None and len(np.atleast_1d(np.asarray(axes, dtype=object))) != 2:
+        raise ValueError("axes: an atlas needs two axes, for example plt.subplots(2, 1)[1]")
     with styled(style):
-        figure = new_figure(figsize=figsize or (7.2, 6.4))
-        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1))
-        plot_diagram(graph, x, y, axes=upper, style=style, **options)
-        upper.set_xlabel("")
-        upper.tick_params(labelbottom=False)
-        draw_shares(lower, graph)
+        own = axes is None
+        if axes is None:
+            size = figsize or (7.2, 6.4)
+            figure = new_figure(figsize=size)
+            upper, lower = figure.subplots(
+                2, 1, sharex=True, height_ratios=(2.4, 1) if size[1] > LOW else (1.8, 1)
+            )
+        else:
+            upper, lower = axes
+            figure: Any = upper.get_figure(root=True)
+        small = own and figure.get_size_inches()[1] < LOW
+        picture = draw_diagram(upper, graph, x, y, own=False, legend=False, **options)
+        if own:
+            upper.set_xlabel("")
+            upper.tick_params(labelbottom=False)
+        draw_shares(lower, graph, FEW if small else MOST)
         lower.set_xlabel(axis_label(graph.parameter, unit=graph.units.get(graph.parameter)))
+        if small and len(lower.get_ylabel()) > 8:
+            lower.set_ylabel("share")
+        # a high figure has both keys; they stand below one another where there is no room beside the panels
+        handles = lower.get_legend_handles_labels()[0]
+        if own and not small and figure.get_size_inches()[0] < NARROW:
+            place_legend(lower, [*picture.key.handles(), *handles], legend, own, remarks=picture.key.remarks)
+        else:
+            if not small:
+                draw_legend(upper, picture.key, legend, own, picture.obstacles())
+            place_legend(lower, handles, legend, own, usual="beside")
         settle(figure)
-        freeze(figure)
+        if own:
+            thin_ticks(upper, lower)
+            freeze(figure)
         lay_out_again(upper)
     return figure
 
 
-def draw_shares(axes: Axes, graph: Graph) -> None:
-    """Bars at each value of the parameter, stacked: the shares of the motions, each with one colour."""
+def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
+    """Bars over the values of the parameter, stacked: the shares of the motions, the `most` largest with a colour each.
+
+    Neighbouring values with few starts are one bar, so that each stands for as many starts as were simulated anywhere.
+    """
     values = np.array(sorted({a.value for a in graph.attractors}))
     low, high = graph.within
-    edges = np.concatenate([[low], 0.5 * (values[1:] + values[:-1]), [high]])
+    group, starts = _grouped(graph, values)
+    last = np.flatnonzero(np.diff(group))
+    edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
+    weights = starts / np.bincount(group, weights=starts)[group]
     names: dict[tuple[str, int], float] = {}
     for about in graph.attractors:
         key = (about.name, about.periods)
         names[key] = names.get(key, 0.0) + about.share
-    shown = sorted(names, key=lambda key: -names[key])[:MOST]
+    shown = sorted(names, key=lambda key: -names[key])[:most]
     order = [key for key in names if key in shown]
-    bottoms = np.zeros(len(values))
+    bottoms = np.zeros(len(edges) - 1)
     for k, key in enumerate([*order, None]):
-        heights = np.zeros(len(values))
+        heights = np.zeros(len(edges) - 1)
         for about in graph.attractors:
             own = (about.name, about.periods)
             if own == key or (key is None and own not in shown):
-                heights[np.searchsorted(values, about.value)] += about.share
+                i = int(np.searchsorted(values, about.value))
+                heights[group[i]] += about.share * weights[i]
         if not heights.any():
             continue
         name = "others" if key is None else short_word(key[0], 14)
@@ -93,4 +134,18 @@ def draw_shares(axes: Axes, graph: Graph) -> None:
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel("share of starts")
     axes.grid(False)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+
+
+def _grouped(graph: Graph, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which bar each value belongs to, and how many starts it had, shape (n,) each."""
+    counts = {a.value: max(a.starts, 1) for a in graph.attractors}
+    starts = np.array([counts[float(v)] for v in values], dtype=float)
+    group, bar, filled = np.zeros(len(values), dtype=int), 0, 0.0
+    for i, count in enumerate(starts):
+        if filled >= starts.max():
+            bar, filled = bar + 1, 0.0
+        group[i] = bar
+        filled += count
+    if bar and filled < 0.5 * starts.max():
+        group[group == bar] = bar - 1  # too few for a bar of their own
+    return group, starts

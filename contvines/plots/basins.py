@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..graph.shortening import short_word
-from .figures import new_axes, settle, styled
-from .legends import NARROW
+from ..hints import hinting
+from .diagram import LOW
+from .figures import new_axes, settle, styled, thin_ticks
+from .legends import place_legend
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -27,11 +29,12 @@ START = {
 }
 
 
+@hinting
 def plot_basins(
     basins: Basins,
     *,
     axes: Axes | None = None,
-    legend: bool = True,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
@@ -42,8 +45,8 @@ def plot_basins(
     basins : Basins
     axes : Axes, optional
         Drawn on; without, a new figure of `figsize` inches.
-    legend : bool
-        Name the motions and their shares.
+    legend : bool or str
+        Name the motions and their shares, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
     """
@@ -59,7 +62,9 @@ def plot_basins(
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
     with styled(style):
+        own = axes is None
         figure, axes = new_axes(axes, figsize=figsize)
+        low = own and axes.get_window_extent().height < LOW * figure.dpi
         axes.grid(False)
         half_x, half_y = (0.5 * (v[1] - v[0]) for v in (basins.x, basins.y))
         extent = (basins.x[0] - half_x, basins.x[-1] + half_x, basins.y[0] - half_y, basins.y[-1] + half_y)
@@ -67,12 +72,12 @@ def plot_basins(
         for curve in basins.manifolds:
             axes.plot(*curve.points.T, color="black", linewidth=0.8)
         axes.set_xlim(extent[:2])
-        axes.locator_params(axis="x", nbins=5)
         axes.set_ylim(extent[2:])
         if basins.axes[0] == "w":
             axes.invert_xaxis()  # w = +1 is the left wall, and stands on the left
-        axes.set_xlabel(START.get(basins.axes[0], axis_label(basins.axes[0])))
-        axes.set_ylabel(START.get(basins.axes[1], axis_label(basins.axes[1])))
+        across, up = (START.get(name, axis_label(name)) for name in basins.axes)
+        axes.set_xlabel(across)
+        axes.set_ylabel(up.removesuffix(" of the start") if low else up)
         axes.set_title(f"{basins.parameter} = {basins.value:.8g}")
         if legend:
             entries = []
@@ -87,12 +92,8 @@ def plot_basins(
                 entries.append(
                     Line2D([], [], color="black", linewidth=0.8, label=f"manifolds of {', '.join(words)}")
                 )
-            narrow = figure.get_size_inches()[0] < NARROW
-            place = "outside lower center" if narrow else "outside right upper"
-            options: dict[str, Any] = {"loc": place, "ncols": 2 if narrow else 1, "frameon": False}
-            if figure.axes == [axes] and figure.get_layout_engine() is not None:
-                figure.legend(handles=entries, **options)
-            else:
-                axes.legend(handles=entries)
+            place_legend(axes, entries, legend, own, usual="beside")
         settle(figure)
+        if own:
+            thin_ticks(axes)
     return figure

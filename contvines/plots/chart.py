@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .figures import freeze, new_axes, scale, settle, styled
+from ..hints import hinting
+from .figures import freeze, new_axes, settle, styled, thin_ticks
 from .labels import Label, grouped, place_labels
+from .legends import hold_legend, place_legend
 from .style import MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
@@ -40,12 +42,13 @@ LOW = 2.6  # inches: lower axes have the symbol of a parameter alone at their si
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
 
 
+@hinting
 def plot_chart(
     chart: Chart,
     axes: Any = None,
     labels: bool = True,
     names: bool = True,
-    legend: bool = True,
+    legend: bool | str = True,
     style: str | Mapping[str, Any] | None = None,
     **options: Any,
 ) -> Figure:
@@ -59,8 +62,9 @@ def plot_chart(
         Write the labels of the points of codimension two.
     names : bool
         Write into each region what is stable there.
-    legend : bool
-        Say what the lines are: below a new figure, inside given axes.
+    legend : bool or str
+        Say what the lines are: below a new figure, inside given axes; or where, as in
+        :func:`contvines.plots.diagram.plot_diagram`.
     style : str or mapping, optional
         As for :func:`contvines.plots.figures.styled`.
     **options
@@ -95,17 +99,19 @@ def plot_chart(
             )
         axes.set_xlabel(axis_label(q, unit=chart.units.get(q)))
         axes.set_ylabel(axis_label(p, unit=chart.units.get(p)))
-        if own and legend:
-            _legend_below(figure, list(handles.values()))
+        inside = legend == "inside" or (legend is True and not own)
+        if not inside:
+            place_legend(axes, list(handles.values()), legend, own, usual="below")
         settle(figure)
         if own and axes.get_window_extent().height < LOW * figure.dpi:
             axes.set_ylabel(axis_label(p, short=True, unit=chart.units.get(p)))
             settle(figure)
         settle(figure)  # the labels of the axes have their size by now
         if own:
+            thin_ticks(axes)
             freeze(figure)
-        boxes = _name(axes, chart) if names else []
-        if legend and handles and not own:
+        boxes = [*hold_legend(axes), *(_name(axes, chart) if names else [])]
+        if inside and handles:
             boxes.append(_legend_inside(axes, list(handles.values()), boxes))
         if labels:
             _label(axes, chart, boxes)
@@ -120,24 +126,6 @@ def _legend_inside(axes: Any, handles: list[Any], names: list[Any]) -> tuple[flo
         if not any(box.x0 < x1 and x0 < box.x1 and box.y0 < y1 and y0 < box.y1 for x0, y0, x1, y1 in names):
             break
     return box.x0, box.y0, box.x1, box.y1
-
-
-def _legend_below(figure: Figure, handles: list[Any]) -> None:
-    """Below the axes of a figure of ours, in as many columns as fit."""
-    if not handles:
-        return
-    columns = max(1, min(len(handles), int(figure.get_size_inches()[0] / (1.55 * scale(figure)))))
-    options: dict[str, Any] = {"loc": "outside lower center"}  # a place that the stubs do not know
-    figure.legend(
-        handles=handles,
-        ncols=columns,
-        frameon=False,
-        handlelength=1.6,
-        columnspacing=1.0,
-        labelspacing=0.25,
-        borderpad=0.0,
-        **options,
-    )
 
 
 def _look(locus: Locus) -> dict[str, Any]:

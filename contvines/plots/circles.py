@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .figures import new_axes, styled
+from ..hints import hinting
+from .figures import new_figure, settle, styled, thin_ticks
+from .legends import place_legend
+from .style import axis_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..circles.circle import Circles
+
+
+NARROW, LOW = 5.0, 3.4  # inches: below, panels stand under one another, or the section stands alone
 
 
 def _roundest(circles: Circles) -> tuple[str, ...]:
@@ -26,11 +33,15 @@ def _roundest(circles: Circles) -> tuple[str, ...]:
     return circles.names[i], circles.names[j]
 
 
+@hinting
 def plot_circles(
     circles: Circles,
     coordinates: tuple[str, str] | None = None,
+    *,
+    axes: Axes | Sequence[Axes] | None = None,
+    legend: bool | str = True,
+    figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
-    **options: Any,
 ) -> Figure:
     """Draw the circles beside a Neimark-Sacker point.
 
@@ -39,10 +50,13 @@ def plot_circles(
     circles : Circles
     coordinates : (str, str), optional
         Which coordinates of the section are drawn across and upright; by default those in which the circles look most like circles.
+    axes : Axes or three of them, optional
+        Drawn on: one has the section, three have section, radius and turns. Without, a new figure of `figsize` inches; a
+        small one has the section alone.
+    legend : bool or str
+        Say what the lines of the radius are, or where: a place that matplotlib knows.
     style : str or mapping, optional
         As for :func:`contvines.plots.figures.styled`.
-    **options
-        For the new figure (``figsize``).
 
     Returns
     -------
@@ -51,7 +65,7 @@ def plot_circles(
     Raises
     ------
     ValueError
-        If the section has no such coordinate, or fewer than two of them.
+        If the section has no such coordinate, or fewer than two of them, or if there are two axes.
     """
     names = circles.names
     wanted = _roundest(circles) if coordinates is None else coordinates
@@ -62,40 +76,61 @@ def plot_circles(
         raise ValueError("coordinates: give two names")
     i, j = (names.index(name) for name in wanted)
     with styled(style):
-        figure, frame = new_axes(None, **{"figsize": (8.2, 3.9), **options})
-        frame.remove()
-        from matplotlib import colormaps
-
-        grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
-        section = figure.add_subplot(grid[:, 0])
-        radius = figure.add_subplot(grid[0, 1])
-        rotation = figure.add_subplot(grid[1, 1], sharex=radius)
-        colors = colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
-        phases = np.linspace(0.0, 2.0 * np.pi, 361)
-        for circle, color in zip(circles.circles, colors):
-            x = circle.at(phases)
-            section.plot(
-                x[:, i],
-                x[:, j],
-                color=color,
-                linewidth=0.9,
-                linestyle="--" if circle.stable is False else "-",
-            )
-        section.plot(circles.centre[i], circles.centre[j], "k+", markersize=7)
-        section.set_xlabel(wanted[0])
-        section.set_ylabel(wanted[1])
-        values = np.append(circles.value, circles.values)
-        solid = np.append(0.0, circles.radius)
-        predicted = np.append(0.0, [circle.predicted for circle in circles.circles])
-        radius.plot(values, solid, ".-", color="#0b3c6f", markersize=4, label="circle")
-        radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
-        radius.set_ylabel("radius")
-        radius.legend(fontsize="x-small")
-        radius.tick_params(labelbottom=False)
-        rotation.plot(
-            values, np.append(circles.rotation, circles.rotations), ".-", color="#7c3aed", markersize=4
-        )
-        rotation.set_ylabel("turns per period")
-        rotation.set_xlabel(circles.parameter)
-        figure.set_layout_engine("constrained")
+        figure, panels = _panels(axes, figsize)
+        _section(panels[0], circles, (i, j))
+        if len(panels) == 3:
+            _sizes(panels[1], panels[2], circles, legend)
+        if axes is None:
+            settle(figure)
+            thin_ticks(*panels)
     return figure
+
+
+def _panels(axes: Any, figsize: tuple[float, float] | None) -> tuple[Figure, list[Axes]]:
+    """The axes given, or a new figure's: the section on the left, or above; alone in a small figure."""
+    if axes is not None:
+        given = list(np.atleast_1d(np.asarray(axes, dtype=object)))
+        if len(given) not in (1, 3):
+            raise ValueError(f"axes: circles are drawn on one or on three, not on {len(given)}")
+        return given[0].get_figure(root=True), given
+    size = figsize or (8.2, 3.9)
+    figure = new_figure(figsize=size)
+    if size[0] < NARROW and size[1] < LOW:
+        return figure, [figure.add_subplot()]
+    if size[0] < NARROW:
+        grid = figure.add_gridspec(3, 1, height_ratios=(2.0, 1.0, 1.0))
+        places = [grid[0, 0], grid[1, 0], grid[2, 0]]
+    else:
+        grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
+        places = [grid[:, 0], grid[0, 1], grid[1, 1]]
+    section, radius = (figure.add_subplot(place) for place in places[:2])
+    rotation = figure.add_subplot(places[2], sharex=radius)
+    radius.tick_params(labelbottom=False)
+    return figure, [section, radius, rotation]
+
+
+def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
+    """The circles once per period, later ones lighter; repelling ones dashed."""
+    from matplotlib import colormaps
+
+    colors = colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
+    phases = np.linspace(0.0, 2.0 * np.pi, 361)
+    for circle, color in zip(circles.circles, colors):
+        x = circle.at(phases)[:, pair]
+        axes.plot(*x.T, color=color, linewidth=0.9, linestyle="--" if circle.stable is False else "-")
+    axes.plot(*(circles.centre[k] for k in pair), "k+", markersize=7)
+    axes.set(xlabel=axis_label(circles.names[pair[0]]), ylabel=axis_label(circles.names[pair[1]]))
+
+
+def _sizes(radius: Axes, rotation: Axes, circles: Circles, legend: bool | str) -> None:
+    """Radius, with what the normal form says, and turns per period against the parameter."""
+    values = np.append(circles.value, circles.values)
+    predicted = np.append(0.0, [circle.predicted for circle in circles.circles])
+    look = {"marker": ".", "markersize": 4}
+    radius.plot(values, np.append(0.0, circles.radius), color="#0b3c6f", label="circle", **look)
+    radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
+    radius.set_ylabel("radius")
+    place_legend(radius, radius.get_legend_handles_labels()[0], legend, False)
+    rotation.plot(values, np.append(circles.rotation, circles.rotations), color="#7c3aed", **look)
+    rotation.set_ylabel("turns per period")
+    rotation.set_xlabel(axis_label(circles.parameter))

@@ -6,11 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..graph.measures import default_measure
-from .figures import freeze, new_axes, settle, styled
+from ..hints import hinting
+from .figures import freeze, new_axes, settle, styled, thin_ticks
+from .insets import Region
 from .legends import draw_legend, hold_legend
 from .picture import Picture
 from .style import axis_label
-from .views import frame
+from .views import fit_height, frame
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,6 +24,7 @@ LOW = 2.6  # inches: lower axes have the symbol of a measure alone at their side
 COLORS = ("branch", "word", "stability")
 
 
+@hinting
 def plot_diagram(
     graph: Graph,
     x: str | None = None,
@@ -36,6 +39,7 @@ def plot_diagram(
     name: str | None = None,
     xlim: tuple[float, float] | None = None,
     ylim: tuple[float, float] | None = None,
+    inset: bool | Region | None = None,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
@@ -62,7 +66,11 @@ def plot_diagram(
     name : str, optional
         Put before the labels, to tell graphs on the same axes apart.
     xlim, ylim : (float, float), optional
-        Limits; labels are placed and curves refined for what is seen then, and again when the limits change later.
+        Limits; labels are placed and curves refined for what is seen then, and again when the limits change later. With
+        `xlim` alone the height is that of what is seen.
+    inset : bool or ((float, float), (float, float)), optional
+        Draw the most crowded place, or these limits, once more in a free part of the axes. By default where a figure of
+        ours has a crowded place and room.
     figsize : (float, float), optional
         Inches, of a new figure.
     style : str or mapping, optional
@@ -80,35 +88,82 @@ def plot_diagram(
     if color not in COLORS:
         raise ValueError(f"color = {color!r} is unknown; choose one of {', '.join(COLORS)}")
     _check_labels(graph, labels)
-    x = x or graph.parameter
-    y = y or default_measure(graph)
     own = axes is None
     with styled(style):
         figure, axes = new_axes(axes, figsize=figsize)
-        picture = Picture(axes, graph, x, y, color, name)
-        picture.draw_branches()
-        picture.draw_points(ends)
-        frame(axes, graph, picture.curves, x, y, xlim, ylim)
-        if own or not axes.get_xlabel():
-            axes.set_xlabel(axis_label(x, unit=graph.units.get(x)))
-        if own or not axes.get_ylabel():
-            axes.set_ylabel(
-                axis_label(y, axes.get_window_extent().height < LOW * figure.dpi, graph.units.get(y))
-            )
-        settle(figure)
-        picture.refine()
-        picture.key_of_marks()
-        draw_legend(axes, picture.key, legend, own, picture.obstacles())
-        settle(figure)
-        if own:
-            freeze(figure)
-        taken = hold_legend(axes)
-        if labels is not False:
-            picture.write_labels(labels, words, taken)
-            picture.follow_zoom()
-        if not graph.finished:
-            axes.set_title("unfinished", color="0.4")
+        draw_diagram(
+            axes,
+            graph,
+            x,
+            y,
+            own=own,
+            labels=labels,
+            ends=ends,
+            words=words,
+            color=color,
+            legend=legend,
+            name=name,
+            limits=(xlim, ylim),
+            inset=own if inset is None else inset,
+        )
     return figure
+
+
+def draw_diagram(
+    axes: Axes,
+    graph: Graph,
+    x: str | None = None,
+    y: str | None = None,
+    *,
+    own: bool,
+    labels: bool | Sequence[str] = True,
+    ends: bool = False,
+    words: bool = False,
+    color: str = "branch",
+    legend: bool | str = True,
+    name: str | None = None,
+    limits: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None),
+    inset: bool | Region = False,
+) -> Picture:
+    """Draw a graph on axes, in the style of the moment; `own` says whether their figure is ours to be laid out.
+
+    Parameters
+    ----------
+    limits : the limits across and upright, or None.
+    axes, graph, x, y, own, labels, ends, words, color, legend, name, inset
+        As for :func:`plot_diagram`.
+    """
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    x, y = x or graph.parameter, y or default_measure(graph)
+    picture = Picture(axes, graph, x, y, color, name)
+    picture.draw_branches()
+    picture.draw_points(ends)
+    frame(axes, graph, picture.curves, x, y, *limits)
+    if not axes.get_xlabel():
+        axes.set_xlabel(axis_label(x, unit=graph.units.get(x)))
+    if not axes.get_ylabel():
+        low = axes.get_window_extent().height < LOW * figure.dpi
+        axes.set_ylabel(axis_label(y, low, graph.units.get(y)))
+    settle(figure)
+    picture.refine()
+    if limits[0] is not None and limits[1] is None:
+        fit_height(axes)  # once more: curves between stored points are known now
+        picture.refine()
+    picture.key_of_marks()
+    draw_legend(axes, picture.key, legend, own, picture.obstacles())
+    settle(figure)
+    if own:
+        thin_ticks(axes)
+        freeze(figure)
+    hold_legend(axes)
+    picture.show_inset(inset, words)
+    if labels is not False:
+        picture.write_labels(labels, words, hold_legend(axes))
+        picture.follow_zoom()
+    if not graph.finished:
+        axes.set_title("unfinished", color="0.4")
+    return picture
 
 
 def _check_labels(graph: Graph, labels: bool | Sequence[str]) -> None:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .figures import new_axes, settle, styled
+from ..hints import hinting
+from .figures import new_axes, settle, styled, thin_ticks
+from .legends import place_legend
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -19,11 +21,12 @@ if TYPE_CHECKING:
 KICK, SHARE = "#2a6f97", "#e9a23b"
 
 
+@hinting
 def plot_erosion(
     erosion: Erosion,
     *,
     axes: Axes | None = None,
-    legend: bool = True,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
@@ -34,11 +37,13 @@ def plot_erosion(
     erosion : Erosion
     axes : Axes, optional
         Drawn on; without, a new figure of `figsize` inches.
-    legend : bool
+    legend : bool or str
+        Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
     """
     with styled(style):
+        own = axes is None
         figure, axes = new_axes(axes, figsize=figsize)
         values = erosion.values
         beside = axes.twinx()
@@ -58,10 +63,8 @@ def plot_erosion(
         axes.set_xlabel(axis_label(erosion.parameter))
         axes.set_ylabel("smallest kick")
         axes.set_title(f"{erosion.label}: {erosion.word}" if erosion.word else erosion.label)
-        if legend:
-            if figure.axes == [axes, beside] and figure.get_layout_engine() is not None:
-                figure.legend(handles=[kicks, shares], loc="outside lower center", ncols=2, frameon=False)
-            else:
-                axes.legend(handles=[kicks, shares])
+        place_legend(axes, [kicks, shares], legend, own, usual="below")
         settle(figure)
+        if own:
+            thin_ticks(axes, beside)
     return figure

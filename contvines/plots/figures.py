@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -112,6 +113,39 @@ def settle(figure: Figure) -> None:
     figure.draw_without_rendering()
 
 
+def thin_ticks(*drawn: Axes) -> None:
+    """Fewer ticks where their labels would touch; the figure must have been settled."""
+    from matplotlib.ticker import MaxNLocator
+
+    for axes in drawn:
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        for axis, side in ((axes.xaxis, 0), (axes.yaxis, 1)):
+            for count in (6, 5, 4, 3, 2):
+                if not isinstance(axis.get_major_locator(), MaxNLocator) or not _crowded(axis, side):
+                    break
+                axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
+                settle(figure)
+
+
+def _crowded(axis: Any, side: int) -> bool:
+    """Whether labels of neighbouring ticks are less than a good half of a letter apart."""
+    low, high = sorted(axis.get_view_interval())
+    slack = 1e-9 * (high - low)
+    shown = [
+        tick.label1.get_window_extent()
+        for tick in axis.get_major_ticks()
+        if low - slack <= tick.get_loc() <= high + slack
+        and tick.label1.get_text()
+        and tick.label1.get_visible()
+    ]
+    if len(shown) < 2:
+        return False
+    ends = sorted((box.intervalx if side == 0 else box.intervaly).tolist() for box in shown)
+    room = 0.6 * min(box.height for box in shown) if side == 0 else 0.0
+    return any(after[0] - before[1] < room for before, after in itertools.pairwise(ends))
+
+
 def freeze(figure: Figure) -> None:
     """Leave everything where it is: a figure without a window is not laid out again."""
     if not windows():
@@ -161,6 +195,18 @@ def check_style(style: str | None) -> None:
         raise ValueError(
             f"--style {style}: matplotlib has no such style and there is no such file; it has {shown}."
         )
+
+
+def check_size(size: tuple[float, float] | None) -> None:
+    """Refuse, before any work, inches that are no picture's.
+
+    Raises
+    ------
+    ValueError
+        If a side is not between 1 and 60.
+    """
+    if size is not None and not all(1.0 <= side <= 60.0 for side in size):
+        raise ValueError(f"--size {size[0]:g} {size[1]:g}: give inches between 1 and 60, such as 3.4 2.4.")
 
 
 def check_picture(path: str | Path) -> None:

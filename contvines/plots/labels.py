@@ -71,7 +71,7 @@ def place_labels(
     unit = figure.dpi / 72.0
     frame = axes.bbox
     anchors = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
-    ground = _Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
+    ground = Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
     boxes, leaders, written, left_out = list(taken or ()), [], [], 0
     widths = _widths({label.text for label in labels}, size)
     marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors]
@@ -110,8 +110,8 @@ def place_labels(
     return written, left_out
 
 
-def grouped(axes: Axes, labels: list[Label], near: float = 9.0) -> list[Label]:
-    """One label for those that lie within `near` points of one another on the page; "+n" stands for n more."""
+def grouped(axes: Axes, labels: list[Label], near: float = 9.0, named: int = 3) -> list[Label]:
+    """One label for those that lie within `near` points of one another on the page; above `named`, "+n" stands for n more."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     spots = np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2)
@@ -129,7 +129,8 @@ def grouped(axes: Axes, labels: list[Label], near: float = 9.0) -> list[Label]:
         ranked = sorted(group, key=lambda i: labels[i].rank)
         first = labels[ranked[0]]
         names = list(dict.fromkeys(labels[i].text for i in ranked))
-        text = ", ".join(names) if len(names) <= 3 else f"{', '.join(names[:2])} +{len(names) - 2}"
+        shown = names if len(names) <= named else [*names[: named - 1]]
+        text = ", ".join(shown) + (f" +{len(names) - len(shown)}" if shown != names else "")
         found.append(Label(text, first.x, first.y, first.color, first.rank, first.kept, first.near))
     return found
 
@@ -143,7 +144,7 @@ def _widths(texts: set[str], size: float) -> dict[str, float]:
     return {text: float(measure.get_text_width_height_descent(text, font, False)[0]) for text in texts}
 
 
-class _Ground:
+class Ground:
     """How much of a box is covered by curves: sums over a raster of the axes."""
 
     def __init__(self, frame: Any, points: np.ndarray) -> None:
@@ -161,24 +162,38 @@ class _Ground:
     def covered(self, box: Box) -> float:
         """Cells of the raster with a curve in the box."""
         rows, columns = self.sums.shape
-        c0, c1 = (int(np.clip((x - self.x0) / CELL, 0, columns - 1)) for x in (box[0], box[2] + CELL))
-        r0, r1 = (int(np.clip((y - self.y0) / CELL, 0, rows - 1)) for y in (box[1], box[3] + CELL))
+        c0, c1 = (int(min(max((x - self.x0) / CELL, 0), columns - 1)) for x in (box[0], box[2] + CELL))
+        r0, r1 = (int(min(max((y - self.y0) / CELL, 0), rows - 1)) for y in (box[1], box[3] + CELL))
         s = self.sums
         return float(s[r1, c1] - s[r0, c1] - s[r1, c0] + s[r0, c0])
+
+    def free(self, boxes: np.ndarray) -> np.ndarray:
+        """Which boxes, shape (n, 4), have no curve in them."""
+        rows, columns = self.sums.shape
+        c0, c1 = (
+            (np.clip((x - self.x0) / CELL, 0, columns - 1)).astype(int)
+            for x in (boxes[:, 0], boxes[:, 2] + CELL)
+        )
+        r0, r1 = (
+            (np.clip((y - self.y0) / CELL, 0, rows - 1)).astype(int)
+            for y in (boxes[:, 1], boxes[:, 3] + CELL)
+        )
+        s = self.sums
+        return s[r1, c1] - s[r0, c1] - s[r1, c0] + s[r0, c0] == 0.0
 
 
 def _cost(
     box: Box,
     line: Box | None,
     frame: Any,
-    ground: _Ground,
+    ground: Ground,
     boxes: list[Box],
     leaders: list[Box],
     marks: list[Box],
     unit: float,
 ) -> float:
     out = max(frame.x0 - box[0], box[2] - frame.x1, frame.y0 - box[1], box[3] - frame.y1, 0.0)
-    if out > 3 * unit or any(_overlap(box, other) for other in boxes):
+    if out > 0.5 * unit or any(_overlap(box, other) for other in boxes):
         return IMPOSSIBLE
     cost = (
         10 * out / unit + 6 * min(ground.covered(box), 40) + 25 * sum(_overlap(box, mark) for mark in marks)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -52,7 +53,8 @@ class Key:
             }
             found.append(Line2D([], [], linestyle="none", color="0.2", **look))
         if self.proved:
-            found.append(Line2D([], [], linewidth=5.0 * width, label="proved", **PROVED))
+            band = {"linewidth": 4.0 * width, "solid_capstyle": "butt", **PROVED}
+            found.append(Line2D([], [], label="proved", **band))
         found += [Line2D([], [], linestyle="none", label=text) for text in self.remarks]
         return found
 
@@ -64,15 +66,9 @@ def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: n
     ----------
     axes : Axes
     key : Key
-    where : bool or str
-        False: none. True: inside, else where it covers nothing. "inside", "beside", "below", or a place of matplotlib's.
-    own : bool
-        Whether the figure is ours to be laid out.
-    obstacles : float array (n, 2)
-        Data coordinates of what should not be covered.
+    where, own, obstacles
+        As for :func:`place_legend`.
     """
-    if where is False:
-        return
     before = axes.get_legend()
     known = {}
     if before is not None:
@@ -80,26 +76,62 @@ def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: n
             known[text.get_text()] = handle
     for handle in (*key.handles(), *axes.get_legend_handles_labels()[0]):
         known.setdefault(str(handle.get_label()), handle)
-    if not known:
+    place_legend(axes, list(known.values()), where, own, obstacles, remarks=key.remarks)
+
+
+def place_legend(
+    axes: Axes,
+    handles: list[Any],
+    where: bool | str,
+    own: bool,
+    obstacles: np.ndarray | None = None,
+    *,
+    usual: str = "inside",
+    remarks: Sequence[str] = (),
+) -> None:
+    """Write a legend where the user wants it, or where it squeezes and hides nothing.
+
+    Parameters
+    ----------
+    axes : Axes
+    handles : list
+        Artists with labels.
+    where : bool or str
+        False: none. True: the usual place, but below in a narrow figure. "inside", "beside", "below", or a place of matplotlib's.
+    own : bool
+        Whether the figure is ours to be laid out; else True means inside.
+    obstacles : float array (n, 2), optional
+        Data coordinates of what should not be covered, besides the lines of the axes.
+    usual : {"inside", "beside", "below"}
+        What True means in a wide figure of ours; inside gives way to beside where it would cover something.
+    remarks : sequence of str
+        Labels among `handles` that are words alone; below they go to the label of the axis.
+    """
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    if where is False or not handles:
         return
     figure = axes.get_figure(root=True)
     assert figure is not None
-    options: dict[str, Any] = {"handles": list(known.values()), "labels": list(known), "handlelength": 2.4}
+    options: dict[str, Any] = {"handles": handles, "handlelength": 2.4}
     if isinstance(where, str) and where not in PLACES:
-        options["loc"] = where
-        axes.legend(**options)
+        axes.legend(**{**options, "loc": where})
         return
     narrow = figure.get_size_inches()[0] < NARROW
-    if where == "below" or (where is True and narrow and own):
-        _below(figure, axes, key, known)
+    place = where if isinstance(where, str) else ("inside" if not own else "below" if narrow else usual)
+    if place == "below":
+        _below(figure, axes, handles, own, remarks)
         return
     axes.legend(loc="best", **options)
     settle(figure)
-    if where == "beside" or (where is True and own and _covers(axes, obstacles)):
+    if place == "beside" or (where is True and own and _covers(axes, obstacles)):
         legend = axes.get_legend()
         assert legend is not None
         legend.set_loc("upper left")
         legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+        engine = figure.get_layout_engine()
+        if own and isinstance(engine, ConstrainedLayoutEngine):
+            engine.set(w_pad=0.09)  # inches: texts are a little wider at the resolution of a file
         settle(figure)
 
 
@@ -115,42 +147,49 @@ def hold_legend(axes: Axes) -> list[tuple[float, float, float, float]]:
     return [(box.x0, box.y0, box.x1, box.y1)]
 
 
-def _below(figure: Figure, axes: Axes, key: Key, entries: dict[str, Any]) -> None:
+def _below(figure: Figure, axes: Axes, handles: list[Any], own: bool, remarks: Sequence[str]) -> None:
     """Under the axes, small, in as many columns as fit the figure; remarks go to the axis's label."""
     import matplotlib as mpl
     from matplotlib.font_manager import FontProperties
 
-    for remark in key.remarks:
-        entries.pop(remark, None)
+    for remark in remarks:
         axes.set_xlabel(f"{axes.get_xlabel()}\n{remark}")
+    handles = [entry for entry in handles if entry.get_label() not in remarks]
+    if axes.get_legend() is not None:
+        axes.get_legend().remove()  # type: ignore[union-attr]
+    if not handles:
+        return
     size = 0.92 * FontProperties(size=mpl.rcParams["legend.fontsize"]).get_size_in_points()
-    wide = size * (0.54 * max(len(text) for text in entries) + 4.0)
-    columns = int(np.clip(figure.get_size_inches()[0] * 72.0 // wide, 1, len(entries)))
-    old = axes.get_legend()
-    if old is not None:
-        old.remove()
-    options: dict[str, Any] = {"loc": "outside lower center"}  # a place that the stubs do not know
-    figure.legend(
-        handles=list(entries.values()),
-        labels=list(entries),
-        **options,
-        ncols=columns,
-        fontsize=size,
-        handlelength=1.8,
-        handletextpad=0.5,
-        columnspacing=0.9,
-        labelspacing=0.25,
-        borderpad=0.0,
-        frameon=False,
-    )
+    wide = size * (0.54 * max(len(str(entry.get_label())) for entry in handles) + 4.0)
+    room = figure.get_size_inches()[0] * 72.0 if own else axes.get_window_extent().width / figure.dpi * 72.0
+    look: dict[str, Any] = {
+        "handles": handles,
+        "ncols": int(np.clip(room // wide, 1, len(handles))),
+        "fontsize": size,
+        "handlelength": 1.8,
+        "handletextpad": 0.5,
+        "columnspacing": 0.9,
+        "labelspacing": 0.25,
+        "borderpad": 0.0,
+        "frameon": False,
+    }
+    if own:
+        figure.legend(loc="outside lower center", **look)  # type: ignore[arg-type]
+    else:
+        settle(figure)
+        box = axes.xaxis.get_tightbbox()
+        low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
+        gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, gap), borderaxespad=0.0, **look)
     settle(figure)
 
 
-def _covers(axes: Axes, obstacles: np.ndarray) -> bool:
+def _covers(axes: Axes, obstacles: np.ndarray | None) -> bool:
     legend = axes.get_legend()
     if legend is None:
         return False
     box = legend.get_window_extent()
     drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
-    points = axes.transData.transform(np.vstack([obstacles, *drawn, np.empty((0, 2))]))
+    further = np.empty((0, 2)) if obstacles is None else obstacles
+    points = axes.transData.transform(np.vstack([further, *drawn, np.empty((0, 2))]))
     return any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)])

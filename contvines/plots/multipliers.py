@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .figures import new_figure, styled
+from ..hints import hinting
+from .figures import new_figure, settle, styled, thin_ticks
+from .legends import place_legend
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -23,10 +25,12 @@ NARROW = 5.5  # inches: in a narrower figure the two panels stand under one anot
 LOW = 3.4  # inches: a lower narrow figure has no room for the plane
 
 
+@hinting
 def plot_multipliers(
     branch: Branch,
     *,
-    axes: Sequence[Axes] | None = None,
+    axes: Axes | Sequence[Axes] | None = None,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
@@ -38,28 +42,31 @@ def plot_multipliers(
     Parameters
     ----------
     branch : Branch
-    axes : two Axes, optional
-        Drawn on; without, a new figure of `figsize` inches. A small one has the moduli alone.
+    axes : Axes or two of them, optional
+        Drawn on: one has the moduli, two have both. Without, a new figure of `figsize` inches; a small one has the moduli alone.
+    legend : bool or str
+        Whether the curves are named, or where: a place that matplotlib knows.
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
 
     Raises
     ------
     ValueError
-        If the branch has no multipliers, or `axes` are not two.
+        If the branch has no multipliers, or there are more than two `axes`.
     """
     spectrum = np.asarray(branch.multipliers)
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
-    if axes is not None and len(np.atleast_1d(np.asarray(axes, dtype=object))) != 2:
-        raise ValueError("axes: the multipliers need two axes, for example plt.subplots(1, 2)[1]")
+    given = None if axes is None else list(np.atleast_1d(np.asarray(axes, dtype=object)))
+    if given is not None and len(given) > 2:
+        raise ValueError("axes: the multipliers need one or two axes, for example plt.subplots(1, 2)[1]")
     flow = branch.problem is not None and branch.problem.spectrum == "flow"
     with styled(style):
-        if axes is None:
+        right: Any = None
+        if given is None:
             size = figsize or (8.6, 4.0)
             figure = new_figure(figsize=size)
             narrow = size[0] < NARROW
-            right: Axes | None = None
             if narrow and size[1] < LOW:
                 left = figure.add_subplot()  # no room for the plane as well
             elif narrow:
@@ -67,11 +74,14 @@ def plot_multipliers(
             else:
                 left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
         else:
-            left, right = axes
+            left, right = given[0], given[1] if len(given) == 2 else None
             figure: Any = left.get_figure(root=True)
-        _sizes(left, branch, spectrum, flow)
+        _sizes(left, branch, spectrum, flow, legend)
         if right is not None:
             _plane(right, branch, spectrum, flow)
+        if given is None:
+            settle(figure)
+            thin_ticks(*figure.axes)
     return figure
 
 
@@ -80,7 +90,7 @@ def unit_of(branch: Branch) -> str | None:
     return (branch.description.get("units") or {}).get(branch.parameter)
 
 
-def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
+def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend: bool | str) -> None:
     size = np.real(spectrum) if flow else np.abs(spectrum)
     ranked = np.take_along_axis(size, np.argsort(-size, axis=1), axis=1)
     drawn = min(spectrum.shape[1], MOST)
@@ -106,8 +116,8 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
     axes.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
     what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
     figure = axes.get_figure(root=True)
-    if figure is not None and figure.get_size_inches()[0] < NARROW and drawn > 1:
-        look = {
+    if legend is True and figure is not None and figure.get_size_inches()[0] < NARROW and drawn > 1:
+        look: dict[str, Any] = {
             "loc": "lower left",
             "bbox_to_anchor": (0.0, 1.0),
             "ncols": 4,
@@ -118,7 +128,7 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
         return
     axes.set_title(what)
     if drawn > 1:
-        axes.legend(loc="best", handlelength=2.2)
+        place_legend(axes, axes.get_legend_handles_labels()[0], legend, False)
 
 
 def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:

@@ -3,7 +3,10 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..graph.shortening import short_word
+from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:
@@ -13,8 +16,11 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
 
 COLUMNS = 6  # at most, side by side
+ASIDE = 0.42  # columns: how far beside its column a bent arrow runs
+COMPACT = 0.85  # inches for a box and an arrow where boxes have labels alone
 
 
+@hinting
 def plot_network(
     graph: "Graph",
     *,
@@ -37,16 +43,21 @@ def plot_network(
     """
     from matplotlib.patches import FancyArrowPatch
 
-    place = _places(_layers(graph))
+    layers = _layers(graph)
+    place = _places(layers, COLUMNS)
     wide = round(max((px for px, _ in place.values()), default=0.0)) + 1
-    low, top = (edge((py for _, py in place.values()), default=0.0) for edge in (min, max))
-    high = top - low + 1
-    needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * high + 0.6))
+    low, top = _ends(place)
+    needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * (top - low + 1) + 0.6))
     with styled(style):
         figure, axes = new_axes(axes, figsize=figsize or needed)
-        room = axes.get_window_extent().width / figure.dpi / needed[0]
-        compact = room < 0.8 and (figsize is not None or figure.axes != [axes])  # boxes with labels alone
+        inches = axes.get_window_extent().width / figure.dpi
+        # boxes with labels alone, as many side by side as leave room for arrows
+        compact = inches < 0.8 * needed[0] and (figsize is not None or figure.axes != [axes])
         size = 8.0 if not compact else 6.0
+        if compact:
+            place = _places(layers, int(min(COLUMNS, max(2, inches / COMPACT))))
+            wide = round(max((px for px, _ in place.values()), default=0.0)) + 1
+            low, top = _ends(place)
         axes.set_axis_off()
         boxes: dict[str, Any] = {}
         for label, (px, py) in place.items():
@@ -70,7 +81,7 @@ def plot_network(
         if graph.branches:
             told = "grey: partly stable; dotted: virtual"
             axes.set_title(told if compact else f"{told}; arrows: switches at special points", fontsize=size)
-        axes.set_xlim(-0.5, wide - 0.5 + (0.25 if compact else 0.0))
+        axes.set_xlim(-0.5 - (0.15 if compact else 0.0), wide - 0.5 + (0.2 if compact else 0.0))
         axes.set_ylim(low - 0.6, top + 0.6)
         settle(figure)
         if figure.axes == [axes]:
@@ -78,7 +89,7 @@ def plot_network(
         for pair, switches in _pairs(graph).items():
             source, target = pair
             both = len({(s.source, s.target) for s in switches}) > 1
-            bend = _bend(place, source, target)
+            bend = _bend(axes, place, source, target)
             arrow = FancyArrowPatch(
                 place[source],
                 place[target],
@@ -95,11 +106,12 @@ def plot_network(
             (ax, ay), (bx, by) = axes.transData.transform([place[source], place[target]])
             middle = ((ax + bx + bend * (by - ay)) / 2, (ay + by - bend * (bx - ax)) / 2)
             tx, ty = axes.transData.inverted().transform(middle)
+            beside = compact and bend == 0.0 and place[source][0] == place[target][0]  # a short arrow
             axes.text(
-                tx,
+                tx + (0.06 if beside else 0.0),
                 ty,
                 ", ".join(dict.fromkeys(s.point for s in switches)),
-                ha="center",
+                ha="left" if beside else "center",
                 va="center",
                 fontsize=size,
                 bbox={"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"},
@@ -119,7 +131,7 @@ def _pairs(graph: "Graph") -> dict[tuple[str, str], list[Any]]:
     return pairs
 
 
-def _bend(place: dict[str, tuple[float, float]], source: str, target: str) -> float:
+def _bend(axes: "Axes", place: dict[str, tuple[float, float]], source: str, target: str) -> float:
     """Curvature of an arrow: straight, unless it would run behind a box between its ends."""
     (ax, ay), (bx, by) = place[source], place[target]
     for label, (px, py) in place.items():
@@ -133,11 +145,19 @@ def _bend(place: dict[str, tuple[float, float]], source: str, target: str) -> fl
         ):
             if ax != bx:
                 return 0.3
+            # beside its own column, at the edge of the picture if that is near
             outside = 1.0 if ax > 0 and ax == max(x for x, _ in place.values()) else -1.0
-            return (
-                outside * 2.2 / (by - ay)
-            )  # beside its own column, at the edge of the picture if that is near
+            across, up = np.abs(
+                axes.transData.transform((1.0, by - ay)) - axes.transData.transform((0.0, 0.0))
+            )
+            return outside * 2.0 * ASIDE * across / up * (1.0 if by > ay else -1.0)
     return 0.0
+
+
+def _ends(place: dict[str, tuple[float, float]]) -> tuple[float, float]:
+    """The lowest and the highest row."""
+    low, top = (edge((py for _, py in place.values()), default=0.0) for edge in (min, max))
+    return low, top
 
 
 def _layers(graph: "Graph") -> list[list[str]]:
@@ -161,18 +181,18 @@ def _layers(graph: "Graph") -> list[list[str]]:
     return layers
 
 
-def _places(layers: list[list[str]]) -> dict[str, tuple[float, float]]:
-    """Where each box stands: layers as columns, `COLUMNS` of them in a band, the bands below one another."""
+def _places(layers: list[list[str]], columns: int) -> dict[str, tuple[float, float]]:
+    """Where each box stands: layers as columns, so many of them in a band, the bands below one another."""
     place: dict[str, tuple[float, float]] = {}
     middle = 0.0
-    for first in range(0, len(layers), COLUMNS):
-        band = layers[first : first + COLUMNS]
+    for first in range(0, len(layers), columns):
+        band = layers[first : first + columns]
         half = (max(map(len, band)) - 1) / 2
         middle -= half if first else 0.0
-        back = first // COLUMNS % 2 == 1
+        back = first // columns % 2 == 1
         for column, labels in enumerate(band):
             for i, label in enumerate(labels):
-                px = COLUMNS - 1 - column if back else column
+                px = columns - 1 - column if back else column
                 place[label] = (float(px), middle - (i - (len(labels) - 1) / 2))
         middle -= half + 1.0
     return place

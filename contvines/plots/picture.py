@@ -14,6 +14,7 @@ from ..graph.proving import stretches
 from ..graph.shortening import short_word
 from .curves import Curve
 from .figures import scale
+from .insets import Region, add_inset, crowded_region, find_room
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
 from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATES, WIDTHS
@@ -25,6 +26,11 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
 
 TEXT = 0.85  # size of labels in units of font.size
+POINTS, NAMES = (
+    (6.5, 0.3),
+    (3.5, 0.15),
+)  # labels of points and names of branches, and how many more per square inch
+FEW = 4.5  # inches: in narrower axes fewer labels stand together
 
 
 def lay_out_again(axes: Axes) -> None:
@@ -52,6 +58,9 @@ class Picture:
         self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
         self.written: list[Any] = []
         self.options: tuple[Any, bool, Any] = (False, False, [])  # no labels yet
+        self.inset: Picture | None = None
+        self.inset_wanted: bool | Region = False
+        self.frame: list[Any] = []  # says what the inset shows
         if (remark := undrawn(graph, x, y)) != "":
             self.key.remarks.append(remark)
 
@@ -157,23 +166,75 @@ class Picture:
         for artist in self.written:
             artist.remove()
         chosen = None if isinstance(labels, bool) else list(labels)
-        figure = self.axes.get_figure(root=True)
-        assert figure is not None
-        size = TEXT * self.rc["font.size"] * (1.0 if self.rc["font.size"] < 9.0 else scale(figure))
+        size = self._text()
         places = {kind: i for i, kind in enumerate(KINDS)}  # whose labels are named first
         wanted = [
             Label(self._named(label), px, py, "black", places.get(kind, len(places)), chosen is not None)
             for label, kind, px, py in self.spots
             if chosen is None or label in chosen
         ]
+        names = self._middles(words, chosen)
+        if (inset := self.inset) is not None:  # what the inset names is not named twice
+            wanted, names = ([e for e in found if not inset._inside(e.x, e.y)] for found in (wanted, names))
         wanted = [entry for entry in wanted if self._inside(entry.x, entry.y)]
-        wanted = wanted if chosen is not None else grouped(self.axes, wanted)
+        if chosen is None:
+            wanted = grouped(self.axes, wanted, named=3 if self._inches()[0] > FEW else 2)
         others = [p for p in getattr(self.axes, "contvines_pictures", []) if p is not self]
         boxes = [a.get_window_extent() for p in others for a in p.written]
         taken = [*taken, *((b.x0, b.y0, b.x1, b.y1) for b in boxes)]
-        wanted += self._middles(words, chosen)
+        if self.inset is not None:
+            taken.append(_outer(self.inset.axes))
+        wanted = [*self._best(wanted, POINTS), *self._best(names, NAMES)]
         self.written, left_out = place_labels(self.axes, wanted, self.obstacles(), size=size, taken=taken)
         self.left_out = left_out
+
+    def _inches(self) -> tuple[float, float]:
+        """Width and height of the axes."""
+        figure = self.axes.get_figure(root=True)
+        assert figure is not None
+        return self.axes.bbox.width / figure.dpi, self.axes.bbox.height / figure.dpi
+
+    def _best(self, labels: list[Label], counts: tuple[float, float]) -> list[Label]:
+        """As many labels as the axes have room to be read in, those that matter most."""
+        wide, high = self._inches()
+        most = int(counts[0] + counts[1] * wide * high)
+        chosen = sorted(range(len(labels)), key=lambda i: (not labels[i].kept, labels[i].rank))[:most]
+        return [label for i, label in enumerate(labels) if i in chosen or label.kept]
+
+    def show_inset(self, wanted: bool | Region, words: bool) -> None:
+        """Draw a crowded place, or the one that is wanted, once more in a free part of the axes."""
+        self.inset_wanted = wanted
+        self._remove_inset()
+        if wanted is False:
+            return
+        seen = [(px, py) for _, _, px, py in self.spots if self._inside(px, py)]
+        region = crowded_region(self.axes, np.array(seen).reshape(-1, 2)) if wanted is True else wanted
+        if region is None:
+            return
+        room = find_room(self.axes, region, self.obstacles(), hold_legend(self.axes))
+        if room is None:
+            return
+        size = 0.8 * self._text()
+        axes, self.frame = add_inset(self.axes, region, room, size)
+        self.inset = Picture(axes, self.graph, self.x, self.y, self.color, None)
+        self.inset.before, self.inset.after, self.inset.first_color = (
+            self.before,
+            self.after,
+            self.first_color,
+        )
+        self.inset.rc = self.rc
+        self.inset.draw_branches()
+        self.inset.draw_points(False)
+        axes.set(xlim=region[0], ylim=region[1])
+        self.inset.refine()
+        self.inset.write_labels(True, words, [])
+
+    def _remove_inset(self) -> None:
+        for artist in self.frame:
+            artist.remove()
+        if self.inset is not None:
+            self.inset.axes.remove()
+        self.inset, self.frame = None, []
 
     def follow_zoom(self) -> None:
         """Lay out again when the limits of the axes change."""
@@ -187,7 +248,14 @@ class Picture:
         labels, words, _ = self.options
         with mpl.rc_context(self.rc):
             self.refine()
+            self.show_inset(self.inset_wanted is True, words)
             self.write_labels(labels, words, hold_legend(self.axes))
+
+    def _text(self) -> float:
+        """Size of the labels, in points."""
+        figure = self.axes.get_figure(root=True)
+        assert figure is not None
+        return TEXT * self.rc["font.size"] * (1.0 if self.rc["font.size"] < 9.0 else scale(figure))
 
     def _named(self, label: str) -> str:
         return f"{self.before}{label}{self.after}"
@@ -224,7 +292,13 @@ class Picture:
             text = self._named(label)
             if words:
                 text = short_word(str(curve.branch.description.get("word") or "stuck"), 24)
-            found[label] = Label(
-                text, float(xy[i, 0]), float(xy[i, 1]), self.tint[label], 0, chosen is not None, True
-            )
-        return list(found.values())
+            tint = "0.25" if self.color == "stability" else self.tint[label]
+            found[label] = Label(text, float(xy[i, 0]), float(xy[i, 1]), tint, 0, chosen is not None, True)
+        longest = sorted(found, key=lambda label: -lengths[label])
+        return [found[label] for label in longest]
+
+
+def _outer(axes: Axes) -> tuple[float, float, float, float]:
+    """The box of axes on the page, with all that stands beside them."""
+    box: Any = axes.get_tightbbox()
+    return box.x0, box.y0, box.x1, box.y1

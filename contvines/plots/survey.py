@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .figures import new_axes, styled
+from ..hints import hinting
+from .figures import new_axes, new_figure, settle, styled, thin_ticks
+from .legends import place_legend
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -20,11 +23,13 @@ BANDS = ((0.0, 1.0, 0.16, "all samples"), (0.025, 0.975, 0.30, "95 %"), (0.25, 0
 BLUE, RED = "#0b3c6f", "#b5121b"
 
 
+@hinting
 def plot_survey(
     survey: Survey,
     outcome: str | None = None,
     *,
-    axes: Axes | None = None,
+    axes: Axes | Sequence[Axes] | None = None,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: Any = None,
 ) -> Figure:
@@ -39,14 +44,14 @@ def plot_survey(
     outcome : str, optional
         By default the first.
     axes : Axes, optional
-        Drawn on; not for samples alone over several parameters.
-    figsize, style
+        Drawn on; for samples alone over several parameters as many axes as there are parameters.
+    legend, figsize, style
         As for `contvines.plots.diagram.plot_diagram`.
 
     Raises
     ------
     ValueError
-        If there is no such outcome, or more than two axes vary.
+        If there is no such outcome, more than two axes vary, or `axes` are not as many as there are panels.
     """
     if not survey.columns:
         raise ValueError("the survey has no outcome to draw: all of its systems failed; the notes say why")
@@ -60,16 +65,47 @@ def plot_survey(
         )
     with styled(style):
         if not along:
-            return _samples(survey, name, figsize)
-        figure, axes = new_axes(axes, figsize=figsize)
+            return _samples(survey, name, axes, figsize)
+        own = axes is None
+        figure, (panel,) = _panels(axes, 1, figsize)
         if len(along) == 1:
-            _curve(axes, survey, name, along[0])
+            _curve(panel, survey, name, along[0])
         else:
-            _map(figure, axes, survey, name, along)
+            _map(figure, panel, survey, name, along)
+        handles = panel.get_legend_handles_labels()[0]
+        place_legend(panel, handles, legend, own)
         failed = survey.failed
         if failed:
-            axes.set_title(f"{failed} of {len(survey.plan)} systems failed", color="0.4", fontsize="medium")
+            panel.set_title(f"{failed} of {len(survey.plan)} systems failed", color="0.4", fontsize="medium")
+        if own:
+            _fit(figure)
     return figure
+
+
+def _panels(axes: Any, count: int, figsize: tuple[float, float] | None) -> tuple[Figure, list[Axes]]:
+    """The axes given, or those of a new figure, side by side."""
+    if axes is not None:
+        given = list(np.atleast_1d(np.asarray(axes, dtype=object)))
+        if len(given) != count:
+            raise ValueError(f"axes: {count} of them are needed, not {len(given)}")
+        return given[0].get_figure(root=True), given
+    if count == 1:
+        figure, one = new_axes(None, figsize=figsize)
+        return figure, [one]
+    figure = new_figure(figsize=figsize or (3.2 * count + 1.0, 3.6))
+    return figure, list(figure.subplots(1, count, sharey=True))
+
+
+def _fit(figure: Figure) -> None:
+    """Break what goes upward for the height that the axes have at last, and thin out ticks."""
+    settle(figure)
+    for axes in figure.axes:
+        if axes.get_ylabel():
+            axes.set_ylabel(_upright(axes, axes.get_ylabel().replace("\n", " ")))
+        if axes.get_xlabel():
+            axes.set_xlabel(_across(axes, axes.get_xlabel()))
+    settle(figure)
+    thin_ticks(*figure.axes)
 
 
 def label_of(survey: Survey, name: str) -> str:
@@ -94,7 +130,19 @@ def _upright(axes: Axes, label: str) -> str:
     settings: Any = rcParams
     size = FontProperties(size=settings["axes.labelsize"]).get_size_in_points()
     height = axes.get_window_extent().height / axes.get_figure(root=True).dpi * 72.0  # type: ignore[union-attr]
-    return textwrap.fill(label, max(12, int(height / (0.56 * size))))
+    return _broken(label, int(height / (0.56 * size)))
+
+
+def _across(axes: Axes, label: str) -> str:
+    """A label that goes across, on as many lines as the width of the axes asks for."""
+    wide = axes.get_window_extent().width / axes.get_figure(root=True).dpi * 72.0  # type: ignore[union-attr]
+    return _broken(label, int(wide / (0.56 * float(axes.xaxis.label.get_fontsize()))))
+
+
+def _broken(label: str, room: int) -> str:
+    """Lines of at most so many letters; a unit stays with the word before it."""
+    lines = textwrap.wrap(label.replace(" [", "\u00a0["), max(12, room), break_on_hyphens=False)
+    return "\n".join(lines).replace("\u00a0", " ")
 
 
 def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
@@ -105,7 +153,6 @@ def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
             lower, upper = _quantiles(known, (low, high))
             axes.fill_between(x, lower, upper, color=BLUE, alpha=strength, lw=0, label=label)
         axes.plot(x, _quantiles(known, (0.5,))[0], color=BLUE, label="median")
-        axes.legend(loc="best")
     else:
         axes.plot(x, values, "o-", color=BLUE, markersize=3.5)
     axes.set_xlabel(label_of(survey, over))
@@ -140,20 +187,18 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     lost = np.argwhere(survey.notes.reshape(*survey.plan.shape[:2], -1)[..., 0] != "")
     if len(lost):
         axes.plot(x[lost[:, 0]], y[lost[:, 1]], "x", color=RED, label="failed", linestyle="none")
-        axes.legend(loc="best")
     axes.set_xlabel(label_of(survey, along[0]))
     axes.set_ylabel(_upright(axes, label_of(survey, along[1])))
     axes.grid(False)
 
 
-def _samples(survey: Survey, name: str, figsize: tuple[float, float] | None) -> Figure:
-    from .figures import new_figure
-
+def _samples(survey: Survey, name: str, axes: Any, figsize: tuple[float, float] | None) -> Figure:
     drawn = survey.plan.samples
-    figure = new_figure(figsize=figsize or (3.2 * len(drawn) + 1.0, 3.6))
-    panels = np.atleast_1d(figure.subplots(1, len(drawn), sharey=True))
-    for panel, (parameter, values) in zip(panels, drawn.items()):
+    figure, panels = _panels(axes, len(drawn), figsize)
+    for panel, (parameter, values) in zip(panels, drawn.items(), strict=True):
         panel.plot(values, survey.columns[name], "o", color=BLUE, markersize=3.5)
         panel.set_xlabel(label_of(survey, parameter))
     panels[0].set_ylabel(_upright(panels[0], label_of(survey, name)))
+    if axes is None:
+        _fit(figure)
     return figure

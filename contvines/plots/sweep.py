@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .diagram import plot_diagram
-from .figures import new_axes, styled
+from ..hints import hinting
+from .diagram import LOW, draw_diagram
+from .figures import new_axes, settle, styled, thin_ticks
 from .legends import Key, draw_legend
 from .style import axis_label
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 Dots = Sequence[tuple[float, float]]
 
 
+@hinting
 def plot_sweep(
     points: Dots,
     parameter: str,
@@ -65,15 +67,19 @@ def plot_sweep(
         if not any(len(dots) for dots in (points, others, wandering)):
             what = "no impacts" if measure == "B" else "nothing"
             axes.plot([], [], linestyle="none", label=f"simulated: {what}")
-        if graph is not None:
-            plot_diagram(graph, x=parameter, y=measure, axes=axes, legend=legend, style=style)
-        elif legend is not False:
-            draw_legend(axes, Key(), legend, own, np.empty((0, 2)))
-        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter)))
+        low = own and axes.get_window_extent().height < LOW * figure.dpi
         unit = f" [{said['B']}]" if "B" in said else ""
+        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter)))
         axes.set_ylabel(
-            f"$B$ at the impacts{unit}" if measure == "B" else axis_label(measure, unit=said.get(measure))
+            f"$B$ at the impacts{unit}" if measure == "B" else axis_label(measure, low, said.get(measure))
         )
+        if graph is not None:
+            draw_diagram(axes, graph, parameter, measure, own=own, legend=legend)
+            return figure
+        draw_legend(axes, Key(), legend, own, np.empty((0, 2)))
+        if own:
+            settle(figure)
+            thin_ticks(axes)
     return figure
 
 

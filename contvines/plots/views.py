@@ -27,13 +27,19 @@ def frame(
     xlim: tuple[float, float] | None,
     ylim: tuple[float, float] | None,
 ) -> None:
-    """Set the limits: the asked ones, else all that is drawn but the far ends of branches that run away."""
+    """Set the limits: the asked ones, else all that is drawn but the far ends of branches that run away.
+
+    Where only the interval across is asked for, the height is that of what is seen in it.
+    """
     axes.margins(0.04)
     axes.autoscale_view()
     if xlim is not None:
         axes.set_xlim(*xlim)
     if ylim is not None:
         axes.set_ylim(*ylim)
+        return
+    if xlim is not None:
+        fit_height(axes)
         return
     drawn = [v for curve in curves for _, ys in curve.strands() for v in ys[np.isfinite(ys)]]
     marks = [
@@ -45,6 +51,36 @@ def frame(
     limits = _without_runaways(np.array(drawn), np.array([v for v in marks if np.isfinite(v)]))
     if limits is not None and axes.get_yscale() == "linear":
         axes.set_ylim(*limits)
+
+
+def fit_height(axes: Axes) -> None:
+    """Make the axes as high as the lines between their limits across; as they are where there are none."""
+    left, right = sorted(axes.get_xlim())
+    seen: list[np.ndarray] = []
+    for line in axes.lines:
+        if not line.get_transform().contains_branch(axes.transData):
+            continue
+        x, y = (np.asarray(v, dtype=float) for v in line.get_data())
+        seen.append(y[(x >= left) & (x <= right) & np.isfinite(y)])
+        if len(x) < 2 or line.get_linestyle() in ("None", "none", ""):
+            continue
+        for edge in (left, right):  # where a line crosses an edge of what is seen
+            first = np.flatnonzero((np.minimum(x[:-1], x[1:]) < edge) & (np.maximum(x[:-1], x[1:]) > edge))
+            share = (edge - x[first]) / (x[first + 1] - x[first])
+            seen.append(y[first] + share * (y[first + 1] - y[first]))
+    values = np.concatenate([np.empty(0), *seen])
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return
+    low, high = float(values.min()), float(values.max())
+    if axes.get_yscale() == "log":
+        axes.set_ylim(low / (high / low) ** 0.06, high * (high / low) ** 0.06)
+        return
+    room = high - low
+    least = 1e-9 * max(abs(low), abs(high), 1e-300)  # a level line has a height of its own
+    pad = 0.06 * room if room > least else 0.05 * max(abs(low), abs(high)) or 1.0
+    limits = None if values.size < 10 else _without_runaways(values, np.empty(0))
+    axes.set_ylim(*(limits or (low - pad, high + pad)))
 
 
 def _without_runaways(values: np.ndarray, marks: np.ndarray) -> tuple[float, float] | None:

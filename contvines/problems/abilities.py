@@ -49,6 +49,13 @@ class Populated(Protocol):
 
 
 @runtime_checkable
+class Attracting(Protocol):
+    """Tells of a solution that is known to be stable what ``witness`` would tell of it."""
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]: ...
+
+
+@runtime_checkable
 class Resolved(Protocol):
     """Tells the eigenvectors that belong to multipliers, as columns."""
 

@@ -23,6 +23,8 @@ from .scales import given_scale
 from .simulated import SimulatedFlow
 from .spectra import WATCHED, reference_of, vectors_of, watched, without_roundoff
 
+ALL_ZERO = np.zeros(NEAREST, dtype=complex)
+
 
 class AlgebraicProblem(SimulatedFlow, CallableProblem):
     """Solutions of F(u, p) = 0, or equilibria of u' = F(u, p).
@@ -208,7 +210,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             if self.many:
                 if self.closely:
                     return self.algebra.nearest_eigenvalues(self, work)
-                return np.full(NEAREST, self.algebra.distance_to_singular(self, work), dtype=complex)
+                return self.algebra.distance_to_singular(self, work) + ALL_ZERO
             if self.reference is None:
                 self.reference = reference_of(work.jacobian, *self.sizes())
             return watched(work.jacobian, self.reference)

@@ -92,6 +92,9 @@ class CallableProblem(ProblemDefaults):
         other = copy(self)
         other.values = self.values.against(parameter, values)
         other.functions = self.functions.against(other.values)
+        if self.pieces.count:
+            other.pieces = self.pieces.against(other.values)
+            other.functions = other.functions.of(*other._wrapped(other.pieces))
         if parameter != self.parameter:
             other.scales = other.reference = None
         return other._own()

@@ -20,37 +20,55 @@ from .spectra import reference_of, watched
 
 
 class DenseWork(NamedTuple):
-    """F, F_u, F_p, the bordered matrix with its right-hand sides, and scratch.
+    """F, F_u, F_p, and room for the bordered matrix with its right-hand sides.
 
-    ``images`` are the solutions: step, tangent, and, where a third side is watched, what tells how near the matrix is to a singular one.
+    F_u and F_p are parts of ``system``, whose last row is zero. ``image`` is the solution of a third right-hand side where one is
+    watched, in units of the scales: it tells how near the matrix is to a singular one. ``flat``, ``column``, ``inner``, ``first`` and
+    ``diagonal`` are views.
     """
 
     residual: np.ndarray
     jacobian: np.ndarray
     derivative: np.ndarray
+    system: np.ndarray
+    flat: np.ndarray
     matrix: np.ndarray
+    diagonal: np.ndarray
     sides: np.ndarray
-    images: np.ndarray
+    first: np.ndarray
     sizes: np.ndarray
     rows: np.ndarray
+    column: np.ndarray
+    inner: np.ndarray
+    image: np.ndarray
     order: np.ndarray
     ones: np.ndarray
+    parts: np.ndarray
 
 
 def dense_workspace(n: int, watched: bool = False) -> DenseWork:
     """Arrays for n equations; with a third right-hand side if that is watched."""
-    count = 3 if watched else 2
+    size = n + 1
+    system, matrix = np.zeros((size, size), order="F"), np.zeros((size, size), order="F")
+    sides, rows = np.zeros((size, 3 if watched else 2), order="F"), np.zeros(size)
     return DenseWork(
-        np.zeros(n),
-        np.zeros((n, n)),
-        np.zeros(n),
-        np.zeros((n + 1, n + 1), order="F"),
-        np.zeros((n + 1, count), order="F"),
-        np.zeros((n + 1, count), order="F"),
-        np.zeros((n + 1, n + 1), order="F"),
-        np.zeros(n + 1),
-        np.arange(n + 1),
-        np.ones(n),
+        residual=np.zeros(n),
+        jacobian=system[:n, :n],
+        derivative=system[:n, n],
+        system=system,
+        flat=system.T.reshape(-1),
+        matrix=matrix,
+        diagonal=matrix.T.reshape(-1)[:: size + 1],
+        sides=sides,
+        first=sides[:n, 0],
+        sizes=np.zeros((size, size), order="F"),
+        rows=rows,
+        column=rows[:, None],
+        inner=rows[:n],
+        image=np.zeros(size),
+        order=np.arange(size),
+        ones=np.ones(size * size),
+        parts=np.zeros(n),
     )
 
 
@@ -75,12 +93,12 @@ def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
             return math.inf
         except (ArithmeticError, ValueError, np.linalg.LinAlgError):
             return math.inf
-        sizes = np.abs(work.residual)
+        sizes = np.abs(work.residual, out=work.parts)
         if scales is not None:
-            sizes /= scales.rows
+            np.divide(sizes, scales.rows, out=sizes)
         size = float(np.maximum.reduce(sizes))
         # a sum is finite if its terms are, but for an overflow, which would not do either
-        total = float(work.ones @ (work.jacobian @ work.ones + work.derivative))
+        total = float(work.flat @ work.ones)
     return size if size - size == 0.0 and total - total == 0.0 else math.inf
 
 
@@ -92,48 +110,61 @@ def bordered(
     One factorisation, of the matrix with columns in units of the scales and rows made equally large.
     """
     size = len(work.residual)
-    matrix, sides, rows = work.matrix, work.sides, work.rows
+    sides, rows = work.sides, work.rows
     scales = data.scales
     units = None if scales is None else scales.vector
     with np.errstate(all="ignore"):
-        matrix[:size, :size] = work.jacobian
-        matrix[:size, size] = work.derivative
-        matrix[size] = border
-        if units is not None:
-            matrix *= units
-        np.abs(matrix, out=work.sizes)
-        np.maximum.reduce(work.sizes, axis=1, out=rows)
-        if not rows.all():
-            rows[rows == 0.0] = 1.0
-        matrix /= rows[:, None]
-        sides[:size, 0] = work.residual
-        sides[size, 0] = -n
-        sides[:size, 1] = 0.0
-        sides[size, 1] = -1.0
+        matrix = _equilibrated(work, border, units)
+        # F and -n: the solution is -x
+        np.divide(work.residual, work.inner, out=work.first)
+        last = float(rows[size])
+        sides[size, 0], sides[size, 1] = -n / last, 1.0 / last
         if sides.shape[1] > 2:
-            sides[:, 2] = data.side
-        sides /= -rows[:, None]
-        factors, pivots, solution, singular = FACTORISE_AND_SOLVE(matrix, sides)
+            np.divide(data.side, rows, out=sides[:, 2])
+        _, pivots, solution, singular = FACTORISE_AND_SOLVE(matrix, sides, overwrite_a=1)
         if not singular:
-            odd = np.count_nonzero(factors.diagonal() < 0.0) + np.count_nonzero(pivots != work.order)
+            odd = np.count_nonzero(work.diagonal < 0.0) + np.count_nonzero(pivots != work.order)
             sign = -1.0 if odd % 2 else 1.0
         else:
-            left, values, right = np.linalg.svd(matrix)
-            values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
-            solution = right.T @ ((left.T @ sides) / values[:, None])
-            sign = 0.0
-        if units is None:
-            work.images[:] = solution
-        else:
-            np.multiply(solution, units[:, None], out=work.images)
-    step[:] = work.images[:, 0]
-    tangent[:] = work.images[:, 1]
+            solution, sign = _least(_equilibrated(work, border, units), sides), 0.0
+        np.negative(solution[:, 0], out=step)
+        tangent[:] = solution[:, 1]
+        if units is not None:
+            step *= units
+            tangent *= units
+        if sides.shape[1] > 2:
+            work.image[:] = solution[:, 2]
     return sign
+
+
+def _least(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
+    """Solutions with a singular matrix, large along its null vectors; NaN where it is not finite."""
+    if not np.isfinite(matrix).all():
+        return np.full(sides.shape, np.nan)
+    left, values, right = np.linalg.svd(matrix)
+    values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
+    return right.T @ ((left.T @ sides) / values[:, None])
+
+
+def _equilibrated(work: DenseWork, border: np.ndarray, units: np.ndarray | None) -> np.ndarray:
+    """The bordered matrix with columns in units of the scales and rows made equally large."""
+    matrix, rows = work.matrix, work.rows
+    if units is None:
+        matrix[:] = work.system
+        matrix[-1] = border
+    else:
+        np.multiply(work.system, units, out=matrix)
+        np.multiply(border, units, out=matrix[-1])
+    np.abs(matrix, out=work.sizes)
+    np.maximum.reduce(work.sizes, axis=1, out=rows)
+    if np.count_nonzero(rows) != len(rows):
+        rows[rows == 0.0] = 1.0
+    return np.divide(matrix, work.column, out=matrix)
 
 
 def distance_to_singular(data: Any, work: DenseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.nearness`."""
-    return distance(work.images[:, -1], None if data.scales is None else data.scales.vector)
+    return distance(work.image)
 
 
 def nearest_eigenvalues(data: Any, work: DenseWork) -> np.ndarray:

@@ -11,13 +11,14 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from .colouring import Colouring
-from .differences import REACH, Difference, along, bend, coupling, noise_of
+from .differences import REACH, Difference, along, bend, coupling, noise_of, roughness
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
 
 COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
 SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
+STEEP = 1e-4  # ... what seems to be a step above this part is a steep piece of it
 EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
 PAIRS = 12  # up to so many, couplings between two of them are looked at
 FEW = 2  # lengths tried on either side where the function is slow
@@ -315,7 +316,11 @@ class Differentiated:
         with np.errstate(all="ignore"):
             noise = noise_of(line, 1e-6)
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
-            rough = noise > SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
+            floor = SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
+            # between the stairs of a staircase neighbouring samples tell nothing
+            steps = roughness(line)
+            noise = np.where((noise <= floor) & (steps > floor) & (steps < STEEP * change), steps, noise)
+            rough = noise > floor
         if np.isfinite(noise).all() and np.isfinite(change).all():
             self.grain, self.noise = noise, np.where(rough, noise, 0.0)
 

@@ -18,6 +18,9 @@ FACTOR = 64.0  # between the lengths that are tried by `bend`
 ASIDE = 1.37  # ratio of two lengths at which slopes are compared
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
+# stretches over which samples are compared with polynomials, as parts of a length; samples on each; degree
+STRETCHES, SAMPLES, DEGREE = (0.1, 0.02, 4e-3, 8e-4), 20, 8
+
 Line = Callable[[float], np.ndarray]
 
 
@@ -164,25 +167,55 @@ def noise_of(f: Line, spacing: float, tries: int = 5) -> np.ndarray:
     tries : int
         How often it is made smaller.
     """
-    before = _table(f, spacing)
+    before, _ = _table(f, spacing)
+    found, falling = before, np.ones(before.shape, dtype=bool)
     for _ in range(tries):
         spacing *= 1e-3
-        here = _table(f, spacing)
-        if not (here < 0.03 * before).any():
+        here, still = _table(f, spacing)
+        falling &= ~still  # between two stairs, or two numbers of the machine, there is nothing to be seen
+        less = here < 0.03 * before
+        found = np.where(falling, np.where(less, here, np.maximum(before, here)), found)
+        falling &= less
+        if not falling.any():
             break
         before = here
-    return np.where(here < 0.03 * before, here, np.maximum(before, here))
+    return found
 
 
-def _table(f: Line, spacing: float) -> np.ndarray:
+def roughness(f: Line) -> np.ndarray:
+    """Noise of each entry of f that is a staircase, or has jumps, so that it vanishes where samples are close together.
+
+    What polynomials of degree DEGREE leave of samples over stretches that shrink: of a smooth function that falls with a high power of the
+    stretch, of steps it stays the same as long as there are several of them.
+    """
+    places = np.modf(0.5 + 0.618033988749895 * np.arange(SAMPLES))[0] * 2.0 - 1.0
+    basis, _ = np.linalg.qr(np.polynomial.chebyshev.chebvander(places, DEGREE))
+    noise: np.ndarray | None = None
+    before: np.ndarray | None = None
+    for stretch in STRETCHES:
+        table = np.array([f(stretch * t) for t in places])
+        rest = table - basis @ (basis.T @ table)
+        left = np.sqrt((rest**2).sum(axis=0) / (SAMPLES - DEGREE - 1))
+        if before is None or noise is None:
+            noise = np.zeros(left.shape)
+        else:
+            noise = np.where((left > 0.2 * before) & (noise == 0.0), left, noise)
+        before = left
+    assert noise is not None
+    return noise
+
+
+def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Noise of each entry from one table of differences, and whether most of its neighbours are one and the same number."""
     table = np.array([f(k * spacing) for k in range(9)])
+    still = np.count_nonzero(np.diff(table, axis=0), axis=0) < 4
     estimates = []
     for k in range(1, 7):
         table = np.diff(table, axis=0)
         if k >= 4:
             gamma = factorial(k) ** 2 / factorial(2 * k)
             estimates.append(np.sqrt(gamma * (table**2).mean(axis=0)))
-    return np.median(estimates, axis=0)
+    return np.median(estimates, axis=0), still
 
 
 def _smooth(f: Line, t: float, r: int) -> bool:

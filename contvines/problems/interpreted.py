@@ -11,8 +11,7 @@ def inspect(data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> N
     """Raw spectrum of the linearisation, then the margins of problems that have any."""
     spectrum = data.raw_spectrum(work)
     m = 2 * len(spectrum)
-    row[0:m:2] = spectrum.real
-    row[1:m:2] = spectrum.imag
+    row[:m].view(np.complex128)[:] = spectrum
     if len(row) > m:
         row[m:] = data.margins(u, p)
 

@@ -26,11 +26,10 @@ def side(rows: np.ndarray) -> np.ndarray:
     return np.append(rows * np.random.default_rng(11).standard_normal(len(rows)), 0.0)
 
 
-def distance(image: np.ndarray, units: np.ndarray | None) -> float:
+def distance(image: np.ndarray) -> float:
     """1/|M^-1 b|, with M^-1 b in units of unknowns and parameter."""
-    scaled = image if units is None else image / units
-    square = float(scaled @ scaled)
-    return math.sqrt(len(scaled) / square) if 0.0 < square < math.inf else 0.0
+    square = float(image @ image)
+    return math.sqrt(len(image) / square) if 0.0 < square < math.inf else 0.0
 
 
 def nearest(values: np.ndarray) -> np.ndarray:

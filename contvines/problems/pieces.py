@@ -108,6 +108,13 @@ class Pieces:
         other.signs = np.concatenate(signs)
         return other
 
+    def against(self, parameters: ParameterSet) -> Pieces:
+        """The same pieces with switches that read other parameters."""
+        other = copy(self)
+        other.parameters = parameters
+        other.switches = [UserFunction(s.f, s.name, parameters) for s in self.switches]
+        return other
+
     def repeated(self, times: int, of: int | None = None) -> Pieces:
         """The signs of so many cycles in a row; ``of``: of the first nodes only."""
         other = copy(self)

@@ -60,6 +60,7 @@ class SimulatedMap:
     """What a MapProblem says of its motions."""
 
     population: Any
+    cycle: int
 
     def section(self, p: float) -> MapSection:
         """Its motions, once per period of the cycle."""
@@ -73,6 +74,10 @@ class SimulatedMap:
         return [
             {"word": word or None, "periods": periods, "kind": kind} for word, periods, kind in sorted(found)
         ]
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable cycle as `witness` tells of it."""
+        return {"word": f"{self.cycle}-cycle", "periods": self.cycle, "kind": "cycle"}
 
 
 class SimulatedFlow:
@@ -105,6 +110,11 @@ class SimulatedFlow:
             if not any(_one(new, other, size) for other in found):
                 found.append(new)
         return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable equilibrium as `witness` tells of it."""
+        place = [float(x) for x in u[: self.node]]
+        return {"word": "equilibrium", "periods": 0, "kind": "equilibrium", "u": place}
 
     def _settled(self, u: np.ndarray, p: float, size: np.ndarray) -> tuple[str, np.ndarray]:
         from scipy.integrate import LSODA

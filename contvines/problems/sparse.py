@@ -150,7 +150,8 @@ def _refined(
     Returns
     -------
     (ndarray, float) or None
-        Solutions and sign of the determinant. That of F_u is the sign of the factors: refinement would not converge otherwise.
+        Solutions and sign of the determinant. It is that of the bordered matrix with the factors in place of F_u: as refinement converges,
+        the determinant of one relative to the other is positive. (That of F_u itself may be of another sign, beyond a fold.)
     """
     with np.errstate(all="ignore"):
         columns = factors.solve(np.column_stack([sides[:-1, 0], work.derivative]))
@@ -181,7 +182,7 @@ def _refined(
         if not error < enough:
             return None
     work.eliminated = factors, border.copy(), column, corner
-    return x, factors.sign * math.copysign(1.0, float(x[-1, 1]))
+    return x, factors.sign * math.copysign(1.0, float(corner))
 
 
 def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
@@ -232,7 +233,7 @@ def distance_to_singular(data: Any, work: SparseWork) -> float:
         image = factors.solve(data.side[:-1])
         last = -float(border[:-1] @ image) / corner
         image = np.append(image - column * last, last)
-        work.distance = distance(image, None if data.scales is None else data.scales.vector)
+        work.distance = distance(image if data.scales is None else image / data.scales.vector)
     return work.distance
 
 

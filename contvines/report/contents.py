@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
 SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most
 MEASURES = 14  # at most, to choose the axes from
+#: where multipliers are on the boundary of stability
+CRITICAL = ("fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "hopf", "branch-point")
 
 
 def contents(graph: Graph, source: str) -> dict[str, Any]:
@@ -98,7 +100,17 @@ def _point(point: SpecialPoint, proof: str) -> dict[str, Any]:
         "marker": look.marker,
         "proof": proof,
         "index": int(point.index),
+        "marginal": _marginal(point),
     }
+
+
+def _marginal(point: SpecialPoint) -> bool:
+    """Whether the motion is neither stable nor unstable there: a multiplier on the boundary, none beyond it."""
+    sizes = point.multipliers
+    if point.kind not in CRITICAL or not len(sizes) or not np.isfinite(sizes).all():
+        return False
+    flow = point.problem is not None and point.problem.spectrum == "flow"
+    return float(np.max(np.real(sizes) if flow else np.abs(sizes) - 1.0)) <= 1e-6
 
 
 def _attractor(about: Attractor) -> dict[str, Any]:

@@ -82,7 +82,8 @@ function choose(branch, index, label) {
   const shown = sizes.filter(([re]) => re !== null).map(([re, im]) => (Math.abs(im) < 1e-15 ? number(re, 8) : `${number(re, 6)} ${im < 0 ? "−" : "+"} ${number(Math.abs(im), 6)}i`));
   const facts = [`${data.parameter} = ${number(special ? special.value[data.parameter] : value, 12)}`];
   if (about.word !== null) facts.unshift(`word ${about.word || "(stuck)"}`, `k = ${about.periods}`);
-  facts.push(about.real ? (about.stable_points[index] ? "stable" : "unstable") : "virtual: no machine can follow it");
+  const stable = special && special.marginal ? "marginal" : about.stable_points[index] ? "stable" : "unstable";
+  facts.push(about.real ? stable : "virtual: no machine can follow it");
   if (shown.length) facts.push(`multipliers ${shown.join(", ")}`);
   else if (sizes.length) facts.push("multipliers not defined at a graze");
   if (about.margin[index] !== null) facts.push(`smallest margin ${number(about.margin[index], 6)}`);
@@ -117,10 +118,11 @@ table("special", ["point", "kind", "on", data.parameter, "", "leads to"], data.s
     [p.criticality, p.proof || (p.real ? "" : "virtual")].filter(Boolean).join(" "), leads]);
   return p.index >= 0 && branches[p.branch] ? clickable(row, () => jump(p.branch, p.index, p.label)) : row;
 });
-table("branches", ["branch", "what", data.parameter, "stable", "proved", "points"], data.branches, (b) => {
+const proofs = data.branches.some((b) => b.proof);
+table("branches", ["branch", "what", data.parameter, "stable", ...(proofs ? ["proved"] : []), "points"], data.branches, (b) => {
   const row = cells(element("tr", undefined, { id: `row-${b.label}` }), [b.label,
     [b.what, b.periods === null ? "" : `k=${b.periods}`, b.symmetric ? "symmetric" : "", b.real ? "" : "virtual"].filter(Boolean).join(" "),
-    `${number(b.range[0], 7)} … ${number(b.range[1], 7)}`, b.stable.map(([a, z]) => `${number(a, 7)} … ${number(z, 7)}`).join(", ") || "–", b.proof || "", String(b.points)]);
+    `${number(b.range[0], 7)} … ${number(b.range[1], 7)}`, b.stable.map(([a, z]) => `${number(a, 7)} … ${number(z, 7)}`).join(", ") || "–", ...(proofs ? [b.proof || ""] : []), String(b.points)]);
   if (!b.real) row.className = "virtual";
   return clickable(row, () => jump(b.label, Math.floor(b.points / 2)));
 });

@@ -215,6 +215,8 @@ class Store:
 
                 return chart_from_entries(entries, problems=problems, trust=trust)
             return graph_from_entries(entries, problems=problems, trust=trust)
+        except OSError as error:  # a page that the graph needs
+            raise StoreError(f"{self.path}: {error}.") from None
         except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
             raise StoreError(
                 f"{self.path}: this file does not hold a graph as contvines writes it ({error}); "

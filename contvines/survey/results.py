@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import json
 import os
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ import numpy as np
 
 from ..doors import above
 from ..graph.table import with_unit
+from ..text_table import Table, fitted, terminal_width
 from .plan import Plan, PlanError
 from .work import Row
 
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Survey:
     """The outcomes of all systems of a plan.
 
@@ -140,18 +142,27 @@ class Survey:
         found = float(value[place])
         return point, -found if largest else found
 
+    def __repr__(self) -> str:
+        failed = f", {self.failed} failed" if self.failed else ""
+        return f"Survey({len(self.plan)} systems over {', '.join(self.plan.names)}: {', '.join(self.columns)}{failed})"
+
     def __str__(self) -> str:
-        lines = [f"{len(self.plan)} systems over {', '.join(self.plan.names)}"]
-        if self.failed:
-            lines[0] += f"; {self.failed} of them failed, the column note says why"
-        rows: list[tuple[str, ...]] = [("outcome", "smallest", "median", "largest", "unit")]
+        return "\n".join([fitted(self._title()), "", *self._table().lines(terminal_width())])
+
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(self._title())}</p>{self._table().html()}"
+
+    def _title(self) -> str:
+        about = f"{len(self.plan)} systems over {', '.join(self.plan.names)}"
+        return about + (f"; {self.failed} of them failed, the column note says why" if self.failed else "")
+
+    def _table(self) -> Table:
+        rows: list[tuple[str, ...]] = []
         for name, values in self.columns.items():
             known = values[np.isfinite(values)]
             numbers = [f"{f(known):.6g}" if known.size else "-" for f in (np.min, np.median, np.max)]
             rows.append((name, *numbers, self.units.get(name, "")))
-        widths = [max(len(row[i]) for row in rows) for i in range(5)]
-        lines += ["", *("  ".join(c.ljust(w) for c, w in zip(row, widths)).rstrip() for row in rows)]
-        return "\n".join(lines)
+        return Table(("outcome", "smallest", "median", "largest", "unit"), rows)
 
 
 def load_survey(path: str | Path) -> Survey:
@@ -167,8 +178,9 @@ def load_survey(path: str | Path) -> Survey:
     try:
         with xarray.open_dataset(Path(path), engine="scipy") as data:
             about = json.loads(data.attrs["about"])
-            axes = {name: data[name].values for name in about["axes"]}
-            samples = {name: data[name].values for name in about["samples"]}
+            # in the order of the dimensions: that of the notes about the survey is the alphabet's
+            axes = {str(name): data[name].values for name in data["note"].dims if name in about["axes"]}
+            samples = {str(name): data[name].values for name in data.coords if name in about["samples"]}
             columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
             units = {str(n): str(v.attrs["units"]) for n, v in data.variables.items() if "units" in v.attrs}
             notes = data["note"].values.astype(object)

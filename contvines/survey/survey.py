@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..hints import hinting
 from . import pools
 from .journal import Rows
 from .outcomes import MADE, PLAIN, Outcome
@@ -35,6 +36,7 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
     raise PlanError(f"[survey] outcomes: {said!r} is unknown; choose of {', '.join([*known, *forms])}")
 
 
+@hinting
 def survey(
     family: Callable[[Mapping[str, float], Any], Any],
     vary: Plan | Mapping[str, Any],

@@ -14,6 +14,8 @@ KERNEL = 4  # null vectors that are followed at most
 EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
 SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
+MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
+ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
 
 
@@ -80,7 +82,7 @@ def null_vectors(
             image = image - engine.inner(image, other) * other
         growth = size * engine.norm(image) / float(np.sqrt((random**2).mean()))
         first = max(first, growth)
-        if growth < 1.0 / singular or growth < 1e-9 * first:
+        if growth < 1.0 / singular or growth < ALIKE * first:
             break
         found.append(_oriented(engine, engine.unit(image)))
     return found[:KERNEL]
@@ -206,8 +208,11 @@ def _at(
     found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), along)
     if found is None:
         return None
-    far = engine.norm(engine.join(found.u, found.p) - z) > reach * abs(amplitude)
-    return None if far else found
+    there = engine.join(found.u, found.p)
+    # so close to the branch point Newton's method may end at roundoff, off the hyperplane
+    missed = abs(float(border @ (there - guess))) > MISSED * abs(amplitude)
+    far = engine.norm(there - z) > reach * abs(amplitude)
+    return None if far or missed else found
 
 
 def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved | None) -> bool:

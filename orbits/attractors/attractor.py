@@ -117,7 +117,7 @@ class Attractor:
             raise ValueError(
                 f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits"
             )
-        nodes = centred(self.codes, self.nodes, self._mass_ratio)
+        nodes = self.model.at_home(self.codes, self.nodes, self.params)
         return Cycle(self.model, word, self.periods, nodes, self.params)
 
     @property
@@ -133,10 +133,6 @@ class Attractor:
         """Unknowns and parameter value in `problem`."""
         return self.orbit.seed(problem)
 
-    @property
-    def _mass_ratio(self) -> float:
-        return float(self.params[self.model.parameter_names.index("mass_ratio")])
-
     def distance(self, other: Attractor) -> float:
         """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.
 
@@ -147,8 +143,8 @@ class Attractor:
         if not len(self.codes):
             return 0.0
         mirror = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
-        eps = self._mass_ratio
-        own, target = centred(self.codes, self.nodes, eps), centred(other.codes, other.nodes, eps)
+        own = self.model.at_home(self.codes, self.nodes, self.params)
+        target = self.model.at_home(other.codes, other.nodes, self.params)
         image = -own
         image[:, 0] = own[:, 0] + np.pi
         images = [(self.codes, self.modes, own)]
@@ -162,15 +158,3 @@ class Attractor:
                 ):
                     best = min(best, cyclic_distance(np.roll(nodes, -k, axis=0), target))
         return best
-
-
-def centred(codes: np.ndarray, nodes: np.ndarray, eps: float) -> np.ndarray:
-    """The nodes; of a motion without impacts with the absorber moved so that the mean of w is 0 (q1 stays)."""
-    if np.any(codes < 2) or np.any(codes > 4):
-        return nodes
-    moved = nodes.copy()
-    mean = nodes[:, 1].mean()
-    moved[:, 1] -= mean
-    if nodes.shape[1] > 2:
-        moved[:, 2] += eps * mean
-    return moved

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.attractors.attractor import centred
 from orbits.machines.stepping import Machine
 from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
 from orbits.simulation.trajectory import TWO_PI
 
 ALIKE = 1e-7
+NO_SPEED = 1e-7  # of the machine's own: a touch, not an impact
+AT_ONCE = 1e-6  # phase from a touch to the stick that follows it
 _MIRROR = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
 
 
@@ -58,6 +59,29 @@ def polish(
     return best, error, multipliers
 
 
+def touches(codes: np.ndarray, nodes: np.ndarray, speeds: np.ndarray) -> np.ndarray:
+    """Which events of a cycle without other impacts are touches of a wall, after which the absorber stays where it is.
+
+    Stick-slip near a wall is pushed away from it until it only just reaches it. What is left of the impacts then is rounding; the
+    motion is that without impacts, somewhere in the cavity.
+
+    Parameters
+    ----------
+    codes : ndarray of int8, shape (n,)
+    nodes : ndarray, shape (n, NODE)
+    speeds : ndarray, shape (n,)
+        Of the approach, in the machine's unit; nothing is read away from impacts.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    hits = codes < 2
+    wait = (np.roll(nodes[:, 0], -1) - nodes[:, 0]) % TWO_PI
+    soft = hits & (speeds < NO_SPEED) & (np.roll(codes, -1) == 3) & (wait < AT_ONCE)
+    return soft if np.array_equal(soft, hits) else np.zeros_like(soft)
+
+
 def root_length(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, periods: int) -> int:
     """Events of the shortest cycle of which this one is a repetition."""
     n = len(codes)
@@ -93,9 +117,7 @@ def first_event(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray) -> int:
     return min(starts, key=rank)
 
 
-def is_symmetric(
-    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, eps: float, tolerance: float = 1e-7
-) -> bool:
+def is_symmetric(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, tolerance: float = 1e-7) -> bool:
     """Whether the orbit equals its mirror image after half its events."""
     n = len(codes)
     if n == 0 or n % 2:
@@ -105,7 +127,6 @@ def is_symmetric(
         np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))
     ):
         return False
-    nodes = centred(codes, nodes, eps)
     image = -nodes
     image[:, 0] = nodes[:, 0] + np.pi
     return cyclic_distance(image, np.roll(nodes, half, axis=0)) < tolerance

@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import lasting
-from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate
+from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate, touches
 from orbits.machines.states import nodes_of
 from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
 from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
@@ -249,19 +249,24 @@ def _cycle(
     periods: int,
 ) -> Attractor:
     """The polished attractor of a recurrence, in canonical order."""
-    codes, modes = window.codes[-length:], window.modes[-length:]
-    nodes = window.nodes[-length:]
+    codes, modes, nodes, rows = (
+        column[-length:] for column in (window.codes, window.modes, window.nodes, window.rows)
+    )
+    kept = ~touches(codes, nodes, np.abs(rows[:, 3]) / np.prod(model.natural_units(params)))
+    if not kept.all():
+        codes, modes, rows = codes[kept], modes[kept], rows[kept]
+        nodes = model.at_home(codes, nodes[kept], params)
     # polish from an impact where there is one, else from a turn: there all unknowns of a node are free
     for wanted in ((0, 1), (2,), (3,), (4, 5)):
         places = np.flatnonzero(np.isin(codes, wanted))
         if len(places):
             break
-    speeds = np.abs(window.rows[-length:][places, 4])
+    speeds = np.abs(rows[places, 4])
     codes, modes, nodes = rotate(codes, modes, nodes, int(places[np.argmax(speeds)]), periods)
     nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
     root = root_length(codes, modes, nodes, periods)
-    if root < length:  # a slow approach that alternates looks like a longer recurrence
-        codes, modes, nodes, periods = codes[:root], modes[:root], nodes[:root], periods * root // length
+    if root < len(codes):  # a slow approach that alternates looks like a longer recurrence
+        codes, modes, nodes, periods = codes[:root], modes[:root], nodes[:root], periods * root // len(codes)
         nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
     codes, modes, nodes = rotate(codes, modes, nodes, first_event(codes, modes, nodes), periods)
     impacts = int(np.count_nonzero(codes < 2))
@@ -289,7 +294,6 @@ def _attractor(
     codes = np.empty(0, np.int8) if codes is None else codes
     modes = np.empty(0, np.int8) if modes is None else modes
     nodes = np.empty((0, width)) if nodes is None else nodes
-    eps = float(params[model.parameter_names.index("mass_ratio")])
     hits = np.abs(window.rows[window.codes < 2, 3])
     rate = (
         np.count_nonzero(codes < 2) / periods
@@ -309,7 +313,8 @@ def _attractor(
         nodes=nodes,
         residual=residual,
         multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
-        symmetric=model.has_mirror(params) and (kind == "stuck" or is_symmetric(codes, modes, nodes, eps)),
+        symmetric=model.has_mirror(params)
+        and (kind == "stuck" or is_symmetric(codes, modes, model.at_home(codes, nodes, params))),
         state=state.copy(),
         impacts_per_period=0.0 if kind == "stuck" else float(rate),
         impact_speed=float(hits.max()) if hits.size and kind != "stuck" else 0.0,

@@ -18,17 +18,20 @@ from orbits.borders.alignment import read_alike
 from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends_to
 from orbits.borders.neighbours import (
-    REAL,
     SIZES,
     Grown,
+    Place,
     grown,
     margins_of,
     parameter_unit,
+    placed,
     proposals,
     turned,
 )
 from orbits.borders.rewriting import Edit, edits_at
+from orbits.borders.rounds import choices, rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
+from orbits.cycles.claim import REAL
 from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
 from orbits.cycles.kernels import assemble
@@ -38,6 +41,7 @@ from orbits.machines.states import state_of
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import polish
 
+BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
 ROUNDS = 8  # up to so many rounds of a cycle are joined to one at a border
 NEARER = (
     0.3,
@@ -65,12 +69,16 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
         return from_rest(problem, point)
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
-    if rest or piled_up(problem.orbit(u, p)):
+    before = problem.orbit(u, p)
+    if rest or piled_up(before):
         return rest
-    old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), int(point.margin_index))
+    border = placed(problem, u, p, int(point.margin_index))
+    index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)
+    nearby = [_real_part(problem, u, p, tangent_here, index, length) for length in BESIDE]
+    old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
     seeds = []
     # the simulator is asked only where no proposal stands
-    for candidate in chain(proposals(problem, u, p, int(point.margin_index)), _simulated(problem, u, p)):
+    for candidate in chain(proposals(border), _simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
         if not _followed(orbit):
@@ -83,8 +91,8 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
         if smallest is not other:
             seeds.extend(_onwards(smallest, v, p))
         break
-    seeds += _escapes(problem, u, p, int(point.margin_index))
-    before = problem.orbit(u, p)
+    beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
+    seeds += _escapes(border, beside)
     return [read_alike(seed, before) for seed in seeds]
 
 
@@ -109,30 +117,37 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     if not residual < 1e-10:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
-    for other, v, q, tangent, note in proposals(problem, at_border, p, index):
+    for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
         if _followed(other.orbit(v, q)):
             text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
 
 
-def _escapes(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
+def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]) -> Iterator[Seed]:
     """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
 
     A round is a whole cycle, or half a symmetric one. A change in every other round breaks the symmetry or doubles the
     period, and is followed whether it is stable or not; of those that change in one of several rounds, or in all but one
     (period adding), there may be many at once: the stable ones are followed.
     """
-    problem, u, index = turned(problem, u, p, index)
-    orbit = problem.orbit(u, p)
-    choices: list[list[Edit]] = []
+    problem, _, p, index, orbit, edits = border
+    known = [rounds_at(problem, orbit, p, edit, beside) for edit in edits]
+    hopeless = [set() if rounds is None else rounds.hopeless(ROUNDS) for rounds in known]
+    if hopeless and all(len(no) == len(choices(ROUNDS)) for no in hopeless):
+        return
+    wider, whole = _repeated(problem, orbit, 2)
+    first = edits_at(whole, index, problem.length)
+    if [edit.change for edit in first] != [edit.change for edit in edits]:
+        hopeless = [set() for _ in first]
     for rounds in range(2, ROUNDS + 1):
-        wider, whole = _repeated(problem, orbit, rounds)
-        if not choices:
-            first = edits_at(whole, index, problem.length)
-            choices = [[edit.later(k, problem) for edit in first] for k in range(ROUNDS)]
         for changed in (1, rounds - 1) if rounds > 2 else (1,):
-            found = _grown_in(wider, whole, p, choices, rounds, changed)
+            wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
+            if not wanted:
+                continue
+            if rounds > 2:
+                wider, whole = _repeated(problem, orbit, rounds)
+            found = _grown_in(problem, wider, whole, p, wanted, rounds, changed)
             if found is None:
                 continue
             (other, v, q, tangent), note = found
@@ -157,14 +172,21 @@ def _repeated(problem: CycleProblem, orbit: Solution, rounds: int) -> tuple[Cycl
 
 
 def _grown_in(
-    wider: CycleProblem, whole: Solution, p: float, choices: list[list[Edit]], rounds: int, changed: int
+    problem: CycleProblem,
+    wider: CycleProblem,
+    whole: Solution,
+    p: float,
+    choices: list[Edit],
+    rounds: int,
+    changed: int,
 ) -> tuple[Grown, str] | None:
-    """The orbit in which the first rounds, as many as `changed`, go through the change."""
-    for edits in zip(*choices[:changed]):
+    """The orbit in which the first rounds of the problem, as many as `changed`, go through one of the changes."""
+    for edit in choices:
         ways = SIZES if rounds == 2 else SIZES[:2]
-        found = grown(wider, whole, p, list(edits), ways, steady=rounds > 2)
+        edits = [edit.later(k, problem) for k in range(changed)]
+        found = grown(wider, whole, p, edits, ways, steady=rounds > 2)
         if found is not None:
-            return found, edits[0].change.what.value
+            return found, edit.change.what.value
     return None
 
 
@@ -176,25 +198,33 @@ def _escape(problem: CycleProblem, rounds: int) -> str:
     return f"at the border the period becomes {rounds} times as long"
 
 
-def _real_side(problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
-    """Sign of the parameter's change from the border into the branch's real part.
-
-    Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
-    border, so its tangent does not tell.
-    """
+def _sides(
+    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, length: float
+) -> list[tuple[np.ndarray, float]]:
+    """Solutions with the old word a little ahead of the border and behind it, as (u, p)."""
     kernels, work = assemble(problem.model), problem.scratch
     step, along = np.empty(u.size + 1), np.empty(u.size + 1)
-    length = 1e-4 / max(float(np.abs(tangent).max()), 1e-12)
-    sides = []
+    length /= max(float(np.abs(tangent).max()), 1e-12)
+    found = []
     for sign in (1.0, -1.0):
         there = u + sign * length * tangent[:-1]
         q = p + sign * length * float(tangent[-1])
         residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
         if residual < 1e-10:
-            sides.append((float(margins_of(problem, there, float(q))[index]), float(q) - p))
-    if not sides:
-        return 0.0
-    return float(np.sign(max(sides)[1]))
+            found.append((there, float(q)))
+    return found
+
+
+def _real_part(
+    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int, length: float
+) -> tuple[np.ndarray, float] | None:
+    """A solution in the branch's real part, close to the border.
+
+    Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
+    border, so its tangent does not tell.
+    """
+    sides = _sides(problem, u, p, tangent, length)
+    return max(sides, key=lambda side: float(margins_of(problem, *side)[index]), default=None)
 
 
 def _simulated(

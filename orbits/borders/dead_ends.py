@@ -19,6 +19,7 @@ CREEPS = (
 )
 PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be told from rest"
 TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be told from contact"
+FADING = "a stick that lasts {length:.1e} of the machine's own time, with {reserve:.1e} of its friction in reserve, is about to vanish as well: motions between the two borders cannot be resolved"
 UNKNOWN = (
     "no motion that goes on from this one was found, neither by the rules of the contacts nor by simulation"
 )
@@ -38,12 +39,26 @@ def dead_end(problem: CycleProblem, point: Any) -> str:
     ]
     if speeds:
         return PILING.format(speed=min(speeds))
-    return TOUCHING.format(gap=min(gaps)) if gaps else UNKNOWN
+    if gaps:
+        return TOUCHING.format(gap=min(gaps))
+    fading = _fading(orbit)
+    return FADING.format(length=fading[0], reserve=fading[1]) if fading else UNKNOWN
+
+
+def _fading(orbit: Solution) -> tuple[float, float] | None:
+    """Duration of a stick, and the reserve of friction at its start, where both are about to vanish."""
+    seen = {(m.kind, m.segment): m.value for m in orbit.relative_margins}
+    for place, letter in enumerate(orbit.word.events):
+        pair = seen.get(("duration", place), np.inf), seen.get(("stick", place), np.inf)
+        if letter == "s" and min(pair) > VANISHING and max(pair) < SLOW:
+            return pair
+    return None
 
 
 def piled_up(orbit: Solution) -> bool:
     """Whether a border orbit has an impact that is too slow to see what the next ones do."""
-    return any(m.kind == "approach" and VANISHING < m.value < UNRESOLVED for m in orbit.relative_margins)
+    speeds = orbit.approaches
+    return bool(np.any((speeds > VANISHING) & (speeds < UNRESOLVED)))
 
 
 def _gives_way_one_way(orbit: Solution) -> bool:

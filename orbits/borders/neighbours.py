@@ -13,30 +13,27 @@ from orbits.borders.rewriting import Edit, edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, STICK
+from orbits.cycles.claim import REAL
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
 from orbits.words.alphabet import LEFT
 
-REAL = -1e-9  # smallest margin of a real orbit
 NEAR = 1e-7  # margins this small vanish together
-SIZES = (
-    (2e-3, 2e-4, 2e-5),
-    (1e-4, 2e-5),
-    (2e-6, 2e-7),
-    (2e-8,),
-)  # of what grows beyond the border: ways to try
+# of what grows beyond the border: ways to try
+SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))
 LARGEST = 2e-3  # what grows is followed up to here where smaller sizes leave open what is real
 SHOWN = 1e-8  # margins smaller than this may be zeros: their signs are asked for further from the border
 ROUNDING = 1e-13  # of a margin
 STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is close
+ASTRAY = 0.1  # part of the way from the border by which a solution may miss its prediction: else it is of another branch
 GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution."""
-    return _examined(problem, u, p)[2 * problem.n_multipliers :]
+    return examined(problem, u, p)[2 * problem.n_multipliers :]
 
 
 def parameter_unit(problem: CycleProblem, p: float) -> float:
@@ -46,11 +43,12 @@ def parameter_unit(problem: CycleProblem, p: float) -> float:
 
 def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
     """Whether all multipliers of a solution lie inside the unit circle."""
-    pairs = _examined(problem, u, p)[: 2 * problem.n_multipliers]
+    pairs = examined(problem, u, p)[: 2 * problem.n_multipliers]
     return bool(np.all(np.hypot(pairs[::2], pairs[1::2]) < 1.0))
 
 
-def _examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
+def examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
+    """Multipliers as (re, im) pairs, then margins; the linearisation stays in the scratch."""
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
     with kept_back():
         assemble(problem.model).examine(problem.data, u, p, problem.scratch, row)
@@ -80,7 +78,7 @@ class Grown(NamedTuple):
     tangent: np.ndarray
 
 
-class _Held(NamedTuple):
+class Held(NamedTuple):
     """A solution in which what grows beyond the border has a given size."""
 
     u: np.ndarray
@@ -89,15 +87,30 @@ class _Held(NamedTuple):
     size: float
 
 
-def proposals(
-    problem: CycleProblem, u: np.ndarray, p: float, index: int
-) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
-    """Solutions next to the border with the words that the local rules propose."""
+class Place(NamedTuple):
+    """A border orbit, read so that what changes does not straddle the end of the word, and what the local rules propose there."""
+
+    problem: CycleProblem
+    u: np.ndarray
+    p: float
+    index: int
+    orbit: Solution
+    edits: list[Edit]
+
+
+def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Place:
+    """The border at which margin `index` of a solution vanishes."""
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
+    return Place(problem, u, p, index, orbit, edits_at(orbit, index, problem.length))
+
+
+def proposals(border: Place) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
+    """Solutions next to the border with the words that the local rules propose."""
+    problem, u, p, index, orbit, edits = border
     values = margins_of(problem, u, p)
     together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
-    for first in edits_at(orbit, index, problem.length):
+    for first in edits:
         chosen = [first]
         for j in together:
             for edit in edits_at(orbit, j, problem.length):
@@ -105,8 +118,8 @@ def proposals(
                 if alike and not any(_overlap(edit.change, other.change) for other in chosen):
                     chosen.append(edit)
                     break
-        for edits in [chosen, [first]] if len(chosen) > 1 else [chosen]:
-            found = grown(problem, orbit, p, edits)
+        for several in [chosen, [first]] if len(chosen) > 1 else [chosen]:
+            found = grown(problem, orbit, p, several)
             if found is not None:
                 yield found.problem, found.u, found.p, found.tangent, first.change.what.value
 
@@ -125,9 +138,31 @@ def grown(
 ) -> Grown | None:
     """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
-    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable (which costs
-    less to see).
+    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
     """
+    start = with_edits(problem, orbit, edits)
+    if start is None:
+        return None
+    other, guess, first, change = start
+    if change.grows is Grows.MARGIN:
+        found = _beside(other, guess, p, orbit, steady)
+        vanishing = None if found is not None else vanishing_in(other, guess, p, first, change)
+        if vanishing is None:
+            return found
+        first, change = vanishing
+    for sizes in ways:
+        found = climb(other, guess, first, change, p, sizes)
+        if found and steady and not stable_at(other, found[-1].u, found[-1].p):
+            return None
+        if found and _begins_at(orbit, other, first, change, p, found):
+            return Grown(other, *found[-1][:3])
+    return None
+
+
+def with_edits(
+    problem: CycleProblem, orbit: Solution, edits: list[Edit]
+) -> tuple[CycleProblem, np.ndarray, int, Change] | None:
+    """The problem of the new word, its unknowns at the border, and where what grows stands, with its change; None for no word."""
     if problem.symmetric:  # edit the half, and mirror it
         half = problem.length
         if any(edit.change.stop > half and edit.change.start != half for edit in edits):
@@ -142,43 +177,35 @@ def grown(
         other = problem.sibling(word, problem.periods, problem.symmetric)
     except ValueError:
         return None
-    guess = other.reduce(nodes)
-    change = edits[0].change
-    if change.grows is Grows.MARGIN:
-        found = _beside(other, guess, p, orbit, steady)
-        vanishing = None if found is not None else _vanishing(other, guess, p)
-        if vanishing is None:
-            return found
-        # another round still has what vanishes at the border: it grows
-        first, grows = vanishing
-        events = other.word.events[first : first + 2]
-        change = replace(change, start=first, stop=first, events=events, grows=grows)
-    for sizes in ways:
-        found = _climb(other, guess, first, change, p, sizes)
-        if found and steady and not stable_at(other, found[-1].u, found[-1].p):
-            return None
-        if found and _begins_at(orbit, other, first, change, p, found):
-            return Grown(other, *found[-1][:3])
-    return None
+    return other, other.reduce(nodes), first, edits[0].change
 
 
-def _vanishing(other: CycleProblem, guess: np.ndarray, p: float) -> tuple[int, Grows] | None:
-    """An impact of vanishing speed, or a stick of vanishing length; there the equations are singular."""
+def vanishing_in(
+    other: CycleProblem, guess: np.ndarray, p: float, first: int, change: Change
+) -> tuple[int, Change] | None:
+    """Where another round still has what vanishes at the border, and a change that says that it grows.
+
+    An impact of vanishing speed, or a stick of vanishing length; there the equations are singular.
+    """
     orbit, units = other.orbit(guess, p), other.equations.unit
     for place in range(other.length):
         kind = other.word.letter(place).kind
         if kind == HIT and abs(orbit.events.rate_post[place]) / units[place, 1] < NEAR:
-            return place, Grows.SPEED
-        if kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < NEAR:
-            return place, Grows.GAP
+            grows = Grows.SPEED
+        elif kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < NEAR:
+            grows = Grows.GAP
+        else:
+            continue
+        events = other.word.events[place : place + 2]
+        return place, replace(change, start=place, stop=place, events=events, grows=grows)
     return None
 
 
-def _climb(
+def climb(
     other: CycleProblem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
-) -> list[_Held]:
+) -> list[Held]:
     """Solve with what grows beyond the border held at each of the sizes in turn, as long as that converges."""
-    found: list[_Held] = []
+    found: list[Held] = []
     u, q = guess, p
     for wanted in sizes:
         held = _hold(other, u, q, first, change, p, wanted)
@@ -191,7 +218,7 @@ def _climb(
 
 def _hold(
     other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Change, p: float, wanted: float
-) -> _Held | None:
+) -> Held | None:
     """Solve with what grows beyond the border at p held at a size."""
     n, size = other.model.node, other.dimension
     kernels, work = assemble(other.model), other.scratch
@@ -222,7 +249,7 @@ def _hold(
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
         return None
-    return _Held(u, float(q_new), tangent, wanted)
+    return Held(u, float(q_new), tangent, wanted)
 
 
 def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) -> float:
@@ -233,12 +260,11 @@ def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) ->
 
 
 def _begins_at(
-    border: Solution, other: CycleProblem, first: int, change: Change, p: float, found: list[_Held]
+    border: Solution, other: CycleProblem, first: int, change: Change, p: float, found: list[Held]
 ) -> bool:
     """Whether the solutions, from large to small, are real ones that tend to the border orbit.
 
-    Next to the border the margins that vanish there are too small to have a sign: those of the same motion further away
-    tell.
+    Next to the border margins that vanish there are too small to have a sign: those of the same motion further away tell.
     """
     near, second, size = found[-1], None, found[-1].size
     values = margins_of(other, near.u, near.p)
@@ -259,12 +285,10 @@ def _begins_at(
     return tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p))
 
 
-def _outwards(
-    other: CycleProblem, first: int, change: Change, p: float, found: list[_Held]
-) -> Iterator[_Held]:
+def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: list[Held]) -> Iterator[Held]:
     """The solutions from small to large, and on to larger sizes."""
     yield from found[-2::-1]
-    held: _Held | None = found[0]
+    held: Held | None = found[0]
     while held is not None and held.size < LARGEST:
         held = _hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, LARGEST))
         if held is not None:
@@ -286,10 +310,11 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
         sides = []
         for side in (1.0, -1.0):
             q = p + side * distance * unit
-            u = at_border + (q - p) * tangent[:-1]
-            along = tangent.copy()
+            ahead = at_border + (q - p) * tangent[:-1]
+            u, along = ahead.copy(), tangent.copy()
             residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
-            if residual < 1e-10:
+            astray = np.abs(u - ahead).max() > ASTRAY * np.abs(ahead - at_border).max() + SHOWN
+            if residual < 1e-10 and not astray:
                 sides.append((float(margins_of(other, u, q).min()), u, q, side * along))
         if sides:
             margin, u, q, along = max(sides, key=lambda entry: entry[0])

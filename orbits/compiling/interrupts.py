@@ -6,25 +6,39 @@ until the compiled code is done.
 
 from __future__ import annotations
 
-import signal
+import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
-from types import FrameType
+from signal import SIGINT
+from types import FrameType, TracebackType
+from typing import Any
+
+# what `signal` hands on to: it makes enumerations of handlers, which takes longer than a short word's mathematics
+_plain: Any = sys.modules["_signal"]
 
 
-@contextmanager
-def kept_back() -> Iterator[None]:
+class kept_back:
     """Keep an interrupt until the end; whoever listens to interrupts (Python itself, or a handler in its place) gets it then."""
-    listener = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(listener):
-        yield
-        return
-    came: list[tuple[int, FrameType | None]] = []
-    signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, listener)
-    if came:
-        listener(*came[0])
+
+    __slots__ = ("came", "listener")
+
+    def __init__(self) -> None:
+        self.listener: Any = None
+        self.came: tuple[int, FrameType | None] | None = None
+
+    def __enter__(self) -> None:
+        listener = _plain.getsignal(SIGINT)
+        if threading.current_thread() is threading.main_thread() and callable(listener):
+            _plain.signal(SIGINT, self._comes)
+            self.listener = listener
+
+    def _comes(self, number: int, frame: FrameType | None) -> None:
+        self.came = self.came or (number, frame)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.listener is None:
+            return
+        _plain.signal(SIGINT, self.listener)
+        if self.came is not None and kind is None:
+            self.listener(*self.came)

@@ -37,6 +37,8 @@ class What(Enum):
     STICK_HITS = "a stick hits a wall"
     CROSSINGS_APPEAR = "a flight touches a switch"
     CROSSINGS_VANISH = "two crossings of a switch vanish"
+    CROSSING_APPEARS = "an impact leaves a switch to be crossed"
+    CROSSING_VANISHES = "a crossing of a switch falls into an impact"
     ORDER_CHANGES = "two events change their order"
 
 
@@ -105,6 +107,8 @@ class Site(NamedTuple):
         For a contact that is met: the event at which that is, -1 for the inside of the flight.
     sign : int
         Of the velocity after a slip whose reserve vanishes.
+    ahead : bool
+        Whether event `at` is the one before the flight in which the contact is met, not the one after it.
     """
 
     word: Any
@@ -113,6 +117,7 @@ class Site(NamedTuple):
     unit: int
     at: int = -1
     sign: int = 0
+    ahead: bool = False
 
     def entry(self, place: int, contact: int) -> int:
         """What a contact does after an event."""

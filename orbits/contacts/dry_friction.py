@@ -36,6 +36,8 @@ class FrictionLaw:
 
     name: str
     letters: Sequence[str]
+    reversal = TURN
+    """The event at which its velocity changes its sign by itself."""
 
     def __init__(self, name: str, letters: Sequence[str] = ("t", "s", "u")) -> None:
         self.name, self.letters = name, tuple(letters)

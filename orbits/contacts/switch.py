@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -17,6 +18,8 @@ class SwitchLaw:
     """What a switch means for words: a letter for each crossing, its sign as mode, and how crossings come and go."""
 
     name: str
+    reversal = SWITCH
+    """The event at which its sign changes by itself."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -43,7 +46,14 @@ class SwitchLaw:
         """The kind of border at which two consecutive crossings fall together."""
         return "switch-graze"
 
-    def signs(self, letters: Sequence[Letter], j: int, noted: Mapping[int, int], default: int) -> list[int]:
+    def signs(
+        self,
+        letters: Sequence[Letter],
+        j: int,
+        noted: Mapping[int, int],
+        default: int,
+        hits: Mapping[int, int | None],
+    ) -> list[int]:
         """The sign after each event of a word.
 
         Parameters
@@ -56,6 +66,8 @@ class SwitchLaw:
             Event -> the sign after it, where the word says so.
         default : int
             Where no event of the word fixes it.
+        hits : mapping
+            Impacts that jump over the surface -> the sign after them (before them: the opposite); None: either.
 
         Raises
         ------
@@ -63,29 +75,54 @@ class SwitchLaw:
         """
         n = len(letters)
         own = [i for i in range(n) if letters[i].contact == j]
-        if not own:
+        places = sorted([*own, *hits])
+        if not places:
             return [next(iter(noted.values()), default)] * n
-        if len(own) == 1 or any(letters[i].sign == letters[own[a - 1]].sign for a, i in enumerate(own)):
+        fixed = {i: letters[i].sign for i in own} | {i: sign for i, sign in hits.items() if sign is not None}
+        last = [bisect_right(places, i) - 1 for i in range(n)]  # -1: the last one, cyclically
+        after = {places[last[i]]: sign for i, sign in noted.items()} | fixed
+        for k, i in enumerate(places):  # what comes next says what was before it
+            if i in fixed:
+                after.setdefault(places[k - 1], -fixed[i])
+        for k in range(2 * len(places)):  # an impact that may leave either sign keeps the one there was
+            before = after.get(places[(k - 1) % len(places)])
+            if before is not None:
+                after.setdefault(places[k % len(places)], before)
+        after = {i: after.get(i, default) for i in places}
+        if any(after[places[k - 1]] != -fixed[i] for k, i in enumerate(places) if i in fixed):
             raise NotAlternating
-        column = [0] * n
-        sign = letters[own[-1]].sign
-        for i in range(n):
-            sign = letters[i].sign if letters[i].contact == j else sign
-            column[i] = sign
-        return column
+        return [after[places[k]] for k in last]
 
     # ------------------------------------------------------------------ how the word changes
     def met(self, site: Site, j: int) -> list[Change]:
         """A flight touches the surface: two crossings are born."""
         word = site.word
         if len(word) and site.lengths[site.place] < CLOSE:
-            return self.weakened(site, j)
+            found = self.collapsed(site, j)
+            if found:
+                return found
+        if site.at >= 0 and (word.letter(site.at).contact, j) in word.alphabet.flips:
+            return [self._beside(site, j)]
+        if len(word) and site.lengths[site.place] < CLOSE:
+            return []
         mode, start = word.mode(site.place), site.place + 1 if len(word) else 0
         here, text_of = site.entry(site.place, j), word.alphabet.text_of
         events = (text_of(j, SWITCH, -here), text_of(j, SWITCH, here))
         modes = (word.alphabet.with_entry(mode, j, -here), mode)
         spots = (Spot(None, later=-0.5), Spot(None, later=0.5))
         return [Change(start, start, events, modes, spots, Grows.GAP, What.CROSSINGS_APPEAR)]
+
+    def _beside(self, site: Site, j: int) -> Change:
+        """An impact jumps to the surface, or from it: there is a crossing just after it, or just before it."""
+        word, at = site.word, site.at
+        here, text_of, hit = site.entry(site.place, j), word.alphabet.text_of, word.events[at]
+        if site.ahead:
+            events, modes = (hit, text_of(j, SWITCH, here)), (site.mode(at, j, -here), word.mode(at))
+            spots = (Spot(at), Spot(at, later=1.0))
+        else:
+            events, modes = (text_of(j, SWITCH, -here), hit), (site.mode(at - 1, j, -here), word.mode(at))
+            spots = (Spot(at, later=-1.0), Spot(at))
+        return Change(at, at + 1, events, modes, spots, Grows.GAP, What.CROSSING_APPEARS)
 
     def weakened(self, site: Site, j: int) -> list[Change]:
         """Two crossings that meet disappear."""
@@ -98,7 +135,13 @@ class SwitchLaw:
         return found
 
     def collapsed(self, site: Site, j: int) -> list[Change]:
-        """Two consecutive crossings fall together."""
+        """Two consecutive crossings fall together, or one falls into an impact that jumps over the surface."""
+        word, place = site.word, site.place
+        for hit, own in ((place, place + 1), (place + 1, place)):
+            jumped = (word.letter(hit).contact, j) in word.alphabet.flips
+            if jumped and place + 1 < len(word) and site.is_event(own, j, SWITCH):
+                events, modes, spots = (word.events[hit],), (word.mode(place + 1),), (Spot(hit),)
+                return [Change(place, place + 2, events, modes, spots, Grows.MARGIN, What.CROSSING_VANISHES)]
         return self.weakened(site, j)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
-from orbits.contacts.letters import HIT, STICK, TURN, Letter
+from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Letter
 
 FREE, HELD = 0, 1  # modes
 
@@ -58,11 +58,11 @@ class WallLaw:
         word, place = site.word, site.at
         letter = word.letter(place)
         sign = word.alphabet.flips.get((j, letter.contact))
-        if sign is None or letter.kind not in (TURN, STICK) or site.entry(place - 1, letter.contact) != -sign:
+        if sign is None or site.entry(place - 1, letter.contact) != -sign:
             return []
         text = word.alphabet.text_of(j, HIT)
         after = site.mode(place - 1, letter.contact, sign)
-        if letter.kind == TURN:
+        if letter.kind in (TURN, SWITCH):
             spots = (Spot(place),)
             return [Change(place, place + 1, (text,), (after,), spots, Grows.SPEED, What.TURN_HITS)]
         events, modes = (text, letter.text), (after, word.mode(place))
@@ -70,7 +70,7 @@ class WallLaw:
         return [Change(place, place + 1, events, modes, spots, Grows.SPEED, What.STICK_HITS)]
 
     def weakened(self, site: Site, j: int) -> list[Change]:
-        """The speed of an impact vanishes: it disappears, or, where it turned a friction's velocity, becomes a turn."""
+        """The speed of an impact vanishes: it disappears, or, where it turned a velocity, becomes a turn (of a switch: a crossing)."""
         word, place = site.word, site.place
         turned = [
             k
@@ -87,7 +87,8 @@ class WallLaw:
             stick, modes = word.events[place + 1], (word.mode(place + 1),)
             spots = (Spot(place, clock=place + 1),)
             found.append(Change(place, place + 2, (stick,), modes, spots, Grows.MARGIN, What.IMPACT_MERGES))
-        turn, modes = word.alphabet.text_of(k, TURN), (word.mode(place),)
+        reversal = word.alphabet.contacts[k].reversal
+        turn, modes = word.alphabet.text_of(k, reversal, site.entry(place, k)), (word.mode(place),)
         found.append(
             Change(place, place + 1, (turn,), modes, (Spot(place),), Grows.MARGIN, What.IMPACT_BECOMES_TURN)
         )

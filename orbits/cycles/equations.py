@@ -6,11 +6,12 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from orbits.compiling.arguments import CycleData, Workspace
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.rest_equations import RestEquations
@@ -20,6 +21,8 @@ from orbits.machines.path import along
 from orbits.words import Word
 
 PLAIN = (1.0, 1.0)
+
+_shared = lru_cache(maxsize=64)(workspace)
 
 
 class Equations:
@@ -36,7 +39,7 @@ class Equations:
         Whether the motion may be moved as a whole; `pinned` says how that is prevented.
     units : (float, float)
         Length and rate in which the unknowns are counted; see `Model.natural_units`.
-    data : tuple
+    data : CycleData
         First argument of the kernels.
 
     Raises
@@ -82,7 +85,7 @@ class Equations:
             own, path = params / factors, np.array([self.path[0] / factors, self.path[1]])
             law = law.copy() if len(law) else np.vstack([np.ones(params.size), np.eye(params.size)])
             law[0] /= factors
-        self.data = (
+        self.data = CycleData(
             word.codes[:length].copy(),
             word.mode_codes[:length].copy(),
             own,
@@ -100,17 +103,14 @@ class Equations:
         """linearise, bordered, inspect, newton, examine: the compiled functions of the model."""
         return assemble(self.model)
 
-    def workspace(self) -> tuple[np.ndarray, ...]:
+    def workspace(self) -> Workspace:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
-    @cached_property
-    def scratch(self) -> tuple[np.ndarray, ...]:
-        """A workspace for single calls, whose contents nobody relies on."""
-        return self.workspace()
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name != "scratch"}  # it holds addresses
+    @property
+    def scratch(self) -> Workspace:
+        """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
+        return _shared(self.length, self.model.node, self.params.size)
 
     def values(self, p: float | np.ndarray) -> np.ndarray:
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
@@ -149,6 +149,8 @@ def unit_nodes(word: Word, node: int, units: tuple[float, float]) -> np.ndarray:
     """What one dimensionless node is, shape (L, n): phases have no unit, then B or w, v and v'."""
     length, rate = units
     unit = np.ones((len(word), node))
+    if units == PLAIN:
+        return unit
     unit[:, 1] = np.where([letter in "LR" for letter in word.events], length * rate, length)
     unit[:, 2::2], unit[:, 3::2] = length, length * rate
     return unit

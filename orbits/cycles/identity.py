@@ -85,7 +85,7 @@ def canonical(
     direction = _direction(flat.size)
     best, best_score = flat.ravel(), -np.inf
     for mirrored, place in word.readings(mirror):
-        turned = np.roll(flat, -place, axis=0)
+        turned = np.concatenate([flat[place:], flat[:place]])
         vector = (image * turned if mirrored else turned).ravel()
         score = float(direction @ vector)
         if score > best_score + 1e-12:

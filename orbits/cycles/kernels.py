@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from orbits.compiling import arguments, trigonometry
 from orbits.compiling import decorators as compiling
-from orbits.compiling import trigonometry
 from orbits.compiling.ahead import wait_for
 from orbits.compiling.decorators import specialise
 from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
@@ -44,8 +44,8 @@ multipliers: Any = None
 def _inspect(data, u, p, work, row):
     """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
     unpin(data, work)
-    A, D, re, im, scratch = work[1], work[2], work[12], work[13], work[11]
-    events, length = data[0], A.shape[0]
+    A, D, re, im, scratch = work.A, work.D, work.re, work.im, work.scratch
+    events, twist, length = data.events, data.twist, A.shape[0]
     for i in range(length):
         # Nothing later depends on when a stick begins or ends: w' = 0 there and v'' is the same before and after, at a slip
         # w'' = 0, too. Those phases move with 1/w'' and one over the rate at which friction gives way, which grow without
@@ -55,16 +55,16 @@ def _inspect(data, u, p, work, row):
             A[i, 0, :] = 0.0
             D[i, 0, :] = 0.0
             D[i, 0, 0] = 1.0
-    multipliers(A, D, data[4], re, im, scratch)
+    multipliers(A, D, twist, re, im, scratch)
     n = re.size
     count = n
     if (
-        data[6] != 0
+        data.pinned != 0
     ):  # an impact-free motion may be moved as a whole: drop that multiplier, nearest to the twist
         count = n - 1
         trivial = 0
         for j in range(1, n):
-            if np.hypot(re[j] - data[4], im[j]) < np.hypot(re[trivial] - data[4], im[trivial]):
+            if np.hypot(re[j] - twist, im[j]) < np.hypot(re[trivial] - twist, im[trivial]):
                 trivial = j
         for j in range(trivial, count):
             re[j] = re[j + 1]
@@ -82,7 +82,7 @@ def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
     """
     size = u.size
     residual = linearise(data, u, p, work)
-    trial = work[15]
+    trial = work.trial
     for iteration in range(limit):
         sign = bordered(data, work, border, 0.0, step, tangent)
         if sign == 0.0 or not np.isfinite(step[0]):
@@ -170,6 +170,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         kernels.__file__,
         *getattr(kernels, "SOURCES", ()),
         compiling.__file__,
+        arguments.__file__,
         two_unknowns.__file__,
         block_cyclic.__file__,
         by_address.__file__,

@@ -15,7 +15,7 @@ import numpy as np
 
 from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
-from orbits.machines.events import contacts, event_table, parameter
+from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
 from orbits.machines.measures import COMMON, KINDS, MEANS, names
 from orbits.words import Word
@@ -60,7 +60,6 @@ def dimensionless(
     table = event_table(model, word, nodes, params)
     hits = np.array([letter in "LR" for letter in word.events])
     away = np.array([1.0 if letter == "L" else -1.0 for letter in word.events])[hits]
-    eps = parameter(model, params, "mass_ratio")
     nothing = np.full(m, np.nan)
     result: dict[str, np.ndarray] = {}
     means = [name for name in wanted if name in MEANS]
@@ -82,7 +81,7 @@ def dimensionless(
             result[name] = model.friction_loss(steps, params)
         elif name == "impact_loss":
             r = contacts(model, word, params)[2]
-            loss = np.where(hits, (1.0 - r**2) * table.rate_pre**2 / (2.0 * (1.0 + eps)), 0.0)
+            loss = np.where(hits, model.impact_loss(r, table.rate_pre, params), 0.0)
             result[name] = loss.sum(axis=1)
         elif not hits.any():
             result[name] = nothing if not name.startswith("impact_speed") else np.zeros(m)

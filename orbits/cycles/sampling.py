@@ -8,6 +8,8 @@ from orbits.cycles.cycle import Cycle
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of, states_of
 
+PER_PERIOD = 200  # instants of a forcing period at which motions are compared
+
 
 def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
     """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
@@ -55,7 +57,7 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
     engine.sample(states[segment], orbit.params, ahead, out)
     phase = orbit.nodes[segment, 0] + ahead
     w, w_rate, v, v_rate = out.T
-    eps = orbit.parameters["mass_ratio"]
+    cavity, absorber = orbit.model.bodies(w, v, orbit.params)
     return {
         "tau": (phase - phase[0]) / orbit.parameters["frequency"],
         "phase": phase,
@@ -63,19 +65,34 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
         "w_rate": w_rate,
         "v": v,
         "v_rate": v_rate,
-        "cavity": (v + eps * w) / (1.0 + eps),
-        "absorber": (v - w) / (1.0 + eps),
+        "cavity": cavity,
+        "absorber": absorber,
         "segment": segment,
     }
+
+
+def positions(orbit: Cycle) -> np.ndarray:
+    """w at `PER_PERIOD` phases of each forcing period, from phase zero on, shape (periods * PER_PERIOD,)."""
+    count = PER_PERIOD * orbit.periods
+    if not len(orbit.word):
+        return np.zeros(count)
+    engine, first = stepper(orbit.model.name), orbit.nodes[0, 0]
+    begins = np.maximum.accumulate(orbit.nodes[:, 0] - first)
+    wanted = (np.arange(count) * (2.0 * np.pi / PER_PERIOD) - first) % (2.0 * np.pi * orbit.periods)
+    segment = np.searchsorted(begins, wanted, side="right") - 1
+    states = states_of(engine, orbit.params, orbit.word.codes, orbit.word.mode_codes, orbit.nodes)
+    out = np.empty((count, 4))
+    engine.sample(states[segment], orbit.params, wanted - begins[segment], out)
+    return out[:, 0]
 
 
 def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:
     """The same of the absorber that rides with its cavity."""
     phase = np.linspace(0.0, 2.0 * np.pi, points)
-    eps, omega, rest = orbit.parameters["mass_ratio"], orbit.parameters["frequency"], orbit.model.rest
+    omega, rest = orbit.parameters["frequency"], orbit.model.rest
     v, v_rate = rest.cavity_motion(orbit.params, np.linalg.solve(*rest.equations(orbit.params)), phase)
     nothing = np.zeros_like(phase)
-    place = v / (1.0 + eps)
+    place, _ = orbit.model.bodies(nothing, v, orbit.params)
     return {
         "tau": phase / omega, "phase": phase, "w": nothing, "w_rate": nothing, "v": v, "v_rate": v_rate,
         "cavity": place, "absorber": place, "segment": np.zeros(points, int),

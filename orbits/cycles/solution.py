@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from orbits.compiling.interrupts import kept_back
 from orbits.cycles import measures as measuring
+from orbits.cycles.claim import Claim
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
 from orbits.cycles.equations import equations
-from orbits.cycles.margins import Margin, limits_of, margin_units, named_margins
-from orbits.cycles.sampling import sample
+from orbits.cycles.margins import EVENT, PER_NODE, Margin, margin_units, named_margins
+from orbits.cycles.sampling import positions, sample
 
-REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
 TOLERANCE = 1e-12  # of Newton's method, in the unknowns
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Solution(Cycle):
+class Solution(Claim, Cycle):
     """A cycle that is claimed to solve its equations: how well, how stable, and whether a machine can follow it."""
 
     @cached_property
@@ -32,26 +32,6 @@ class Solution(Cycle):
         )
         residual, spectrum, margins = _examined(system, self.nodes)
         return residual, system.to_multipliers(spectrum), margins
-
-    @property
-    def residual(self) -> float:
-        """Largest residual of the maps."""
-        return self._examined[0]
-
-    @property
-    def multipliers(self) -> np.ndarray:
-        """Multipliers of the period, complex, largest modulus first; an impact-free motion's trivial +1 is left out."""
-        return self._examined[1]
-
-    def with_multipliers(self, multipliers: np.ndarray) -> Self:
-        """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits.
-
-        Where something has no length or speed at all the maps' own derivatives are rounding.
-        """
-        found = replace(self)
-        residual, _, margins = self._examined
-        found.__dict__["_examined"] = (residual, limits_of(multipliers), margins)
-        return found
 
     @property
     def half_multipliers(self) -> np.ndarray:
@@ -79,28 +59,15 @@ class Solution(Cycle):
         return named_margins(self.word, own * units[: own.size])
 
     @property
+    def approaches(self) -> np.ndarray:
+        """The margins of the impacts, their speeds, in units of the machine's own size."""
+        own = self._examined[2][EVENT::PER_NODE]
+        return own[self.word.codes[: own.size] < 2]
+
+    @property
     def relative_margins(self) -> list[Margin]:
         """The same in units of the machine's own size."""
         return named_margins(self.word, self._examined[2])
-
-    @property
-    def margin(self) -> float:
-        """The smallest margin, in units of the machine's own size."""
-        return float(self._examined[2].min())
-
-    @property
-    def real(self) -> bool:
-        """Whether a machine can follow the orbit: all margins positive."""
-        return self.margin > REAL
-
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return bool(np.all(np.abs(self.multipliers) < 1.0))
-
-    def measure(self, name: str) -> float:
-        """One measure of the orbit; names: `orbits.cycles.measures.COMMON` and the machine's own."""
-        return float(self.measures(name)[name])
 
     def measures(self, *wanted: str) -> dict[str, float]:
         """Measures by name, all of them if none is named."""
@@ -116,9 +83,9 @@ class Solution(Cycle):
         return sample(self, points)
 
     @cached_property
-    def path(self) -> dict[str, np.ndarray]:
-        """The motion at 400 points a forcing period, kept: distances to several other orbits ask for it."""
-        return sample(self, 400 * self.periods)
+    def track(self) -> np.ndarray:
+        """w at equal phases of the forcing, kept: distances to several other orbits ask for it; see `orbits.cycles.sampling.positions`."""
+        return positions(self)
 
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
@@ -131,5 +98,5 @@ def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.nda
     row = np.empty(count + system.n_margins)
     value = system.value(system.params)
     with kept_back():
-        residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.workspace(), row)
+        residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
     return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]

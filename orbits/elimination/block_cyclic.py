@@ -16,6 +16,7 @@ from types import SimpleNamespace
 import numpy as np
 from numba import njit
 
+from orbits.compiling.arguments import Workspace
 from orbits.compiling.decorators import OPTIONS, kernel
 from orbits.elimination import two_unknowns
 from orbits.elimination.by_address import call, links
@@ -25,18 +26,8 @@ from orbits.multipliers.periodic_schur import scratch_size
 TINY = 1e-300
 
 
-def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]:
-    """Arrays for one system of `length` nodes of `node` unknowns: allocated once, used by every kernel.
-
-    Returns
-    -------
-    tuple
-        ``(F, A, D, Q, params, trig, stored, panel, small, solution, pin, scratch, re, im,
-        order, trial)`` with shapes ``(L, n)``,
-        ``(L, n, n)`` twice, ``(L, n)``, ``(2 P,)``, ``(L + 1, 8)``, ``(L, n, 3 n + 2)``, ``(2 n, 3 n + 2)``,
-        ``(n, n + 2)``, ``(2, L n + 1)``, ``(4 n + 2,)``, that of `orbits.multipliers.periodic_schur`, ``(n,)`` twice, ``(n + 1,)``,
-        ``(L n,)``; then those of `orbits.elimination.vectorised`, and ``(L + 1,)`` twice.
-    """
+def workspace(length: int, node: int, parameters: int) -> Workspace:
+    """Arrays for one system of `length` nodes of `node` unknowns and `parameters` numbers."""
     n = node
     long = length if n == 2 else 0
     F, A, D, Q = (
@@ -46,29 +37,34 @@ def workspace(length: int, node: int, parameters: int) -> tuple[np.ndarray, ...]
         np.zeros((length, n)),
     )
     solution, lanes, short = np.zeros((2, length * n + 1)), np.zeros(lanes_size(long)), short_cycle(long)
+    short_F, short_A, short_D, short_Q, short_solution = short
     listed = (F, A, D, Q, lanes, *short, solution)
-    return (
+    return Workspace(
         F,
         A,
         D,
         Q,
-        np.zeros(2 * parameters),
-        np.zeros((length + 1, 8)),
-        np.zeros((length, n, 3 * n + 2)),
-        np.zeros((2 * n, 3 * n + 2)),
-        np.zeros((n, n + 2)),
-        solution,
-        np.zeros(4 * n + 2),
-        np.zeros(scratch_size(length, n)),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n + 1, np.int64),
-        np.zeros(length * n),
-        lanes,
-        *short,
-        np.zeros(length + 1),
-        np.zeros(length + 1),
-        links(listed if n == 2 else (np.zeros(0),)),
+        numbers=np.zeros(2 * parameters),
+        trig=np.zeros((length + 1, 8)),
+        stored=np.zeros((length, n, 3 * n + 2)),
+        panel=np.zeros((2 * n, 3 * n + 2)),
+        small=np.zeros((n, n + 2)),
+        solution=solution,
+        pin=np.zeros(4 * n + 2),
+        scratch=np.zeros(scratch_size(length, n)),
+        re=np.zeros(n),
+        im=np.zeros(n),
+        order=np.zeros(n + 1, np.int64),
+        trial=np.zeros(length * n),
+        lanes=lanes,
+        short_F=short_F,
+        short_A=short_A,
+        short_D=short_D,
+        short_Q=short_Q,
+        short_solution=short_solution,
+        sines=np.zeros(length + 1),
+        cosines=np.zeros(length + 1),
+        links=links(listed if n == 2 else (np.zeros(0),)),
     )
 
 
@@ -262,7 +258,8 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
 
         Parameters
         ----------
-        data, work : tuple
+        data : CycleData
+        work : Workspace
             Of the problem; the last linearisation is read from `work`.
         border, step, tangent : float array (L n + 1,)
         target : float
@@ -272,16 +269,27 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         float
             Sign of the determinant (up to a constant of the word), 0 if the matrix is singular.
         """
-        F, A, D, Q = work[0], work[1], work[2], work[3]
-        stored, panel, small, solution, order = work[6], work[7], work[8], work[9], work[14]
+        F, A, D, Q, solution = work.F, work.A, work.D, work.Q, work.solution
         size = solution.shape[1] - 1
         if n == 2:
-            short = (work[17], work[18], work[19], work[20])
             sign = eliminate_lanes(
-                F, A, D, Q, data[4], stored, small, order, solution, short, work[21], work[24]
+                F,
+                A,
+                D,
+                Q,
+                data.twist,
+                work.stored,
+                work.small,
+                work.order,
+                solution,
+                (work.short_F, work.short_A, work.short_D, work.short_Q),
+                work.short_solution,
+                work.links,
             )
         else:
-            sign = eliminate(F, A, D, Q, data[4], stored, panel, small, order, solution)
+            sign = eliminate(
+                F, A, D, Q, data.twist, work.stored, work.panel, work.small, work.order, solution
+            )
         along, across = 0.0, 0.0
         for i in range(size + 1):
             across += border[i] * solution[0, i]

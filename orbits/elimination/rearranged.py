@@ -20,7 +20,7 @@ def flip(data, work, sign):
     T is the closure's own twist. The shift of an impact-free motion is put back: turned round, the closure needs no pin.
     """
     unpin(data, work)
-    D = work[2]
+    D = work.D
     last = D.shape[0] - 1
     for i in range(D.shape[1]):
         for c in range(D.shape[1]):
@@ -35,8 +35,8 @@ def transpose(data, work, column, other):
     D_k^T and A_{k+1}^T: block k of the new system. The closure's twist, which scales columns of D_{L-1}, scales rows here;
     in the last block it is taken out of the place where the elimination puts it.
     """
-    A, D, twist = work[1], work[2], data[4]
-    new_A, new_D, Q = other[1], other[2], other[3]
+    A, D, twist = work.A, work.D, data.twist
+    new_A, new_D, Q = other.A, other.D, other.Q
     length, n = A.shape[0], A.shape[1]
     for k in range(length):
         following = k + 1 if k + 1 < length else 0
@@ -50,7 +50,7 @@ def transpose(data, work, column, other):
 
 def matrix(data, work) -> np.ndarray:
     """The whole Jacobian, shape (L n, L n), of the linearisation in a workspace."""
-    A, D, twist = work[1], work[2], data[4]
+    A, D, twist = work.A, work.D, data.twist
     length, n = A.shape[0], A.shape[1]
     whole = np.zeros((length, n, length, n))
     np.einsum("kikj->kij", whole)[...] = A  # views: blocks on the diagonal, and beside it

@@ -30,14 +30,14 @@ import numpy as np
 
 from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
-from orbits.machines.path import single
 from orbits.machines.rest import Rest
+from orbits.machines.varying import Varying
 
 if TYPE_CHECKING:
     from orbits.words import Word
 
 
-class Model:
+class Model(Varying):
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
     name: ClassVar[str]
@@ -185,6 +185,38 @@ class Model:
         return r, r
 
     @classmethod
+    def bodies(cls, w: Any, v: Any, params: np.ndarray) -> tuple[Any, Any]:
+        """Displacements q1 of the cavity and q2 of the absorber from w = q1 - q2 and v = q1 + eps q2; velocities likewise.
+
+        Shapes follow `w` and `v`, against which `params` (..., P) is broadcast.
+        """
+        eps = cls.column(params, "mass_ratio")
+        return (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps)
+
+    @classmethod
+    def relative(cls, cavity: Any, absorber: Any, params: np.ndarray) -> tuple[Any, Any]:
+        """w and v from the displacements of cavity and absorber, the inverse of `bodies`."""
+        return cavity - absorber, cavity + cls.column(params, "mass_ratio") * absorber
+
+    @classmethod
+    def at_home(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (l, n); of a motion without impacts with the absorber moved so that the mean of w is 0 (q1 stays)."""
+        if not len(codes) or np.any(codes < 2) or np.any(codes > 4):
+            return nodes
+        moved = nodes.copy()
+        mean = nodes[:, 1].mean()
+        moved[:, 1] -= mean
+        if nodes.shape[1] > 2:
+            moved[:, 2] += cls.column(params, "mass_ratio") * mean
+        return moved
+
+    @classmethod
+    def impact_loss(cls, restitution: Any, speed: Any, params: np.ndarray) -> Any:
+        """Energy that impacts of these relative speeds (m, L) take, (1 - r^2) w'^2 / (2 (1 + eps)), per unit of the absorber's mass."""
+        eps = cls.column(params, "mass_ratio")[..., np.newaxis]
+        return (1.0 - restitution**2) * speed**2 / (2.0 * (1.0 + eps))
+
+    @classmethod
     def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
         """mu g times the path slid, from the displacements w between events (m, L); shape (m,)."""
         return cls.column(params, "friction") * cls.column(params, "gravity") * np.abs(steps).sum(axis=1)
@@ -246,81 +278,6 @@ class Model:
     ) -> Any:
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
         return above("find")(self, word, periods, guess, parameters, made=above("Orbit"))
-
-    # ------------------------------------------------------------------ the parameter that varies
-    @property
-    def amount_names(self) -> tuple[str, ...]:
-        """Names of all parameters that may vary, in the order of `amounts`; here the numbers themselves."""
-        return self.parameter_names
-
-    def amounts(self, params: np.ndarray) -> np.ndarray:
-        """Values of all parameters that may vary, shape (Q,)."""
-        return params
-
-    def amount(self, name: str, params: np.ndarray) -> float:
-        """The value of one of them."""
-        return float(self.amounts(params)[self.place_of(name)])
-
-    def path(self, name: str, params: np.ndarray) -> np.ndarray:
-        """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.path`."""
-        return single(params.size, self.place_of(name))
-
-    @property
-    def law(self) -> np.ndarray:
-        """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
-        return np.zeros((0, len(self.parameter_names)))
-
-    def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """`vector` with the parameter that may vary called `name` at `value`.
-
-        Raises
-        ------
-        ParameterError
-            As `vector` does.
-        """
-        return self.vector({**(values or {}), name: value})
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Units of parameters and measures by name; none here, where all are numbers."""
-        return {}
-
-    def described(self, params: np.ndarray) -> dict[str, Any]:
-        """A parameter vector by name, ready for JSON."""
-        return {"parameters": dict(zip(self.parameter_names, (float(v) for v in params), strict=True))}
-
-    def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
-        """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
-        return 1.0
-
-    def natural_units(self, params: np.ndarray) -> tuple[float, float]:
-        """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.
-
-        They are exactly as large as the machine: whatever is compared with a number is then the same in every unit, but for
-        rounding. 1 where the machine's equations have no unit to choose.
-        """
-        return 1.0, 1.0
-
-    def factors(self, units: tuple[float, float]) -> np.ndarray:
-        """What one dimensionless number of each of the machine's own parameters is, (P,), in units of a length and a rate."""
-        length, rate = units
-        sizes = {"b": length, "omega_0": rate, "b omega_0^2": length * rate * rate}
-        return np.array([sizes.get(parameter.unit, 1.0) for parameter in self.table])
-
-    def place_of(self, name: str) -> int:
-        """Place of a parameter among `amount_names`.
-
-        Raises
-        ------
-        ParameterError
-            If there is none of this name.
-        """
-        if name not in self.amount_names:
-            raise ParameterError(
-                f"parameter = {name!r} is unknown to the model {self.name!r}; choose one of "
-                + ", ".join(self.amount_names)
-            )
-        return self.amount_names.index(name)
 
     def settings(self) -> dict[str, Any]:
         """The machine's own fields by name, ready for JSON."""

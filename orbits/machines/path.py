@@ -35,13 +35,12 @@ def assign(data, other, value):
 
     Parameters
     ----------
-    data, other : tuple
-        Of two problems of one machine. ``params`` (P,), ``path`` (2, P), ``active``, ``amounts`` (Q,) and ``law`` (Q + 1, P) are the
-        members 2, 3, 7, 8 and 9; a law without rows says that the parameters are the numbers themselves.
+    data, other : CycleData
+        Of two problems of one machine.
     value : float
     """
-    index = other[7]
-    params, path, active, amounts, law = data[2], data[3], data[7], data[8], data[9]
+    index = other.active
+    params, path, active, amounts, law = data.params, data.path, data.active, data.amounts, data.law
     amounts[index] = value
     if law.shape[0] == 0:
         params[index] = value

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from orbits.machines.declared.orbit import DeclaredOrbit
+    from orbits.declared.orbit import DeclaredOrbit
 
 MARKS = "osD^v<>Ph*Xd"
 COLOURS = (ORBIT, "#b5531c", "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
@@ -27,6 +27,7 @@ def portrait(
     *,
     axes: Axes | Sequence[Axes] | None = None,
     heading: bool = True,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
@@ -41,6 +42,8 @@ def portrait(
         Drawn on: one has the phase portrait, two have both. Without, a new figure.
     heading : bool
         Write what the orbit is above a new figure.
+    legend : bool or str
+        Whether events and states are named, or where: a place that matplotlib knows.
     figsize : (float, float), optional
         Inches, of a new figure; where it is narrow the two stand below one another, where it is small the first stands alone.
     style : str or mapping, optional
@@ -68,6 +71,10 @@ def portrait(
         _phase(drawn[0], orbit, motion, names[0], names[1] if len(names) > 1 else names[0])
         if len(drawn) > 1:
             _history(drawn[-1], orbit, motion)
+        for panel in drawn:
+            if legend is not False and panel.get_legend_handles_labels()[0]:
+                look: dict[str, Any] = {"loc": legend if isinstance(legend, str) else "best"}
+                panel.legend(fontsize="small", ncols=1 if panel is drawn[0] else 2, **look)
     return figure
 
 
@@ -124,8 +131,6 @@ def _phase(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray], x: s
         here = orbit.nodes[places][:, columns]
         axes.plot(here[:, 0], here[:, 1], mark, color=ORBIT, mfc="white", ms=5, label=f"after {letter}")
     axes.set(xlabel=x, ylabel=y)
-    if letters:
-        axes.legend(fontsize="small", loc="best")
 
 
 def _history(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> None:
@@ -143,4 +148,3 @@ def _history(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) ->
             fontsize="small",
         )
     axes.set(xlabel=_time(orbit), ylabel="states")
-    axes.legend(fontsize="small", loc="best", ncols=2)

@@ -42,6 +42,7 @@ def portrait(
     axes: Axes | Sequence[Axes] | None = None,
     show: str | None = None,
     heading: bool = True,
+    legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
@@ -58,6 +59,8 @@ def portrait(
         By default both, or the phase portrait alone where a figure is small.
     heading : bool
         Write what the orbit is above a new figure.
+    legend : bool or str
+        Whether the history is explained, or where: "below", or a place that matplotlib knows.
     figsize : (float, float), optional
         Inches, of a new figure.
     style : str or mapping, optional
@@ -102,7 +105,7 @@ def portrait(
             _phase(drawn[0], orbit, motion)
         if panels != "phase":
             _history(drawn[-1], orbit, motion)
-            _legend(figure, drawn[-1], axes is None)
+            key(figure, drawn[-1], axes is None, legend)
     return figure
 
 
@@ -174,22 +177,34 @@ def _history(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     axes.plot(turns, cavity, color=CAVITY, lw=1.0, ls="--", label="cavity, $q_1$")
     axes.plot(turns, absorber, line, color=ABSORBER, lw=1.6, label="absorber, $q_2$")
     table = orbit.events
-    eps = orbit.parameters["mass_ratio"]
-    _events(axes, orbit, table.phase / (2.0 * np.pi), (table.v - table.w) / (1.0 + eps), labelled=True)
+    _, place = orbit.model.bodies(table.w, table.v, orbit.params)
+    _events(axes, orbit, table.phase / (2.0 * np.pi), place, labelled=True)
     axes.set(
         xlabel=r"forcing periods $\Psi/2\pi$", ylabel=r"positions in units of $b$", xlim=(turns[0], turns[-1])
     )
     axes.margins(y=0.02)
 
 
-def _legend(figure: Any, axes: Axes, own: bool) -> None:
-    """Under everything in a figure of ours, which makes room for it; under the axes in others."""
-    if not own:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=4, frameon=False, fontsize="small")
+def key(figure: Any, axes: Axes, own: bool, legend: bool | str) -> None:
+    """A legend under everything in a figure of ours, which makes room for it; under the axes in others; or where it is wanted."""
+    if legend is False:
+        return
+    if isinstance(legend, str) and legend != "below":
+        chosen: dict[str, Any] = {"loc": legend, "fontsize": "small"}
+        axes.legend(**chosen)
         return
     handles, labels = axes.get_legend_handles_labels()
-    columns = len(labels) if figure.get_size_inches()[0] >= 1.35 * len(labels) else 2
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize="small")
+    if own:
+        columns = len(labels) if figure.get_size_inches()[0] >= 1.35 * len(labels) else 2
+        look = {"ncols": columns, "frameon": False, "fontsize": "small"}
+        figure.legend(handles, labels, loc="outside lower center", **look)
+        return
+    figure.draw_without_rendering()
+    box = axes.xaxis.get_tightbbox()
+    low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
+    gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
+    look = {"ncols": 2, "frameon": False, "fontsize": "small", "borderaxespad": 0.0}
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, gap), **look)
 
 
 def _events(axes: Any, orbit: Orbit, x: np.ndarray, y: np.ndarray, labelled: bool = False) -> None:

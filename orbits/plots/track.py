@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.machines.declared.formulas import Named, NoPhase, States
+from orbits.declared.formulas import Named, NoPhase, States
 
 if TYPE_CHECKING:
-    from orbits.machines.declared.orbit import DeclaredOrbit
+    from orbits.declared.orbit import DeclaredOrbit
 
 ALIKE = 0.02  # a state is the rate of another one if it is within this share of it
 

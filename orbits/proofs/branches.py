@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from orbits.proofs.certificates import FORMAT
 from orbits.proofs.obstacles import Obstacle
 from orbits.proofs.pieces import Piece
 
@@ -62,10 +61,9 @@ class Pieces:
             "pieces": [piece.to_dict() for piece in self.pieces],
         }
 
-    def certificate(self) -> dict[str, Any]:
+    def certificate(self) -> list[dict[str, Any]]:
         """The certificates of the pieces of which something is proved."""
-        made = [piece.certificate() for piece in self.pieces if piece.count]
-        return {"format": FORMAT, "kind": "branch", "pieces": made, "claims": {"existence": self.existence}}
+        return [piece.certificate() for piece in self.pieces if piece.count]
 
     def __str__(self) -> str:
         return "\n".join(str(piece) for piece in self.pieces) or "no stretch of the branch to prove"

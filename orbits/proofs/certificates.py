@@ -18,7 +18,7 @@ from orbits.proofs.special import Vanishing
 from orbits.proofs.tiles import Tile
 from orbits.proofs.varying import Varying
 
-FORMAT = "contvines certificate 2"
+FORMAT = "contvines certificate 3"
 Entry = dict[str, Any]
 
 
@@ -54,49 +54,53 @@ def _entry(
         "parameter": parameter,
         "half_width": half,
         "basis": [list(row) for row in basis] or unit,
+        "kind": None,
+        "conditions": [],
     }
 
 
-def condition(motif: Motif, vanishing: Vanishing) -> list[Any]:
+def conditions(motif: Motif, vanishing: Vanishing) -> list[list[Any]]:
     """The inequality that a border is about, as the checker calls it."""
     if vanishing.name in ("flight", "turn", "slip"):
-        return ["flight", vanishing.event, motif.modes[vanishing.event]]
-    return ["wall" if vanishing.name == "wall" else "flight", vanishing.event, vanishing.side]
+        return [["flight", vanishing.event, motif.modes[vanishing.event]]]
+    return [["wall" if vanishing.name == "wall" else "flight", vanishing.event, vanishing.side]]
 
 
 def certificate(
-    kind: str,
     motif: Motif,
     parameters: Mapping[str, Any],
     varying: Varying | None,
     boxes: Sequence[Entry],
-    claims: Mapping[str, bool | None],
+    real: bool | None,
+    stable: bool | None,
     bits: int,
 ) -> Entry:
     """The whole certificate as JSON."""
-    moved = varying.numbers if varying else {}
-    given: dict[str, list[Any]] = {}
-    for name in parameter_names(motif.machine):
-        if name in moved:
-            factor, exponent = moved[name]
-            given[name] = [plain(factor), "0", exponent]
-        else:
-            value = parameters[name]
-            middle, radius = (value, "0") if isinstance(value, str) else value
-            given[name] = [plain(middle), plain(radius), 0]
     return {
         "format": FORMAT,
-        "kind": kind,
-        "machine": motif.machine,
-        "parameters": given,
-        "parameter": varying.name if varying else None,
+        "parameters": numbers(motif.machine, parameters, varying),
         "events": "".join(motif.events) or "o",
         "modes": list(motif.modes) or [0],
         "periods": motif.periods,
         "half": motif.half,
         "frictionless": motif.frictionless,
         "boxes": list(boxes),
-        "claims": dict(claims),
+        "claims": {"existence": True, "real": real, "stable": stable},
         "bits": bits,
         "versions": {"python-flint": library().__version__, "python": python_version()},
     }
+
+
+def numbers(machine: str, parameters: Mapping[str, Any], varying: Varying | None) -> dict[str, list[str]]:
+    """The machine's numbers: middle, radius, and the power of the parameter that multiplies them."""
+    moved = varying.numbers if varying else {}
+    given: dict[str, list[str]] = {}
+    for name in parameter_names(machine):
+        if name in moved:
+            factor, exponent = moved[name]
+            given[name] = [plain(factor), "0", plain(str(Decimal(exponent)))]
+        else:
+            value = parameters[name]
+            middle, radius = (value, "0") if isinstance(value, str) else value
+            given[name] = [plain(middle), plain(radius), "0"]
+    return given

@@ -10,7 +10,7 @@ import numpy as np
 
 from orbits.proofs.balls import Given
 from orbits.proofs.equations import MIRRORED, Motif
-from orbits.proofs.flights import parameter_names
+from orbits.proofs.flights import MACHINES, parameter_names
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.varying import Varying
 
@@ -53,20 +53,22 @@ def require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], no
         )
 
 
+def mirrored(given: Mapping[str, Given], varying: Varying | None = None) -> bool:
+    """Whether the mirror image of a motion is one, too: a cavity must be level and its sides exactly alike."""
+    told = {**given, **(varying.numbers if varying else {})}
+    pairs = [(f"{name}_left", f"{name}_right") for name in SIDED if f"{name}_left" in told]
+    level = Decimal(str(told.get("slope", "0"))) == 0
+    return level and all(told[a] == told[b] and not isinstance(given.get(a), tuple) for a, b in pairs)
+
+
 def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | None = None) -> None:
-    """Refuse half a word where the mirror image of a motion is none: a cavity must be level and its sides exactly alike.
+    """Refuse half a word where the mirror image of a motion is none.
 
     Raises
     ------
     ProofError
     """
-    told = {**given, **(varying.numbers if varying else {})}
-    alike = motif.machine != "cavity" or (
-        Decimal(str(told["slope"])) == 0
-        and all(told[f"{name}_left"] == told[f"{name}_right"] for name in SIDED)
-        and not any(isinstance(given.get(f"{name}_left"), tuple) for name in SIDED)
-    )
-    if motif.half and (motif.periods % 2 == 0 or not alike):
+    if motif.half and (motif.periods % 2 == 0 or not mirrored(given, varying)):
         raise ProofError(
             "half of a word stands for the whole only in a symmetric machine, over an odd number of periods"
         )
@@ -83,7 +85,7 @@ def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
     for name, value in p.items():
         if name.startswith("restitution"):
             good = value > 0 and value.upper() <= 1
-        elif name in ("frequency",) or (name == "mass_ratio" and motif.machine == "coupled"):
+        elif name in ("frequency",) or (name == "mass_ratio" and MACHINES[motif.machine].moving_cavity):
             good = value > 0
         else:
             good = name == "slope" or value.lower() >= 0

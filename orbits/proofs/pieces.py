@@ -112,9 +112,9 @@ class Piece:
             raise ValueError(
                 "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
             )
-        claims = {"existence": True, "real": self.real, "stable": self.stable}
-        made = certificate("piece", self.motif, self.parameters, self.varying, self.boxes, claims, self.bits)
-        return made | {"covered": list(self.covered or ()), "ends": list(self.ends)}
+        return certificate(
+            self.motif, self.parameters, self.varying, self.boxes, self.real, self.stable, self.bits
+        )
 
     def __str__(self) -> str:
         from orbits.proofs.wording import piece_sentence

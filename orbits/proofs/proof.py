@@ -13,9 +13,6 @@ from orbits.proofs.equations import Motif
 from orbits.proofs.obstacles import Obstacle
 from orbits.proofs.varying import Varying
 
-UNCHANGED = ("orbit", "fold", "symmetry-breaking", "period-doubling", "neimark-sacker")
-"""Kinds that a certificate names as they are; all others are borders."""
-
 
 @dataclass(frozen=True)
 class Proof:
@@ -147,15 +144,9 @@ class Proof:
                 "nothing was proved, so there is no certificate: " + "; ".join(map(str, self.obstacles))
             )
         motif = self.motif
-        claims = {"existence": True, "real": self.real, "stable": self.stable}
-        boxes = self.chain or [
-            orbit_box(motif, self.box, basis=self.basis) if len(motif) else resting_box(motif)
-        ]
-        kind = self.kind if self.kind in UNCHANGED else "border"
-        made = certificate(kind, motif, self.parameters, self.varying, boxes, claims, self.bits)
-        if self.varying is not None:
-            made |= {"point": self.kind, "value": self.value}
-        return made
+        alone = orbit_box(motif, self.box, basis=self.basis) if len(motif) else resting_box(motif)
+        boxes = self.chain or [alone]
+        return certificate(motif, self.parameters, self.varying, boxes, self.real, self.stable, self.bits)
 
     def __str__(self) -> str:
         from orbits.proofs.wording import sentence

@@ -10,8 +10,8 @@ import numpy as np
 
 from orbits.proofs.admissible import NOTHING, Zero, examine
 from orbits.proofs.balls import Given, ball, decimal, precision
-from orbits.proofs.certificates import condition
-from orbits.proofs.checks import check_parameters, check_symmetry, motif_of, require_mirror
+from orbits.proofs.certificates import conditions
+from orbits.proofs.checks import check_parameters, check_symmetry, mirrored, motif_of, require_mirror
 from orbits.proofs.crossing import crossing
 from orbits.proofs.enclosing import enclose, refine
 from orbits.proofs.equations import Motif, System
@@ -166,7 +166,7 @@ def prove_special(
         chain = crossing(motif, p, varying, z, e[0], at, turn if kind == "fold" else None)
         chain[1]["kind"] = kind if vanishing is None else "border"
         if vanishing is not None:
-            chain[1]["condition"] = condition(motif, vanishing)
+            chain[1]["conditions"] = conditions(motif, vanishing)
         return replace(
             proof,
             kind=vanishing.kind if vanishing else kind,
@@ -195,7 +195,8 @@ def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: fl
         raise Obstacle(Step.REFINEMENT, Remedy.START)
     box = enclose(system, z, e, bits)
     chain = crossing(proof.motif, p, proof.varying, [], e[0], bits)
-    chain[1] |= {"kind": "border", "condition": ["flight", 0, side]}
+    sides = (1, -1) if mirrored(proof.parameters, proof.varying) else (side,)
+    chain[1] |= {"kind": "border", "conditions": [["flight", 0, side] for side in sides]}
     return replace(proof, box=box, real=True, chain=tuple(chain), bits=bits)
 
 

@@ -190,8 +190,11 @@ def _bases(product: Any) -> list[Any]:
     if radius < 1.0:
         scaled = numbers / (0.5 + 0.5 * radius)
         stein = np.eye(size * size) - np.kron(scaled.T, scaled.T)
-        X = np.linalg.solve(stein, np.eye(size).ravel()).reshape(size, size)
-        sizes, axes = np.linalg.eigh(0.5 * (X + X.T))  # principal axes, so that errors do not mix
+        try:
+            X = np.linalg.solve(stein, np.eye(size).ravel()).reshape(size, size)
+            sizes, axes = np.linalg.eigh(0.5 * (X + X.T))  # principal axes, so that errors do not mix
+        except np.linalg.LinAlgError:  # the radius is 1 but for rounding
+            sizes, axes = np.ones(size), np.eye(size)
         found.append(_exact(axes / np.sqrt(np.maximum(sizes, 1.0))))
         if not (eigen.shape == (size, size) and np.linalg.cond(eigen) < MIXED):
             found.reverse()

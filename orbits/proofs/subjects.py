@@ -122,7 +122,7 @@ def of_branch(
         Prove just this interval, on each stretch as far as that reaches.
     special : dict, optional
         The special points (with `kind`, `u`, `value` and `margin_index`) at places among `marks`. Stretches go up to those that can
-        be proved with the branch's own word; at other ends a hundredth is left out, where verdicts change.
+        be proved with the branch's own word, and to plain ends; at others a hundredth is left out, where verdicts change.
 
     Raises
     ------
@@ -147,6 +147,10 @@ def of_branch(
             known[place] = _joinable(problem, motif, (special or {}).get(place))
         return known[place]
 
+    def plain(place: int) -> bool:
+        found = (special or {}).get(place)
+        return found is not None and found.kind in PLAIN
+
     pieces, between = [], []
     for first, last in pairwise(cuts):
         order = np.argsort(values[first : last + 1])
@@ -161,10 +165,10 @@ def of_branch(
             continue
         if low == float(x[0]):
             ends[0] = point(places[0])
-            low += 0.0 if ends[0] else inner
+            low += 0.0 if ends[0] or plain(places[0]) else inner
         if high == float(x[-1]):
             ends[1] = point(places[1])
-            high -= 0.0 if ends[1] else inner
+            high -= 0.0 if ends[1] or plain(places[1]) else inner
         if not high > low:
             continue
 

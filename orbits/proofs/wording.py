@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from orbits.words import Word
+
 SAYS = {
     "real": {
         True: "real",
@@ -14,9 +16,32 @@ SAYS = {
 }
 
 
+def spelling(proof: Any) -> str:
+    """The word of what is proved, as tables and pictures have it: one spelling for one motion."""
+    motif = proof.motif
+    word = Word(tuple(motif.events), tuple(motif.modes), motif.frictionless)
+    if not motif.half:
+        return word.spelled(_mirrored(proof))
+    image = word.mirror()
+    return (
+        "symmetric "
+        + Word(word.events + image.events, word.modes + image.modes, motif.frictionless).spelled()
+    )
+
+
+def _mirrored(proof: Any) -> bool:
+    """Whether mirror images are motions of the machine, however the enclosed parameter varies."""
+    known = proof.parameters
+    alike = all(
+        known.get(f"{name}_left") == known.get(f"{name}_right")
+        for name in ("restitution", "friction", "distance")
+    )
+    return proof.motif.machine != "cavity" or (alike and "slope" in known and float(known["slope"]) == 0.0)
+
+
 def sentence(proof: Any) -> str:
     """What an `orbits.proofs.proof.Proof` proves, and what was in the way."""
-    word = "".join(proof.motif.events) + (" and its mirror image" if proof.motif.half else "")
+    word = spelling(proof)
     what = "the orbit" if proof.kind == "orbit" else f"the {proof.kind}"
     if proof.box is None:
         lines = [f"{what} of {word}: existence not proved"]
@@ -37,7 +62,7 @@ def sentence(proof: Any) -> str:
 
 def piece_sentence(piece: Any) -> str:
     """What an `orbits.proofs.pieces.Piece` proves of a piece of a branch."""
-    word = "".join(piece.motif.events) + (" and its mirror image" if piece.motif.half else "")
+    word = spelling(piece)
     lines = []
     if piece.covered:
         low, high = (

@@ -12,7 +12,7 @@ from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import EVENTS_FULL, FAILED, MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
 
-CHUNK = 16384
+FIRST, CHUNK = 256, 16384
 MOST_EVENTS = 1_000_000
 FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
 _KEYS = {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}
@@ -110,12 +110,10 @@ def first_state(
     if engine.moving_cavity:
         allowed += _BODIES
         if any(key in given for key in _BODIES):
-            eps = float(params[model.parameter_names.index("mass_ratio")])
             q1, q2, q1_rate, q2_rate = (float(given.pop(key, 0.0)) for key in _BODIES)
-            for key, value in (("w", q1 - q2), ("w_rate", q1_rate - q2_rate)):
-                given.setdefault(key, value)
-            for key, value in (("v", q1 + eps * q2), ("v_rate", q1_rate + eps * q2_rate)):
-                given.setdefault(key, value)
+            w, v = model.relative(q1, q2, params)
+            w_rate, v_rate = model.relative(q1_rate, q2_rate, params)
+            given = {"w": w, "w_rate": w_rate, "v": float(v), "v_rate": float(v_rate)} | given
     for key, value in given.items():
         if key not in allowed:
             raise SimulationError(f"start has no entry {key!r}; it may have " + ", ".join(allowed))
@@ -141,7 +139,7 @@ def collect(
     status = EVENTS_FULL
     left = most
     while left > 0 and status == EVENTS_FULL:
-        size = min(left, CHUNK)
+        size = min(left, CHUNK if parts else FIRST)  # most runs are short
         codes, modes, rows = buffers(engine, size)
         count, status = engine.advance(state, params, until, codes, modes, rows)
         parts.append((codes[:count], modes[:count], rows[:count]))

@@ -103,7 +103,7 @@ def replay_nodes(
     if there.message:
         motion = _motion(model, engine, params, codes, modes, nodes, periods)
         return Replay(np.inf, there.message, nothing, motion=motion)
-    claimed = np.roll(nodes, -1, axis=0)
+    claimed = np.concatenate([nodes[1:], nodes[:1]])
     claimed[-1, 0] += TWO_PI * periods
     error = float(np.abs(there.nodes - claimed).max())
     if not thorough:
@@ -207,10 +207,11 @@ def _returns(
 ) -> bool:
     """Start a little off the orbit, wait until multipliers have shrunk that ten millionfold, and compare.
 
-    Beside a border the orbit may attract from very near only: a smaller displacement is tried as well.
+    Beside a border, or where deviations grow a thousandfold before they shrink, the orbit may attract from very near only: smaller
+    displacements are tried as well.
     """
     cycles = min(200_000.0 / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
-    for size, near in ((1e-6, 1e-8), (1e-8, 1e-9)):
+    for size, near in ((1e-6, 1e-8), (1e-8, 1e-9), (1e-10, 1e-8), (1e-11, 1e-8)):
         state = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
         state[2] *= 1.0 + size
         if codes[0] > 1:

@@ -73,11 +73,11 @@ def go_round(
     seen, after, rows = seen[:count], after[:count], rows[:count]
     nodes = nodes_of(engine, params, seen, after, rows)
     nodes[:, 0] += TWO_PI * base
-    told = np.tile(np.roll(codes, -1), times)
-    told_modes = np.tile(np.roll(modes, -1), times)
-    for i in range(count):
-        if seen[i] != told[i] or (after[i] != told_modes[i] and seen[i] != HOLD):
-            return Round(nodes[: i + 1], _difference(i, told[i], told_modes[i], seen[i], after[i]))
+    told, told_modes = (np.concatenate([of[1:], of[:1]] * times) for of in (codes, modes))
+    wrong = (seen != told[:count]) | ((after != told_modes[:count]) & (seen != HOLD))
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        return Round(nodes[: i + 1], _difference(i, told[i], told_modes[i], seen[i], after[i]))
     if count < times * n:
         why = {FAILED: "the motion is not finite", TIME_REACHED: "no event came"}.get(
             status, "the motion came to rest"

@@ -149,21 +149,19 @@ class Trajectory:
         out = np.empty((phases.size, 4))
         self.machine.sample(states, self.params, ahead, out)
         w, w_rate, v, v_rate = out.T
-        eps = self.params[self.model.parameter_names.index("mass_ratio")]
-        return Samples(phases, w, w_rate, v, v_rate, (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps))
+        return Samples(phases, w, w_rate, v, v_rate, *self.model.bodies(w, v, self.params))
 
     def peak_cavity(self, per_period: int = 200) -> float:
         """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
-        eps = self.params[self.model.parameter_names.index("mass_ratio")]
         grid = self._grid(per_period)
         marks = np.concatenate([grid, self.phases])
         marks = np.unique(marks[(marks >= grid[0]) & (marks <= grid[-1])])
         seen = self.sample(marks)
-        speed = seen.v_rate + eps * seen.w_rate
+        speed, _ = self.model.bodies(seen.w_rate, seen.v_rate, self.params)
         turn = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
         high = np.abs(seen.cavity)
         peak = float(high.max())
-        steep = np.maximum(np.abs(speed[turn]), np.abs(speed[turn + 1])) / (1.0 + eps)
+        steep = np.maximum(np.abs(speed[turn]), np.abs(speed[turn + 1]))
         rise = steep * (marks[turn + 1] - marks[turn])  # q1' changes its sign there: q1 can gain no more
         turn = turn[np.maximum(high[turn], high[turn + 1]) + rise >= peak]
         lo, hi, below, above = marks[turn], marks[turn + 1], speed[turn], speed[turn + 1]
@@ -171,7 +169,7 @@ class Trajectory:
         for _ in range(MOST_STEPS if turn.size else 0):  # the Illinois rule, for all at once
             last, place = place, np.clip(lo + (hi - lo) * below / (below - above), lo, hi)
             here = self.sample(place)
-            rate = here.v_rate + eps * here.w_rate
+            rate, _ = self.model.bodies(here.w_rate, here.v_rate, self.params)
             peak = max(peak, float(np.abs(here.cavity).max()))
             if np.all((rate == 0.0) | (np.abs(place - last) < PLACED)):
                 break

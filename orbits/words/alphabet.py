@@ -2,7 +2,7 @@
 
 A mode says for every contact what it is doing between two events: a wall is free (0) or holds (1), a friction slides (-1, +1),
 sticks (0) or is absent (2), a switch has its sign. An event changes the mode of its own contact; an impact may also turn
-the sign of a friction.
+the sign of a friction or of a switch.
 
 The shaken machines (`absorber`, `coupled`, `cavity`) have two walls and one friction, whose mode alone is written: the absorber slides
 towards the right wall (mode ``-``, w' < 0), towards the left wall (mode ``+``, w' > 0) or sticks to the cavity floor (mode ``0``).
@@ -43,9 +43,9 @@ class Alphabet:
         Contact -> its mirror image.
     turned : frozenset of int
         Switches whose sign the mirror turns.
-    flips : dict of (wall, friction) to int or None
-        Sign of the friction's velocity after an impact (before it: the opposite); None: an impact may leave either.
-        A pair that is not listed: the impact does not touch the velocity.
+    flips : dict of (wall, contact) to int or None
+        Sign of a friction's velocity, or of a switch, after an impact (before it: the opposite); None: an impact may leave
+        either. A pair that is not listed: the impact does not touch it.
     alone : int, optional
         The contact whose mode alone is written; the others have one mode only. Left out: one entry per contact.
     without : frozenset of int
@@ -125,7 +125,7 @@ class Alphabet:
 
     # ------------------------------------------------------------------ pairs of events
     def touches(self, letter: Letter, contact: int) -> bool:
-        """Whether an event is one of a contact's, or an impact that changes its velocity."""
+        """Whether an event is one of a contact's, or an impact that changes its velocity or surface."""
         return letter.contact == contact or (letter.contact, contact) in self.flips
 
     def together(self, here: Letter, there: Letter) -> str:

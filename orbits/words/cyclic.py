@@ -120,7 +120,7 @@ class CyclicWord(ABC):
         """(mirrored, rotation) of every way in which this word reads as its canonical form."""
         return _readings(self, mirror and self.alphabet.mirror is not None, self.alphabet)
 
-    @property
+    @cached_property
     def mirror_symmetric_halves(self) -> bool:
         """Whether the second half is the mirror image of the first: the word a symmetric orbit can have."""
         if self.alphabet.mirror is None:

@@ -227,12 +227,18 @@ def assigned(
                 )
             columns.append([ABSENT] * len(items))
         elif isinstance(contact, SwitchLaw):
+            hits = {
+                i: alphabet.flips[letter.contact, j]
+                for i, letter in enumerate(letters)
+                if (letter.contact, j) in alphabet.flips
+            }
             try:
-                columns.append(contact.signs(letters, j, noted, usual))
+                columns.append(contact.signs(letters, j, noted, usual, hits))
             except NotAlternating:
+                between = "; impacts may change its sign between them" if hits else ""
                 raise WordError(
                     f"word {text!r}: the crossings of switch {contact.name!r} must alternate, "
-                    f"{contact.letters[0]} and {contact.letters[1]}"
+                    f"{contact.letters[0]} and {contact.letters[1]}{between}"
                 ) from None
         else:
             columns.append(_directions(j, letters, signs, alphabet, noted, usual, text))

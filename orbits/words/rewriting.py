@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
-from orbits.contacts.letters import HIT, STICK
+from orbits.contacts.letters import HIT, STICK, SWITCH
 from orbits.words.cyclic import CyclicWord
 
 W = TypeVar("W", bound=CyclicWord)
@@ -47,6 +47,9 @@ def changes_at(site: Site, watched: int) -> list[Change]:
         return contacts[here.contact].collapsed(site, here.contact)
     alphabet = word.alphabet
     if alphabet.touches(here, there.contact) or alphabet.touches(there, here.contact):
+        if SWITCH in (here.kind, there.kind):
+            switch = (here if here.kind == SWITCH else there).contact
+            return contacts[switch].collapsed(site, switch)
         alone = here.kind == HIT and there.kind != STICK
         return [] if alone else contacts[here.contact].weakened(site, here.contact)
     return [_swapped(site)]

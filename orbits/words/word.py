@@ -149,7 +149,7 @@ class Word(CyclicWord):
         """
         return _spelled(self.canonical(mirror), mirror)
 
-    @property
+    @cached_property
     def impact_free(self) -> bool:
         """Whether no wall is hit: the mean position of such a motion is free."""
         return self.impacts == 0

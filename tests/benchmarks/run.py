@@ -24,9 +24,11 @@ from .auto import Auto
 from .flights import MODELS, Flights
 from .floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
 from .ours import Core, Diagram, PublicAPI
+from .starts import Starts
 
 ROOT = Path(__file__).parents[2]
 LENGTHS = (2, 8, 32, 128, 512)
+STUDIES = ("friction", "friction_low", "frequency")
 GROWTH = tuple(2**k for k in range(1, 13))
 
 
@@ -145,10 +147,19 @@ def growth(rounds, lengths=GROWTH):
     return dict(zip(lengths, seconds)), slopes
 
 
-def whole_diagram(rounds, study="friction.toml"):
-    """Seconds per point of an example's whole diagram and of the compiled loop alone: {name: seconds}."""
-    diagram, core = Diagram(ROOT / "examples" / study), Core(2)
-    return interleaved({"whole diagram": diagram.run, "compiled loop": core.run}, rounds)
+def whole_diagrams(rounds, studies=STUDIES):
+    """Of examples' whole diagrams in a warm process, beside the compiled loop: {name: {study: seconds}}, and how large they are."""
+    table, sizes = {}, {}
+    for study in studies:
+        diagram, core = Diagram(ROOT / "examples" / f"{study}.toml"), Core(2)
+        points = diagram.run()
+        times = interleaved({"whole diagram": diagram.run, "compiled loop": core.run}, rounds)
+        graph = diagram.graph
+        sizes[study] = f"{len(graph.branches)} branches, {len(graph.special)} special points, {points} points"
+        for name, seconds in times.items():
+            table.setdefault(f"{name}, a point", {})[study] = seconds
+        table.setdefault("whole diagram", {})[study] = points * times["whole diagram"]
+    return table, sizes
 
 
 def simulation(rounds, count=20000):
@@ -163,6 +174,25 @@ def simulation(rounds, count=20000):
             runs[f"solve_ivp {method}"] = lambda f=flights, m=method: len(f.solve_ivp(10, m)[0])
         table[name] = interleaved(runs, rounds)
     return table
+
+
+def many_starts(rounds, count=10_000):
+    """Processor seconds per start: {name: seconds}, in turns."""
+    starts = Starts(count)
+    work = {
+        "one batch": starts.batch,
+        "one by one": starts.plain,
+        "basin": starts.basin,
+        "census": starts.census,
+    }
+    times = {name: [] for name in work}
+    for k in range(rounds + 1):
+        for name, run in work.items():
+            begin = time.process_time()
+            run()
+            if k:  # the first round compiles
+                times[name].append((time.process_time() - begin) / count)
+    return {name: statistics.median(found) for name, found in times.items()}
 
 
 def start_up(repeats=3):
@@ -243,10 +273,28 @@ def main(arguments=None):
         + ", ".join(f"{slope:.2f} {what}" for slope, what in zip(slopes, ("overall", "from l=32")))
     )
 
-    times = whole_diagram(rounds)
-    show("microseconds per point", list(times), ["friction"], lambda name, _: number(times[name], 1e6))
+    table, sizes = whole_diagrams(rounds, STUDIES[:1] if options.quick else STUDIES)
+    show(
+        "whole diagrams in a warm process, microseconds",
+        list(table),
+        list(sizes),
+        lambda name, study: number(table[name][study], 1e6),
+    )
+    for study, size in sizes.items():
+        times = table["whole diagram, a point"][study] / table["compiled loop, a point"][study]
+        print(f"{study}: {size}; {times:.0f} times the compiled loop")
+
+    times = many_starts(rounds, 2000 if options.quick else 10_000)
+    show(
+        "microseconds per start (100 periods, 200 impacts)",
+        list(times),
+        ["absorber"],
+        lambda name, _: number(times[name], 1e6),
+    )
     print(
-        f"the whole diagram takes {times['whole diagram'] / times['compiled loop']:.0f} times the compiled loop"
+        f"one batch: {60e-6 / times['one batch']:.2f} million starts a minute and core, "
+        f"{times['one batch'] / times['one by one']:.2f} times the plain simulator; "
+        f"a basin picture takes {times['basin'] / times['census']:.2f} times as many starts"
     )
 
     flights = simulation(rounds, 2000 if options.quick else 20000)

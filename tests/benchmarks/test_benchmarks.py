@@ -8,6 +8,7 @@ from tests.benchmarks.auto import Auto
 from tests.benchmarks.flights import MODELS, Flights
 from tests.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
 from tests.benchmarks.ours import Core, PublicAPI
+from tests.benchmarks.starts import Starts, places
 
 needs_compiler = pytest.mark.skipif(library() is None, reason="no C compiler")
 
@@ -54,10 +55,9 @@ def test_public_api_follows_both_directions():
 
 
 def test_whole_diagram_has_what_the_example_says():
-    times = run.whole_diagram(1)
-    assert (
-        list(times) == ["whole diagram", "compiled loop"] and times["whole diagram"] > times["compiled loop"]
-    )
+    table, sizes = run.whole_diagrams(1, ("friction",))
+    assert sizes["friction"].startswith("13 branches, 22 special points, ")
+    assert table["whole diagram, a point"]["friction"] > table["compiled loop, a point"]["friction"]
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -70,6 +70,16 @@ def test_simulations_agree(name):
             assert n in (6, 30)
             np.testing.assert_allclose(found[0], phases[:n], atol=1e-6)
             np.testing.assert_allclose(found[1], speeds[:n], atol=1e-6)
+
+
+def test_a_batch_goes_where_the_plain_simulator_goes():
+    starts = Starts(64)
+    one, other = places(starts.batch()), places(starts.plain())
+    np.testing.assert_allclose(one, other, atol=1e-6)
+    shares = {about.name: about.share for about in starts.basin().attractors}
+    assert set(shares) >= {"LR"} and sum(shares.values()) == pytest.approx(1.0)
+    times = run.many_starts(1, 16)
+    assert list(times) == ["one batch", "one by one", "basin", "census"] and min(times.values()) > 0.0
 
 
 def test_auto_where_it_is_installed():

@@ -39,3 +39,21 @@ def test_points_that_there_are_not():
     ):
         branch.orbit(1000)
     assert np.array_equal(branch.orbit(-1).u, branch.points[-1])
+
+
+def test_other_functions_have_hints_too():
+    graph = cv.diagram(line(), within=(-1.0, 1.0))
+    with pytest.raises(TypeError, match=r"atlas has no argument 'valus' \(did you mean 'values'\?\)"):
+        cv.atlas(line(), valus=3)
+    with pytest.raises(TypeError, match=r"plot_diagram has no argument 'colour' \(did you mean 'color'\?\)"):
+        graph.plot(colour="word")
+    with pytest.raises(TypeError, match=r"B1.orbit\(1.5\): give the number of a point, from 0"):
+        graph["B1"].orbit(1.5)
+
+
+def test_short_forms_are_one_line_and_tell_the_truth():
+    graph = cv.diagram(line(), within=(-1.0, 1.0))
+    assert repr(graph["EP1"]) == "SpecialPoint(EP1: end on B1 at p = -1)"
+    for thing in (graph, graph["B1"], graph["EP1"]):
+        assert "\n" not in repr(thing) and len(repr(thing)) < 140
+        assert "<table" in thing._repr_html_()

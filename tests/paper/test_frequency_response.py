@@ -2,12 +2,9 @@
 
 Machine: r = 0.76, mu = 0.5, g = 0.211, eps = 0.006, damping 1. The integration (scipy's DOP853 over flights of given
 length, so that no event is interpolated; Newton's method with differences of fourth order) takes its equations of motion
-from `tests/orbits/test_coupled_against_ode.py`, which knows nothing of the package; see there for a second way, by
+from `tests/orbits/machines/coupled/test_against_ode.py`, which knows nothing of the package; see there for a second way, by
 return maps with events, to the symmetry breakings, the Neimark-Sacker point and the folds.
 """
-
-import sys
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -18,9 +15,7 @@ from scipy.optimize import brentq
 
 import contvines as cv
 from orbits.simulation import simulate
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "orbits"))
-from test_coupled_against_ode import MACHINE, TIGHT, right_side
+from tests.orbits.machines.coupled.equations_of_motion import MACHINE, TIGHT, right_side
 
 WITHIN = (0.94, 1.07)
 BORDERS = ("velocity-graze", "wall-graze", "stick")

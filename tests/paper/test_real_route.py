@@ -7,18 +7,13 @@ multipliers are those of central differences, and the parameter is moved by the 
 border's own condition holds.
 """
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mpmath import eye, mp, mpf
 
 import contvines as cv
 from orbits import Absorber
-
-sys.path.insert(0, str(Path(__file__).parent))
-from brute import Machine, eigenvalues, secant
+from tests.paper.brute import Machine, eigenvalues, secant
 
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 H = mpf("1.006") * mpf("0.5") * mpf("0.211") * mp.pi / 2

@@ -3,9 +3,6 @@
 The folds, doublings and grazes that bound them are roots of the brute-force return map of `brute`, stated to ten digits.
 """
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mpmath import eye, mp, mpf
@@ -13,9 +10,7 @@ from mpmath import eye, mp, mpf
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractor
-
-sys.path.insert(0, str(Path(__file__).parent))
-from brute import Machine, eigenvalues, secant
+from tests.paper.brute import Machine, eigenvalues, secant
 
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 

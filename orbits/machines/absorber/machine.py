@@ -11,7 +11,7 @@ import numpy as np
 
 from orbits.doors import above
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
-from orbits.machines.absorber.rest import ShakenRest
+from orbits.machines.absorber.rest import LevelRest
 from orbits.machines.cavity.shaken import Shaken
 from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, Parameter, ParameterError
 from orbits.machines.rest import Rest
@@ -50,7 +50,7 @@ class Absorber(Shaken):
     frequency: float = 1.0
 
     name: ClassVar[str] = "absorber"
-    rest: ClassVar[Rest] = ShakenRest()
+    rest: ClassVar[Rest] = LevelRest()
     table: ClassVar[tuple[Parameter, ...]] = (
         Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),
         Parameter("restitution", "Newton's coefficient of the walls", RESTITUTION, "r", "", 0.76),

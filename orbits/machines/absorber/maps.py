@@ -24,12 +24,12 @@ SOURCES = (_law.__file__, _general.__file__, _equations.__file__, _pinning.__fil
 @kernel
 def linearise(data, u, p, work):
     """Residuals and derivatives at the cycle `u`; see `orbits.machines.cavity.equations.cycle`."""
-    par = work[4]
-    place(data[2], data[3], p, par)
-    return cycle(data, u, work, law(par), rate(par, par[data[2].shape[0] :]))
+    par = work.numbers
+    place(data.params, data.path, p, par)
+    return cycle(data, u, work, law(par), rate(par, par[data.params.shape[0] :]))
 
 
 @kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility; see `orbits.machines.cavity.margins.watch`."""
-    watch(data, u, work, law(work[4]), out)
+    watch(data, u, work, law(work.numbers), out)

@@ -27,12 +27,11 @@ def cycle(data, u, work, law, rate):
 
     Parameters
     ----------
-    data : tuple
-        ``(events, modes, params, path, twist, shift, pinned, ...)``.
+    data : CycleData
     u : float array (2 L,)
         Nodes, node-major.
-    work : tuple
-        From `orbits.elimination.block_cyclic.workspace`; F, A, D, Q are filled.
+    work : Workspace
+        F, A, D, Q are filled.
     law, rate : Law
         The numbers of the equations, and their derivatives with respect to the parameter that varies.
 
@@ -41,9 +40,9 @@ def cycle(data, u, work, law, rate):
     float
         Largest residual, infinity where the maps cannot be evaluated.
     """
-    events, modes, twist, shift, pinned = data[0], data[1], data[4], data[5], data[6]
-    F, A, D, Q = work[0], work[1], work[2], work[3]
-    sines, cosines = work[22], work[23]
+    events, modes, twist, shift, pinned = data.events, data.modes, data.twist, data.shift, data.pinned
+    F, A, D, Q = work.F, work.A, work.D, work.Q
+    sines, cosines = work.sines, work.cosines
     length = F.shape[0]
     C, omega, d_C, d_Omega = law.amplitude, law.omega, rate.amplitude, rate.omega
     by_omega = 1.0 / omega
@@ -164,7 +163,7 @@ def cycle(data, u, work, law, rate):
         if not size <= largest:
             largest = size
     if pinned == 1:
-        largest = max(largest, pin(F, A, D, Q, u, twist, modes, work[10]))
+        largest = max(largest, pin(F, A, D, Q, u, twist, modes, work.pin))
     if not np.isfinite(largest):
         return np.inf
     return largest
@@ -193,9 +192,9 @@ def pin(F, A, D, Q, u, twist, modes, kept):
 @kernel
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
-    if data[6] == 1:
-        A, D, kept = work[1], work[2], work[10]
-        last = last_flight(data[1])
+    if data.pinned == 1:
+        A, D, kept = work.A, work.D, work.pin
+        last = last_flight(data.modes)
         for c in range(2):
             A[last, 1, c] = kept[c]
             D[last, 1, c] = kept[2 + c]

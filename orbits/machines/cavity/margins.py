@@ -6,6 +6,8 @@ import numpy as np
 
 from orbits.compiling.decorators import kernel
 
+SLIPPING = 1e-6  # phase by which the slip may miss the instant at which friction gives way: the equations solve for it
+
 
 @kernel
 def reversal(pull, peak):
@@ -14,6 +16,14 @@ def reversal(pull, peak):
         return (np.inf if pull >= 0.0 else -np.inf), 0.0
     ratio = pull / peak
     return ratio, (np.arcsin(ratio) if -1.0 < ratio < 1.0 else 0.0)
+
+
+@kernel
+def _ahead(angle):
+    """An angle modulo a turn: 0 or ahead, but for rounding, which must not make a turn of an instant that is now."""
+    turn = 2.0 * np.pi
+    rest = angle - turn * np.floor(angle / turn)
+    return rest - turn if rest > turn - SLIPPING else rest
 
 
 @kernel
@@ -61,8 +71,8 @@ def watch(data, u, work, law, out):
     shaking over friction, reserve of friction, rate at which friction gives way), 2 the wall (distance from the nearer one, away from impacts),
     3 the duration of the segment. Infinity where there is nothing to watch.
     """
-    events, modes, twist, shift = data[0], data[1], data[4], data[5]
-    sines, cosines = work[22], work[23]
+    events, modes, twist, shift = data.events, data.modes, data.twist, data.shift
+    sines, cosines = work.sines, work.cosines
     length = events.shape[0]
     C, omega = law.amplitude, law.omega
     free = law.pull_left == law.pull_right  # without friction turns are no events
@@ -94,13 +104,11 @@ def watch(data, u, work, law, out):
             elif left_ratio < 1.0 or right_ratio < 1.0:
                 first = np.inf
                 if left_ratio < 1.0:
-                    up = np.pi + left_reversal - psi0
-                    first = up - two_pi * np.floor(up / two_pi)
+                    first = _ahead(np.pi + left_reversal - psi0)
                 if right_ratio < 1.0:
-                    down = right_reversal - psi0
-                    first = min(first, down - two_pi * np.floor(down / two_pi))
+                    first = min(first, _ahead(right_reversal - psi0))
                 late = (psi1 - psi0) - first
-                flight = d if abs(late) < 1e-6 else -abs(late)
+                flight = d if abs(late) < SLIPPING else -abs(late)
             else:
                 flight = -1.0
         elif not free:

@@ -76,25 +76,24 @@ def linearise(data, u, p, work):
 
     Parameters
     ----------
-    data : tuple
-        ``(events, modes, params, path, twist, shift, pinned, ...)``.
+    data : CycleData
     u : float array (4 L,)
         Nodes, node-major.
     p : float
         Value of the parameter that varies; what it moves: `orbits.machines.path`.
-    work : tuple
-        From `orbits.elimination.block_cyclic.workspace`; F, A, D, Q, the parameters and the sines and cosines are filled.
+    work : Workspace
+        F, A, D, Q, the parameters and the sines and cosines are filled.
 
     Returns
     -------
     float
         Largest residual, infinity where the maps cannot be evaluated (undamped resonance, overdamped oscillator).
     """
-    events, modes, twist, shift, pinned = data[0], data[1], data[4], data[5], data[6]
-    F, A, D, Q, par, trig = work[0], work[1], work[2], work[3], work[4], work[5]
+    events, modes, twist, shift, pinned = data.events, data.modes, data.twist, data.shift, data.pinned
+    F, A, D, Q, par, trig = work.F, work.A, work.D, work.Q, work.numbers, work.trig
     length = F.shape[0]
-    place(data[2], data[3], p, par)
-    slope = par[data[2].shape[0] :]
+    place(data.params, data.path, p, par)
+    slope = par[data.params.shape[0] :]
     G, omega, lam, eps, r, mu, g, chi = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
     whole = 1.0 + eps
     part = 1.0 / whole
@@ -310,7 +309,7 @@ def linearise(data, u, p, work):
         if not size <= largest:
             largest = size
     if pinned and twist > 0.0:
-        largest = max(largest, _pin(F, A, D, Q, u, data[1], work[10]))
+        largest = max(largest, _pin(F, A, D, Q, u, modes, work.pin))
     if not np.isfinite(largest):
         return np.inf
     return largest
@@ -339,9 +338,9 @@ def _pin(F, A, D, Q, u, modes, pin):
 @kernel
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
-    if data[6] and data[4] > 0.0:
-        A, D, pin = work[1], work[2], work[10]
-        last = last_flight(data[1])
+    if data.pinned and data.twist > 0.0:
+        A, D, pin = work.A, work.D, work.pin
+        last = last_flight(data.modes)
         for c in range(4):
             A[last, 1, c] = pin[c]
             D[last, 1, c] = pin[4 + c]

@@ -74,8 +74,8 @@ def margins(data, u, p, work, out):
     2. The wall: 1 - |w| away from impacts.
     3. The duration of the segment.
     """
-    events, modes, twist, shift = data[0], data[1], data[4], data[5]
-    par, trig = work[4], work[5]
+    events, modes, twist, shift = data.events, data.modes, data.twist, data.shift
+    par, trig = work.numbers, work.trig
     length = events.shape[0]
     G, omega, lam, eps, r, mu, g, chi = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
     whole = 1.0 + eps

@@ -7,7 +7,6 @@ import pytest
 
 import contvines as cv
 from contvines.coexistence.basins import Basins
-from contvines.coexistence.build import _beyond
 from contvines.coexistence.maps import MapPopulation
 from contvines.graph.attractor import Attractor
 from orbits import Absorber
@@ -49,14 +48,6 @@ def test_starts_reach_the_fixed_point_on_their_side():
     assert [motions[k].kind for k in index] == ["periodic"] * 4 + ["escaped", "periodic"]
     ends = [float(motions[k].u[0]) for k in index if motions[k].kind == "periodic"]
     assert ends == pytest.approx(np.sqrt(0.5) * np.array([1.0, -1.0, 1.0, -1.0, 1.0]))
-
-
-def test_asked_for_is_what_lies_just_outside_of_stable_stretches():
-    stable = SimpleNamespace(real=True, stable_intervals=lambda: [(0.3, 0.6)])
-    virtual = SimpleNamespace(real=False, stable_intervals=lambda: [(0.4, 0.5)])
-    graph = SimpleNamespace(within=(0.0, 1.0), branches={"B1": stable, "B2": virtual})
-    below, above = _beyond(graph, [0.1, 0.9])
-    assert 0.29 < below < 0.3 and 0.6 < above < 0.61
 
 
 def test_basins_tell_their_shares_in_a_line_in_lines_and_in_a_table():

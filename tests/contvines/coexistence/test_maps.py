@@ -44,7 +44,7 @@ def test_coexisting_cycles_are_roots_of_their_own():
         assert sum(a.share for a in here) == pytest.approx(1.0)
         assert sorted(a.branch for a in here) == sorted(graph.branches)
         for a in here:
-            assert a.share == pytest.approx(1 / 3, abs=0.05)  # by symmetry
+            assert a.share == pytest.approx(1 / 3, abs=0.05 if a.starts == 64 else 0.1)  # by symmetry
 
 
 def test_an_isola_is_found_and_nothing_is_listed_twice():
@@ -70,6 +70,24 @@ def test_equal_seeds_give_equal_results():
     assert all(np.array_equal(one[b].points, two[b].points) for b in one.branches)
 
 
+def test_shares_of_henons_basin_are_within_three_sigma_of_counts_from_elsewhere():
+    """Attractors.jl, test/mapping/attractor_mapping_tests.jl: 0.451 of 1000 starts, drawn uniformly from [-2, 2]^2, stay.
+
+    A count of our own with the formula alone, 200,000 starts, tells it to three digits.
+    """
+    draw = np.random.default_rng(11)
+    x, y = draw.uniform(-2, 2, (2, 200_000))
+    with np.errstate(all="ignore"):
+        for _ in range(200):
+            x, y = 1 - 1.4 * x**2 + y, 0.3 * x
+    counted = np.mean(np.isfinite(x) & (np.abs(x) < 10))
+    population = cv.MapProblem(henon, [0.6, 0.2], 1.4, parameter="a").population(box=[(-2, 2), (-2, 2)])
+    motions, index, _ = population.settle(population.starts(8192, 0, 1.4), 1.4)
+    share = np.mean(index == [m.kind for m in motions].index("chaotic"))
+    assert abs(share - counted) < 3 * np.sqrt(counted * (1 - counted) / 8192)
+    assert abs(share - 0.451) < 3 * np.sqrt(0.451 * 0.549 / 1000)
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -77,6 +95,8 @@ def test_equal_seeds_give_equal_results():
         ({"values": [9.0]}, "values: 9 lies outside"),
         ({"starts": 0}, "starts = 0"),
         ({"seed": -1}, "seed = -1"),
+        ({"scan": -1}, "scan = -1"),
+        ({"scan": 1.5}, "scan = 1.5"),
     ],
 )
 def test_what_cannot_be_is_refused(options, says):

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 import contvines as cv
 from orbits import Absorber
+from orbits.machines.physical import physical
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +106,27 @@ def test_on_the_command_line(tmp_path, graph):
     assert picture.stat().st_size > 5000
     said = call(app, ["robustness", file, "B9"])
     assert "B9 is no branch of it" in str(said.exception)
+
+
+def test_a_kick_of_a_machine_in_kilograms_leads_to_the_sliding_motion():
+    """Four states, and quantities with units; `attractor` simulates what is short of the kick, and the kick."""
+    machine = physical(
+        "coupled",
+        {
+            "oscillator_mass": "3.8 kg",
+            "natural_frequency": "8 Hz",
+            "absorber_mass": "32 g",
+            "half_width": "30 mm",
+            "damping_ratio": 0.007,
+            "restitution": 0.6,
+            "friction": 0.1,
+            "base_amplitude": "0.3 mm",
+        },
+    )
+    graph = cv.diagram(machine.orbit("LR", frequency="7.9 Hz"), over="frequency", within=(7.8, 8.1), depth=0)
+    found = cv.robustness(graph["B1"], 8.0, starts=64, directions=16)
+    assert found.names == ("w", "w_rate", "v", "v_rate") and found.reaches == "tt"
+    assert 0.8 < found.share <= 1.0
+    for part, impacts in ((0.98, 2), (1.0, 0)):  # the boundary is folded: further out may be inside again
+        start = dict(zip(found.names, found.place + part * found.kick, strict=True))
+        assert machine.attractor(start, frequency="8 Hz").impacts == impacts

@@ -60,12 +60,11 @@ def run(kernels, within=(-2.0, 2.0), **settings):
 
 def test_compiled_and_interpreted_are_one_algorithm():
     compiled, interpreted = run(COMPILED), run(INTERPRETED)
-    assert [len(c) for c in compiled] == [len(c) for c in interpreted]
-    for a, b in zip(compiled, interpreted):
-        np.testing.assert_allclose(a.points, b.points, atol=1e-12)
-        np.testing.assert_allclose(a.tangents, b.tangents, atol=1e-11)
-        np.testing.assert_array_equal(a.signs, b.signs)
-        assert a.status == b.status
+    assert compiled[-1].status == interpreted[-1].status
+    # chunks are shorter where points are dear; each begins with the last point of the one before
+    for name, accuracy in (("points", 1e-12), ("tangents", 1e-11), ("signs", 0.0)):
+        a, b = (np.concatenate([getattr(c, name)[1:] for c in parts]) for parts in (compiled, interpreted))
+        np.testing.assert_allclose(a, b, rtol=0.0, atol=accuracy)
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])

@@ -8,7 +8,7 @@ from contvines.continuation.settings import Settings
 from contvines.events.borders import find_border
 from contvines.events.segment import Segment
 from contvines.events.watch import without_zeros
-from tests.contvines.test_borders import Line
+from tests.contvines.graph.test_borders import Line
 
 
 def segment_of(margins, low, high):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from tests.contvines import fakes
 
 pytest.importorskip("pandas")
 
@@ -58,3 +59,27 @@ def test_notebooks_show_tables(graph):
     assert "B2" in graph["B2"]._repr_html_()
     point = graph.of_kind("symmetry-breaking")[0]
     assert point.label in point._repr_html_() and "symmetry-breaking" in point._repr_html_()
+
+
+def test_a_graph_as_a_data_set_has_every_point_of_every_branch():
+    xarray = pytest.importorskip("xarray")
+    graph = fakes.pitchfork_graph()
+    data = graph.to_xarray()
+    assert isinstance(data, xarray.Dataset) and data.sizes["row"] == sum(map(len, graph.branches.values()))
+    own = data.where(data["branch"] == "B2", drop=True)
+    assert np.allclose(own["p"], graph["B2"].values)
+    assert data.attrs["parameter"] == "p"
+
+
+def test_a_chart_as_a_frame_has_every_point_of_every_locus():
+    pytest.importorskip("pandas")
+    henon = cv.MapProblem(
+        lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]],
+        [0.63, 0.19],
+        {"a": 0.2, "b": 0.3},
+        parameter="a",
+    )
+    chart = cv.chart(cv.diagram(henon, within=(0.0, 0.6), depth=0), "b", (0.1, 0.5), regions=False)
+    frame = chart.to_pandas()
+    flips = frame[frame["kind"] == "period-doubling"]
+    assert len(flips) > 2 and np.allclose(flips["a"], 0.75 * (1 - flips["b"]) ** 2, atol=1e-9)

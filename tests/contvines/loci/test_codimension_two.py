@@ -127,6 +127,10 @@ def test_co_oxidation_bogdanov_takens_is_a_double_zero(oxidation):
 
 def test_co_oxidation_has_one_cusp_and_two_generalized_hopf_points(oxidation):
     assert len(oxidation.of_kind("cusp")) == 1 and len(oxidation.of_kind("generalized-hopf")) == 2
+    # printed by BifurcationKit's test test/COModel.jl
+    hopf = sorted(p.value for p in oxidation.of_kind("generalized-hopf"))
+    assert hopf[0] == pytest.approx((0.8913189828755895, 0.23248736), abs=1e-8)
+    assert hopf[1] == pytest.approx((0.924255, 0.305879), abs=1e-6)
     # on the fold locus a cusp is where (q2, k) turn back: the locus parametrised by y has dq2/dy = dk/dy = 0
     point = oxidation.of_kind("cusp")[0]
     assert point.value == pytest.approx((1.00640832967832, 0.35599127320868), abs=1e-11)

@@ -6,6 +6,7 @@ import pytest
 
 import contvines as cv
 from contvines.loci.codimension_two import find
+from contvines.loci.known_motions import KnownMotions, together
 from orbits import Coupled
 
 MACHINE = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
@@ -163,3 +164,31 @@ def test_a_border_with_singular_equations_is_followed_on_its_other_side(graph):
         assert not [point.kind for _, point in find(locus)]
         met += 1
     assert met >= 1
+
+
+def test_a_region_names_the_stable_motion_that_simulation_misses(graph):
+    """At high forcing all simulated starts only slide, although the motion with two impacts is stable: it is carried there by continuation."""
+    motions = KnownMotions(graph.branches.values(), [], "forcing", (BOUNDS, (0.5, 6.0)))
+    place = (1.038, 5.3)
+    (found,) = motions.at(place)
+    assert (found["word"], found["periods"], found["kind"]) == ("LR", 1, "periodic")
+    orbit = Coupled(forcing=place[1], **MACHINE).orbit("LR", frequency=place[0])
+    assert orbit.stable and orbit.real and orbit.replay() < 1e-8
+    problem = next(iter(graph.branches.values())).problem.against("frequency", {"forcing": place[1]})
+    both = together(problem.witness(place[0]), [found])
+    assert [m["word"] for m in both].count("LR") == 1
+    assert motions.at((1.055, 1.6)) == []  # outside of its fold there is no such motion
+
+
+def test_touched_borders_open_as_their_coefficients_say(graph):
+    (graze,) = graph.of_kind("velocity-graze")
+    locus = cv.locus(graze, over="forcing", within=(1.9, 3.0), bounds=BOUNDS)
+    (point,) = [p for _, p in find(locus) if p.kind == "degenerate-border"]
+    a, b = point.coefficients["a"], point.coefficients["b"]
+    for step in (1e-4, 1e-3):
+        wide = np.sqrt(-b * step / a)
+        assert locus.at(point.value[1] + step) - point.value[0] == pytest.approx([-wide, wide], rel=1e-3)
+    # with less forcing the response at any frequency keeps off the graze: the simulator says so
+    for forcing, kept in ((point.value[1] - 0.02, True), (point.value[1] + 0.02, False)):
+        orbit = Coupled(forcing=forcing, **MACHINE).orbit("LR", frequency=point.value[0])
+        assert orbit.real is kept

@@ -18,7 +18,7 @@ def test_a_flip_is_found_with_the_closure_turned_and_the_linearisation_stays():
     found = line.null_vectors(flipped=True)
     assert abs(found.test) < 1e-9
     assert np.abs(found.right) == pytest.approx([1.0, 0.0], abs=1e-9)
-    assert np.abs(found.left) == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert np.abs(found.column) == pytest.approx([1.0, 0.0], abs=1e-9)
     np.testing.assert_allclose(problem.kernels.matrix(line.data, line.work), plain)
     assert plain == pytest.approx(np.array([[-2.0, 0.0], [0.0, -0.5]]), abs=1e-9)
     assert abs(line.null_vectors().test) > 0.1  # +1 is no multiplier

@@ -96,3 +96,14 @@ def test_a_branch_that_runs_away_does_not_set_the_scale(graph):
     graph.special.pop("EP1")
     low, high = plot_diagram(graph, y="u0").axes[0].get_ylim()
     assert high < 10
+
+
+def test_a_zoom_across_is_as_high_as_what_is_seen(graph):
+    """On B2, u = sqrt(p), and on B1, u = 0: within [0.01, 0.04] they span 0 to 0.2."""
+    graph.branches.pop("B3")
+    low, high = plot_diagram(graph, y="u0", xlim=(0.01, 0.04)).axes[0].get_ylim()
+    assert -0.05 < low < 0.0 and 0.2 < high < 0.25
+    assert plot_diagram(graph, y="u0", xlim=(0.01, 0.04), ylim=(-1, 1)).axes[0].get_ylim() == (-1, 1)
+    graph.branches.pop("B2")  # a level line has a height, too
+    low, high = plot_diagram(graph, y="u0", xlim=(-0.5, -0.4)).axes[0].get_ylim()
+    assert low < 0.0 < high

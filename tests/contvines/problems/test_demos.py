@@ -47,6 +47,7 @@ def test_demo(demo):
         ("morris-lecar II", {"hopf": [93.86, 212.02]}),  # Rinzel and Ermentrout 1989
         ("squid", {"hopf": [9.78, 154.5]}),  # XPPAUT
         ("lrz", {"hopf": [24.7368], "symmetry-breaking": [1.0]}),  # AUTO's manual; 470/19, Lorenz 1963
+        ("wav", {"fold": [630.891, 666.144]}),  # AUTO's python/auto/test_data/fullTest.log, lines 127 and 128
         ("cusp", {"fold": [-0.384900, 0.384900]}),  # AUTO's manual
         ("adaptx", {"hopf": [1.000002]}),  # MatCont's manual
         ("henon", {"fold": [-0.1225]}),  # Henon, Commun. Math. Phys. 50 (1976) 69, for b = 0.3

@@ -10,14 +10,13 @@ from scipy.sparse.linalg import splu
 
 import contvines as cv
 from contvines.problems.factors import BandFactors, Method, SuperLUFactors
+from contvines.problems.sparse import SparseWork, bordered
 from tests.benchmarks.large import bratu as bratu_2d
+from tests.contvines.problems.brusselator import brusselator
 
 
-def second_difference(m, neumann=False):
-    matrix = sp.diags_array([np.ones(m - 1), -2.0 * np.ones(m), np.ones(m - 1)], offsets=[-1, 0, 1]).tolil()
-    if neumann:
-        matrix[0, 0] = matrix[m - 1, m - 1] = -1.0
-    return matrix.tocsc()
+def second_difference(m):
+    return sp.diags_array([np.ones(m - 1), -2.0 * np.ones(m), np.ones(m - 1)], offsets=[-1, 0, 1]).tocsc()
 
 
 def test_turing_points_of_a_brusselator_on_a_line():
@@ -26,29 +25,7 @@ def test_turing_points_of_a_brusselator_on_a_line():
     l = 4 m^2 sin(k pi/2 m)^2 are the eigenvalues of the second difference with no flux at the walls.
     """
     m, A, D, E = 500, 2.0, 0.02, 0.5
-    order = np.arange(2 * m).reshape(2, m).T.reshape(-1)
-    line = second_difference(m, True) * m**2
-    diffusion = sp.block_diag([D * line, E * line]).tocsc()[order][:, order].tocsc()
-
-    def F(w, b):
-        u, v = w[0::2], w[1::2]
-        out = diffusion @ w
-        out[0::2] += A - (b + 1.0) * u + u * u * v
-        out[1::2] += b * u - u * u * v
-        return out
-
-    def jacobian(w, b):
-        u, v = w[0::2], w[1::2]
-        here, above, below = np.empty(2 * m), np.zeros(2 * m - 1), np.zeros(2 * m - 1)
-        here[0::2], here[1::2] = -(b + 1.0) + 2.0 * u * v, -u * u
-        above[0::2], below[0::2] = u * u, b - 2.0 * u * v
-        return (diffusion + sp.diags_array([below, here, above], offsets=[-1, 0, 1])).tocsc()
-
-    def derivative(w, b):
-        out = np.empty(2 * m)
-        out[0::2], out[1::2] = -w[0::2], w[0::2]
-        return out
-
+    F, jacobian, derivative = brusselator(m, A, D, E)
     start = np.tile([A, 2.0 / A], m)
     problem = cv.AlgebraicProblem(F, start, 2.0, "B", jacobian=jacobian, derivative=derivative)
     graph = cv.diagram(problem, within=(2.0, 2.16), depth=1, bounds={"u0": (1.95, 2.05)})
@@ -118,6 +95,29 @@ def test_two_dimensional_bratu():
         step = splu(whole).solve(-np.concatenate([F(u, p), J @ v, [0.5 * (v @ v - 1.0)]]))
         u, v, p = u + step[:N], v + step[N : 2 * N], p + step[-1]
     assert point.value == pytest.approx(p, rel=1e-12)
+    assert not graph.of_kind("branch-point")
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e-3])
+def test_signs_with_the_factors_of_a_jacobian_on_the_other_side_of_a_fold(beyond):
+    """The sign of a bordered determinant is that of numpy, though det F_u has changed its own since the factors were made."""
+    n, rng = 12, np.random.default_rng(4)
+    values = np.linspace(1.0, 2.0, n)
+    basis = np.linalg.qr(rng.standard_normal((n, n)))[0]
+    vector = basis[:, 0]
+    border, slope = np.append(vector, 0.3), vector + 0.1 * rng.standard_normal(n)
+
+    class Bare:
+        scales = None
+
+    work = SparseWork(np.zeros(n), slope, keep=True)
+    for first in (1e-3, -beyond):
+        values[0] = first
+        work.jacobian = sp.csc_matrix(basis @ np.diag(values) @ basis.T)
+        work.near, work.factors, work.failed = work.factors, None, False
+        sign = bordered(Bare(), work, border, 0.0, np.zeros(n + 1), np.zeros(n + 1))
+        whole = np.block([[work.jacobian.toarray(), slope[:, None]], [border[None, :]]])
+        assert sign == np.linalg.slogdet(whole)[0]
 
 
 @pytest.mark.parametrize("complex_step", [True, False])

@@ -1,6 +1,7 @@
 """Equations of one's own: scales, corrupting functions, derivatives, symmetries, kinks, sparse Jacobians."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -215,7 +216,9 @@ def test_a_kink_is_told_from_noise(digits):
 
     kink = cv.AlgebraicProblem(lambda u, p: rounded(p - abs(u[0] - 0.3) - 0.5 * u[0]), [-1.0], 0.8)
     (said, other) = cv.diagram(kink, within=(0.0, 2.0))["B1"].ended
-    assert "kink near p = 0.15 (row 0)" in said and "end of the interval" in other
+    where = re.search(r"kink near p = (\S+) \(row 0\)", said)
+    assert where is not None and float(where[1]) == pytest.approx(0.15, abs=2e-6)
+    assert "end of the interval" in other
     smooth = cv.AlgebraicProblem(lambda u, p: rounded(p - np.sinh(u[0])), [0.0], 0.0)
     assert all("end of the interval" in said for said in cv.diagram(smooth, within=(-2.0, 2.0))["B1"].ended)
 
@@ -225,3 +228,49 @@ def test_a_start_far_from_any_solution_is_refused():
     problem = cv.AlgebraicProblem(lambda u, p: [p - abs(u[0] - 0.3) - u[0]], [-1.0], 1.6)
     with pytest.raises(ValueError, match=r"largest entry of F is 1\.3\).*far away.*better guess"):
         cv.diagram(problem, within=(0.0, 2.0))
+
+
+def noisy(sigma):
+    """p = u^2 with noise that does not repeat: a hash of the argument."""
+
+    def F(u, p):
+        number = 43758.5453 * np.sin(1e7 * u[0] + 3e7 * p)
+        return [p - u[0] ** 2 + sigma * (2.0 * (number - np.floor(number)) - 1.0)]
+
+    return F
+
+
+@pytest.mark.parametrize(
+    "F",
+    [lambda u, p, s=s: [np.round((p - u[0] ** 2) / s) * s] for s in (1e-8, 1e-6, 1e-5)]
+    + [noisy(1e-8), noisy(1e-6)],
+    ids=["stairs 1e-8", "stairs 1e-6", "stairs 1e-5", "noise 1e-8", "noise 1e-6"],
+)
+def test_stated_errors_are_those_that_noise_allows(F):
+    """The fold of p = u^2 at 0; both sides of it are reached."""
+    graph = cv.diagram(cv.AlgebraicProblem(F, [1.0], 1.0), within=(-1.0, 1.5), depth=0)
+    assert all("end of the interval" in said for said in graph["B1"].ended)
+    (fold,) = graph.of_kind("fold")
+    assert abs(fold.value) <= fold.location_error < 3e-4
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.01, 0.001])
+def test_a_small_circle_through_two_branch_points_is_cheap(radius):
+    calls = [0]
+
+    def jacobian(u, p):
+        calls[0] += 1
+        return [[3.0 * u[0] ** 2 + (p - 0.5) ** 2 - radius**2]]
+
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u * (u**2 + (p - 0.5) ** 2 - radius**2),
+        [0.0],
+        0.0,
+        jacobian=jacobian,
+        derivative=lambda u, p: 2.0 * u * (p - 0.5),
+    )
+    graph = cv.diagram(problem, within=(0.0, 1.0))
+    assert len(graph) == 2 and not graph.of_kind("fold")
+    found = sorted(point.value for point in graph.of_kind("branch-point"))
+    assert found == pytest.approx([0.5 - radius, 0.5 + radius], abs=1e-12)
+    assert calls[0] < 25 * sum(len(branch) for branch in graph)

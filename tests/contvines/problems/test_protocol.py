@@ -7,7 +7,7 @@ import contvines as cv
 import orbits
 from contvines.loci.problem import LocusProblem
 from contvines.problems.protocol import MEMBERS, Problem
-from orbits.machines.declared.problem import DeclaredProblem
+from orbits.declared.problem import DeclaredProblem
 from orbits.problem import OrbitProblem
 
 

@@ -94,6 +94,7 @@ def test_files_hold_every_number(one, tmp_path):
     data = one.to_xarray()
     assert data["size"].attrs["units"] == "mm" and list(data["size"].dims) == ["radius", "scale"]
     assert json.loads(data.attrs["about"])["axes"]["radius"] == VARY["radius"]
+    assert list(back.plan.axes) == list(one.plan.axes)
     (tmp_path / "no.nc").write_text("nothing")
     with pytest.raises(PlanError, match="not the NetCDF file of a survey"):
         load_survey(tmp_path / "no.nc")
@@ -121,3 +122,20 @@ def test_bands_and_maps_are_drawn(one):
 def test_unknown_outcomes_are_refused():
     with pytest.raises(PlanError, match="'weight' is unknown"):
         run(outcomes=("weight",))
+
+
+def test_axes_keep_their_order_in_a_file(tmp_path):
+    """Not the alphabet's: an outcome over (z, a) has z first."""
+    pytest.importorskip("xarray")
+    from contvines.survey import Plan, Survey
+
+    plan = Plan(
+        {"z": np.array([1.0, 2.0]), "a": np.array([1.0, 2.0, 3.0])}, {"y": np.ones(2), "b": np.zeros(2)}
+    )
+    values = np.arange(12.0).reshape(2, 3, 2)
+    about = {"axes": {"z": [1.0, 2.0], "a": [1.0, 2.0, 3.0]}, "samples": {"y": "ones", "b": "zeros"}}
+    Survey(plan, {"out": values}, np.full((2, 3, 2), ""), {}, about).save(tmp_path / "s.nc")
+    back = load_survey(tmp_path / "s.nc")
+    assert list(back.plan.axes) == ["z", "a"] and back.plan.shape == (2, 3, 2)
+    assert list(back.plan.samples) == ["y", "b"]
+    assert np.array_equal(back["out"], values)

@@ -36,6 +36,34 @@ def test_impacts_that_pile_up_are_told_with_the_speed_of_the_slowest():
     assert np.abs(np.log(speeds / told)).min() < 0.2
 
 
+def test_a_stick_at_a_wall_that_is_about_to_let_go():
+    """An impact before the stick leaves it no time: the faster it is the later the stick begins, which slips all the same.
+
+    The bounce, of speed e v, is stopped by what friction has in reserve; that falls to zero while the stick lasts, so at most half
+    of their product can be stopped, and beyond that speed nothing sticks any more.
+    """
+    machine = Cavity(
+        restitution_left=0.10878892263744645,
+        restitution_right=0.25829327142907893,
+        friction_left=0.5846013783532008,
+        friction_right=0.9782221629612905,
+        gravity=0.09286117259912385,
+        slope=-0.1018551716670123,
+        distance_left=1.3115605198765397,
+        distance_right=0.6283660446726224,
+        mass_ratio=0.05,
+    )
+    nodes = [
+        [7.604171, 0.1722621], [10.7135632, 0.2175675], [13.1994779, 0.4974531], [16.8319832, -0.3302381],
+        [20.4632948, -0.0088317], [23.0336773, 0.6522921], [24.7218903, 0.5827504], [25.0388672, 1.3008158],
+        [25.0568628, 1.3008161], [25.3237705, 1.3008161], [29.3665538, -0.3503809],
+    ]  # fmt: skip
+    start = machine.orbit("LtLRLtLtsR", periods=4, guess=nodes, amplitude=0.5519612510246895)
+    graph = cv.diagram(start, over="amplitude", within=(0.5519, 0.554), depth=1)
+    told = [text for point in graph.special.values() for text in point.remarks if "about to vanish" in text]
+    assert len(told) == 1 and "1.5e-04" in told[0] and "1.3e-04" in told[0]
+
+
 def test_where_the_reason_is_not_known_that_is_said():
     """Of an orbit away from all borders nothing is known; no remark is ever empty."""
     machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Cavity
+from orbits.cycles.deviation import position_error
 from orbits.cycles.identity import is_symmetric
 from orbits.simulation.replay import replay
 from orbits.words import Word
@@ -54,3 +55,11 @@ def test_a_mirror_image_after_whole_forcing_periods_is_no_symmetry():
     assert is_symmetric(word, 1, nodes)
     nodes[1, 0] = 0.3 + 3.0 * np.pi
     assert is_symmetric(word, 3, nodes)
+
+
+def test_a_stick_whose_end_comes_before_its_beginning_by_rounding_is_compared():
+    orbit = Absorber(restitution=0.7, friction=0.5, gravity=0.4).orbit("ss", amplitude=0.35)
+    nodes = orbit.nodes.copy()
+    slip = orbit.word.events.index("u")
+    nodes[slip - 1] = nodes[slip] + [3e-8, 0.0]
+    assert position_error(type(orbit)(orbit.model, orbit.word, 1, nodes, orbit.params)) < 1e-2

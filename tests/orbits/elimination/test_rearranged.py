@@ -5,6 +5,7 @@ import pytest
 
 from orbits.elimination import rearranged
 from orbits.elimination.block_cyclic import cyclic_kernels, workspace
+from tests.orbits.elimination.closures import closed_by
 
 
 def drawn(length, node, seed):
@@ -36,7 +37,7 @@ def written_out(work, twist):
 @pytest.mark.parametrize("length", [1, 2, 5])
 def test_transposed_systems(node, twist, length):
     work, draw = drawn(length, node, 10 * node + length)
-    data, size = (0, 0, 0, 0, twist), node * length
+    data, size = closed_by(twist), node * length
     matrix = written_out(work, twist)
     np.testing.assert_allclose(rearranged.matrix(data, work), matrix, atol=1e-15)
     other = workspace(length, node, 6)
@@ -59,7 +60,7 @@ def test_the_closure_turned_round(monkeypatch, twist, length):
     before = written_out(work, twist)
     last = np.zeros_like(before)
     last[-2:, :2] = work[2][-1] * np.array([1.0, twist])
-    rearranged.flip((0, 0, 0, 0, twist), work, -1.0)
+    rearranged.flip(closed_by(twist), work, -1.0)
     np.testing.assert_allclose(written_out(work, twist), before - 2.0 * last, atol=1e-15)
-    rearranged.flip((0, 0, 0, 0, twist), work, 1.0)
+    rearranged.flip(closed_by(twist), work, 1.0)
     np.testing.assert_allclose(written_out(work, twist), before, atol=1e-15)

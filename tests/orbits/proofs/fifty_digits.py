@@ -10,15 +10,23 @@ from pathlib import Path
 import numpy as np
 from mpmath import cos, expm, matrix, mp, mpf, pi, sin
 
-from orbits import Absorber, Coupled
+from orbits import Absorber, Cavity, Coupled
 
 FILE = Path(__file__).with_name("fifty_digits.json")
 SET = {"restitution": "0.76", "friction": "0.5", "gravity": "0.211", "mass_ratio": "0.006"}
 WALL = {"L": 1, "R": -1}
+UNLIKE = {
+    "restitution_left": "0.7", "restitution_right": "0.8", "friction_left": "0.4", "friction_right": "0.3",
+    "distance_left": "1.1", "distance_right": "0.9", "gravity": "0.2", "mass_ratio": "0.006", "slope": "0.1", "frequency": "1",
+}  # fmt: skip
+ON_END = {
+    "restitution_left": "0.8", "restitution_right": "0.8", "friction_left": "0", "friction_right": "0",
+    "distance_left": "1000", "distance_right": "1", "gravity": "1", "mass_ratio": "0", "slope": "1.5707963267948966", "frequency": "1",
+}  # fmt: skip
 
 
 def cases():
-    """(machine, word, periods, parameters as decimals): 35 of them."""
+    """(machine, word, periods, parameters as decimals): 35 of absorbers, 9 of cavities, two of these a ball that bounces."""
     reduced = SET | {"frequency": "1"}
     found = [("absorber", "LR", 1, reduced | {"amplitude": f"0.{c}"}) for c in range(30, 100, 4)]
     found += [
@@ -33,16 +41,36 @@ def cases():
         ("coupled", "LR", 1, coupled | {"frequency": "1.01", "friction": m})
         for m in ("0.1", "0.2", "0.3", "0.4")
     ]
+    found += [("cavity", "LR", 1, UNLIKE | {"amplitude": a}) for a in ("0.68", "0.7", "0.75")]
+    found += [("cavity", "LttR", 1, UNLIKE | {"amplitude": a}) for a in ("0.8", "0.9")]
+    found += [("cavity", "LRtt", 1, UNLIKE | {"amplitude": a}) for a in ("1.0", "1.1")]
+    found += [("cavity", "R", 1, ON_END | {"amplitude": a}) for a in ("0.6", "0.8")]
     return found
+
+
+def sides(p):
+    """By side, 1 for the left: where the wall is, its restitution, and the friction of sliding in this mode."""
+    names = {1: "left", -1: "right"}
+    return {
+        s: (
+            s * p.get(f"distance_{name}", 1),
+            p.get(f"restitution_{name}", p.get("restitution")),
+            p.get(f"friction_{name}", p.get("friction")),
+        )
+        for s, name in names.items()
+    }
 
 
 def generator(machine, p, mode):
     """M of one mode."""
-    omega, eps, r = p["frequency"], p["mass_ratio"], p["friction"] * p["gravity"]
-    if machine == "absorber":
+    omega, eps, r = p["frequency"], p["mass_ratio"], sides(p)[mode][2] * p["gravity"] if mode else 0
+    if machine != "coupled":
         M = matrix(5, 5)
         M[0, 1] = 1
-        M[1, 2], M[1, 4] = -p["amplitude"] * omega**2, -mode * (1 + eps) * r
+        # along the slope friction has the load cos, gravity pulls with sin to the right wall
+        tilt = p.get("slope", mpf(0))
+        force = -mode * r * cos(tilt) - p["gravity"] * sin(tilt)
+        M[1, 2], M[1, 4] = -p["amplitude"] * omega**2, (1 + eps) * force
         at = 2
     else:
         M = matrix(7, 7)
@@ -57,21 +85,22 @@ def generator(machine, p, mode):
 
 def relative(machine, y):
     """w, w', v, v' of a state."""
-    if machine == "absorber":
+    if machine != "coupled":
         return y[0], y[1], None, None
     return y[0] - y[2], y[1] - y[3], None, None
 
 
 def shot(machine, word, periods, p, x):
     """Residuals of the shooting equations, and the nodes; x holds the events' phases, B+ and for the coupled machine v, v'."""
-    n, eps, omega, r = len(word.events), p["mass_ratio"], p["frequency"], p["restitution"]
+    n, eps, omega = len(word.events), p["mass_ratio"], p["frequency"]
+    walls = {letter: sides(p)[s][:2] for letter, s in WALL.items()}
     phases = [*x[:n], x[0] + 2 * pi * periods]
     s, c = sin(phases[0]), cos(phases[0])
-    if machine == "absorber":
-        wall = WALL[word.events[0]]
+    wall = walls[word.events[0]][0]
+    if machine != "coupled":
         y = matrix([wall, p["amplitude"] * omega * c - x[n], s, c, 1])
     else:
-        wall, q2r = WALL[word.events[0]], x[n] / (1 + eps)
+        q2r = x[n] / (1 + eps)
         y = matrix(
             [
                 (x[n + 1] + eps * wall) / (1 + eps),
@@ -90,19 +119,20 @@ def shot(machine, word, periods, p, x):
         y = expm(M * ((phases[i + 1] - phases[i]) / omega), method="taylor") * y
         letter = word.events[(i + 1) % n]
         w, rate, *_ = relative(machine, y)
-        rows.append(w - WALL[letter] if letter in WALL else rate)
+        rows.append(w - walls[letter][0] if letter in WALL else rate)
         if letter in WALL:  # w' turns, v' stays
-            if machine == "absorber":
+            r = walls[letter][1]
+            if machine != "coupled":
                 y[1] = -r * rate
             else:
                 y[1], y[3] = y[1] - eps * (1 + r) * rate / (1 + eps), y[3] + (1 + r) * rate / (1 + eps)
-    rows += [y[1] - start[1]] if machine == "absorber" else [y[j] - start[j] for j in (0, 1, 3)]
+    rows += [y[1] - start[1]] if machine != "coupled" else [y[j] - start[j] for j in (0, 1, 3)]
     return rows, nodes
 
 
 def node(machine, letter, y, p, phase):
     """(Psi, B+ or w[, v, v']) of a state after an event."""
-    if machine == "absorber":
+    if machine != "coupled":
         B = p["amplitude"] * p["frequency"] * y[3] - y[1]
         return [phase, B if letter in WALL else y[0]]
     eps = p["mass_ratio"]
@@ -120,6 +150,9 @@ def floating(machine, word, periods, given):
         if word == "LR":
             return made.symmetric_orbit(values["amplitude"])
         return made.orbit(word, periods, amplitude=values["amplitude"])
+    if machine == "cavity":
+        amplitude = values.pop("amplitude")
+        return Cavity(**values).orbit(word, periods, amplitude=amplitude)
     frequency = values.pop("frequency")
     return Coupled(**values).symmetric_orbit(frequency=frequency)
 

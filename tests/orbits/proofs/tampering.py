@@ -170,17 +170,47 @@ def wrong_certificate(given, random):
     """One wrong thing in a certificate: a claim, a box, a parameter, the word, what kind of point it is."""
     wrong = copy.deepcopy(given)
     tiles = wrong["boxes"][1::2]
+    special = tiles[0]["kind"] if tiles else None
     kinds = ["real", "node", "radius", "parameter", "letter", "mode", "half", "periods", "frictionless"]
-    kinds += ["stable"] if wrong["claims"]["stable"] is not None else []
-    kinds += ["slope", "width", "missing", "end", "exponent"] if tiles else []
-    kinds += ["kind"] if len(wrong["boxes"]) == 3 else []
-    kinds += ["condition"] if wrong["kind"] == "border" else []
+    kinds += ["existence", "unknown", "absent", "other format", "exponent", "value", "value's radius"]
+    kinds += ["stable"] if wrong["claims"]["stable"] is not None else ["stable at a point"] if special else []
+    kinds += ["slope", "width", "missing", "end"] if tiles else ["slope of an orbit", "width of an orbit"]
+    kinds += ["kind"] if special else ["kind of a tile"]
+    kinds += ["condition"] if special == "border" else ["condition without a border"]
     kind = str(random.choice(kinds))
     box = wrong["boxes"][random.integers(len(wrong["boxes"]))]
     node = box["nodes"][random.integers(len(box["nodes"]))]
     triple = node[random.integers(len(node))]
-    if kind in ("real", "stable"):
+    if kind in ("real", "stable", "existence"):
         wrong["claims"][kind] = not wrong["claims"][kind]
+    elif kind == "stable at a point":
+        wrong["claims"]["stable"] = bool(random.integers(2))
+    elif kind == "unknown":
+        told = random.choice([wrong, wrong["claims"], box, wrong["parameters"]])
+        told[str(random.choice(["value", "covered", "ends", "point", "remark"]))] = ["1", "0", "0"]
+    elif kind == "absent":
+        told = random.choice([wrong, wrong["claims"], box, wrong["parameters"]])
+        del told[str(random.choice(list(told)))]
+    elif kind == "other format":
+        wrong["format"] = str(random.choice(["contvines certificate 2", "certificate", ""]))
+    elif (
+        kind == "value"
+    ):  # of an orbit by more than its tile is wide; of a tile by more than the orbits are apart
+        at = box["parameter"]
+        size = 10.0 ** random.uniform(0.5, 6) * (2 * float(tiles[0]["half_width"]) + 1e-4 if tiles else 1e-9)
+        at[0] = repr(float(at[0]) + random.choice([-1, 1]) * size)
+    elif kind == "value's radius":
+        at = box["parameter"]
+        at[2] = str(random.choice(["1e-30", "1e-9", "-1e-9"])) if at[2] == "0" else "0"
+    elif kind == "slope of an orbit":
+        triple[1] = str(random.choice(["1", "-1e-9", "1e-30"]))
+    elif kind == "width of an orbit":
+        box["half_width"] = str(random.choice(["1e-30", "1e-9", "-1e-9"]))
+    elif kind == "kind of a tile":
+        names = ["fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "border", "user"]
+        (tiles[0] if tiles else box)["kind"] = str(random.choice(names))
+    elif kind == "condition without a border":
+        box["conditions"] = [["flight", int(random.integers(len(wrong["events"]))), 1]]
     elif kind == "node":  # by more than the radius
         size = 10.0 ** random.uniform(0.5, 5) * (float(triple[2]) + 1e-13)
         triple[0] = repr(float(triple[0]) + random.choice([-1, 1]) * size)
@@ -197,22 +227,27 @@ def wrong_certificate(given, random):
     elif kind == "missing":
         del wrong["boxes"][random.integers(1, len(wrong["boxes"]) - 1)]
     elif kind == "end":  # the same orbit on both sides; of a stretch's first tile that is still true
-        i = 2 * random.integers(int(wrong["kind"] == "piece"), len(tiles))
+        i = 2 * random.integers(int(special is None), len(tiles))
         wrong["boxes"][i] = copy.deepcopy(wrong["boxes"][i + 2])
     elif kind == "exponent":
-        (moved,) = (entry for entry in wrong["parameters"].values() if entry[2])
-        moved[2] = int(random.choice([0, -1, 2, 3]))
+        moved = [entry for entry in wrong["parameters"].values() if entry[2] != "0"]
+        entry = moved[0] if moved else wrong["parameters"]["friction"]
+        entry[2] = str(random.choice([k for k in ("0", "1", "-1", "2", "3", "0.5") if k != entry[2]]))
     elif kind == "kind":
-        names = ["fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "border", "piece", "orbit"]
-        wrong["kind"] = str(random.choice([name for name in names if name != wrong["kind"]]))
-        if random.integers(2):
-            tiles[0]["kind"] = wrong["kind"]
+        names = ["fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "border", "stick", "user"]
+        tiles[0]["kind"] = str(random.choice([name for name in names if name != special]))
     elif kind == "condition":
-        what, i, side = wrong["boxes"][1]["condition"]
-        wrong["boxes"][1]["condition"] = [what, (i + 1) % len(wrong["events"]), side]
+        ((what, i, side),) = wrong["boxes"][1]["conditions"]
+        others = [
+            ["wall" if what == "flight" else "flight", i, side],
+            [what, (i + 1) % len(wrong["events"]), side],
+        ]
+        wrong["boxes"][1]["conditions"] = [[], [others[0]], [others[1]], [[what, i, side], others[1]]][
+            random.integers(4)
+        ]
     elif kind == "parameter":
         name = str(
-            random.choice([n for n, entry in wrong["parameters"].items() if not entry[2] and n in FELT])
+            random.choice([n for n, entry in wrong["parameters"].items() if entry[2] == "0" and n in FELT])
         )
         size = float(wrong["parameters"][name][0]) * 10.0 ** random.uniform(-9, -1)
         wrong["parameters"][name][0] = repr(float(wrong["parameters"][name][0]) + size)
@@ -223,7 +258,9 @@ def wrong_certificate(given, random):
     elif kind == "mode":
         i = random.integers(len(wrong["modes"]))
         wrong["modes"][i] = int(random.choice([m for m in (-1, 0, 1) if m != wrong["modes"][i]]))
-    elif kind in ("half", "frictionless"):
+    elif kind == "half":  # any other number would close the word by some other map
+        wrong[kind] = [not wrong[kind], 2, -1, 0.5][random.integers(4)]
+    elif kind == "frictionless":
         wrong[kind] = not wrong[kind]
     else:
         wrong["periods"] += int(random.choice([1, 2, -2]))

@@ -22,9 +22,8 @@ ABSORBER = tampering.ABSORBER
 
 def names(case):
     given = case["parameters"]
-    return (
-        f"{case['machine']}-{case['word']}-{given.get('amplitude') or given['frequency']}-{given['friction']}"
-    )
+    friction = given.get("friction") or given["friction_left"]
+    return f"{case['machine']}-{case['word']}-{given.get('amplitude') or given['frequency']}-{friction}"
 
 
 def holds(pair, number):
@@ -47,9 +46,9 @@ def test_orbits_known_to_fifty_digits_lie_in_the_balls(case):
         assert all(holds(pair, number) for pair, number in zip(node, known, strict=True))
 
 
-def test_there_are_thirty_five_and_they_are_solved_anew():
-    assert len(KNOWN) == 35 == len(fifty_digits.cases())
-    for case in (KNOWN[3], KNOWN[-1]):
+def test_there_are_more_than_thirty_five_and_they_are_solved_anew():
+    assert len(KNOWN) == 44 == len(fifty_digits.cases())
+    for case in (KNOWN[3], KNOWN[34], KNOWN[38], KNOWN[-1]):
         _, nodes = fifty_digits.solve(case["machine"], case["word"], case["periods"], case["parameters"])
         for row, known in zip(nodes, case["nodes"], strict=True):
             assert all(
@@ -189,11 +188,19 @@ def _orbits(kept=[]):  # noqa: B006
 
 
 @pytest.mark.parametrize(
-    "junk", [{}, {"format": "contvines certificate 2"}, [], None, {"format": 1, "kind": []}]
+    "junk", [{}, {"format": "contvines certificate 3"}, [], [[]], None, {"format": 1, "boxes": []}]
 )
 def test_junk_is_refused(junk):
     with pytest.raises(Refused):
         check(junk)
+
+
+@pytest.mark.parametrize("half", [2, -1, 0.5, None, "yes"])
+def test_half_a_word_is_closed_by_the_mirror_and_by_nothing_else(half):
+    paper = json.loads(json.dumps(of_orbit(ABSORBER.symmetric_orbit(amplitude=0.6)).certificate()))
+    check(paper)
+    with pytest.raises(Refused):
+        check(paper | {"half": half})
 
 
 def test_the_mirror_image_is_not_taken_on_trust():

@@ -34,7 +34,16 @@ DEMOS = [
     ),
     Demo("pp3", "AUTO pp3", eq.pp3, [1.0, 0.0, 0.0], 0.0, (0.0, 1.0), "p1", depth=3),
     Demo("plp", "AUTO plp", eq.plp, [100.0, 450.0], 0.01, (0.0, 4.0), "rho"),
-    Demo("wav", "AUTO wav", eq.wav, [62.7662, 88.8308], 500.0, (400.0, 1200.0), "a0"),
+    Demo(
+        "wav",
+        "AUTO wav",
+        eq.wav,
+        [62.7662, 88.8308],
+        500.0,
+        (400.0, 1200.0),
+        "a0",
+        printed="folds 666.144, 630.891 (AUTO, python/auto/test_data/fullTest.log, lines 127 and 128; its HB 635.591 is that of travelling waves, of four equations)",
+    ),
     Demo("enz", "AUTO enz", eq.enz, [0.0, 0.0], 0.0, (0.0, 50.0), "s0", options={"mirror": SWAP}),
     Demo(
         "cusp",

@@ -1,0 +1,135 @@
+"""The scan of :mod:`contvines.events.scan` with numpy, for problems made of Python callables, whose loops would be interpreted.
+
+What is marked, and the arguments, are those of :func:`contvines.events.scan.mark_segments`, whose loops are compiled for the others.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..continuation.march import MARGIN
+from .bits import (
+    APART,
+    BORDER,
+    DAMPED,
+    FLOW,
+    FOLD,
+    HUMP,
+    MAP,
+    MEETING,
+    MULTIPLIER,
+    REAL,
+    SHALLOW,
+    SINGULAR,
+)
+from .multipliers import PAST
+
+
+def mark_segments(
+    points: np.ndarray,
+    values: np.ndarray,
+    slopes: np.ndarray,
+    rows: np.ndarray,
+    signs: np.ndarray,
+    first_margin: int,
+    kind: int,
+    real: bool,
+    flat: float,
+    metric_u: float,
+    metric_p: float,
+    orders: np.ndarray,
+    images: np.ndarray,
+    constants: np.ndarray,
+    shift: np.ndarray,
+    gaps: np.ndarray,
+    flags: np.ndarray,
+    smallest: np.ndarray,
+) -> None:
+    """Fill `flags` (n - 1,) and `smallest` (n,); see :func:`contvines.events.scan.mark_segments`."""
+    with np.errstate(all="ignore"):
+        smallest[:] = np.fmin.reduce(rows[:, first_margin:], axis=1, initial=np.inf)
+        if len(values) < 2:
+            return
+        positive, above = slopes >= 0.0, np.abs(slopes) > flat
+        flags |= np.where((positive[1:] != positive[:-1]) & (above[1:] | above[:-1]), FOLD, 0)
+        flags |= np.where((signs[1:] >= 0.0) != (signs[:-1] >= 0.0), SINGULAR, 0)
+        counts, damping = _past(rows[:, 0:first_margin:2], rows[:, 1:first_margin:2], kind)
+        flags |= np.where((counts[:, 1:] != counts[:, :-1]).any(axis=0), MULTIPLIER, 0)
+        outside = smallest < MARGIN
+        flags |= np.where((outside[1:] != outside[:-1]) & (outside[1:] == real), BORDER, 0)
+        if len(orders):
+            flags |= np.where(_meet(points, orders, images, constants, shift), MEETING, 0)
+        steps, changes = np.diff(points, axis=0), np.diff(values)
+        lengths = np.sqrt(metric_u * np.einsum("ij,ij->i", steps, steps) + metric_p * changes**2)
+        here, there = slopes[:-1], slopes[1:]
+        steep = (here * there > 0.0) & above[1:] & above[:-1] & (lengths > 0.0)
+        side = np.where(here > 0.0, 1.0, -1.0)
+        flags |= np.where(steep & _turns_twice(side * here, side * there, side * changes / lengths), HUMP, 0)
+        # three neighbours: marks the segments on both sides of the middle one
+        sided = side[1:]
+        humps = steep[1:] & dips(sided * slopes[:-2], sided * slopes[1:-1], sided * slopes[2:], lengths)
+        _mark_both(flags, humps, HUMP)
+        if real:
+            _mark_both(flags, dips(smallest[:-2], smallest[1:-1], smallest[2:], lengths), SHALLOW)
+        if kind in (MAP, FLOW) and first_margin > 0:
+            _mark_both(flags, dips(damping[:-2], damping[1:-1], damping[2:], lengths), DAMPED)
+
+
+def _mark_both(flags: np.ndarray, middles: np.ndarray, bit: int) -> None:
+    flags[:-1] |= np.where(middles, bit, 0)
+    flags[1:] |= np.where(middles, bit, 0)
+
+
+def _past(re: np.ndarray, im: np.ndarray, kind: int) -> tuple[np.ndarray, np.ndarray]:
+    """How many multipliers are past 1, past -1 and pairs past the circle (or the axis) at each point; and the damping."""
+    single, counts = im == 0.0, np.zeros((3, len(re)), dtype=np.int64)
+    if kind == MAP:
+        modulus = np.where(single, np.abs(re), np.sqrt(re * re + im * im))
+        counts[0] = np.count_nonzero(single & (re > 1.0 + PAST), axis=1)
+        counts[1] = np.count_nonzero(single & (re < -1.0 - PAST), axis=1)
+        counts[2] = np.count_nonzero(~single & (im > 0.0) & (modulus > 1.0 + PAST), axis=1)
+        outermost = np.fmax.reduce(modulus, axis=1, initial=-np.inf)
+        return counts, np.where(outermost > 0.0, -np.log(outermost), np.inf)
+    if kind in (FLOW, REAL):
+        counts[0] = np.count_nonzero(single & (re > PAST), axis=1)
+    if kind == FLOW:
+        counts[2] = np.count_nonzero((im > 0.0) & (re > PAST), axis=1)
+        return counts, -np.fmax.reduce(re, axis=1, initial=-np.inf)
+    return counts, np.full(len(re), np.inf)
+
+
+def _meet(
+    points: np.ndarray, orders: np.ndarray, images: np.ndarray, constants: np.ndarray, shift: np.ndarray
+) -> np.ndarray:
+    """Where the part that a symmetry changes turns round, modulo shifts by a period."""
+    meets = np.zeros(len(points) - 1, dtype=bool)
+    whole = float(shift @ shift)
+    for order, image, constant in zip(orders, images, constants):
+        gap = points[:, : len(shift)] - (image * points[:, order] + constant)
+        if whole > 0.0:
+            gap = gap - np.outer(np.round((gap @ shift) / whole), shift)
+        far = np.abs(gap).max(axis=1, initial=0.0) > APART
+        meets |= far[1:] & far[:-1] & (np.einsum("ij,ij->i", gap[1:], gap[:-1]) < 0.0)
+    return meets
+
+
+def dips(left: np.ndarray, middle: np.ndarray, right: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Where the parabola through three neighbouring positive values dips below zero between them; of n - 1 segments n - 2."""
+    h1, h2 = lengths[:-1], lengths[1:]
+    sound = (left > 0.0) & (middle > 0.0) & (right > 0.0) & (h1 > 0.0) & (h2 > 0.0)
+    sound &= (left < np.inf) & (middle < np.inf) & (right < np.inf)
+    if not sound.any():
+        return sound
+    before, after = (middle - left) / h1, (right - middle) / h2
+    bend = (after - before) / (h1 + h2)
+    slope = (before * h2 + after * h1) / (h1 + h2)
+    vertex = -0.5 * slope / bend
+    below = middle - 0.25 * slope * slope / bend < 0.0
+    return sound & (bend > 0.0) & (-h1 < vertex) & (vertex < h2) & below
+
+
+def _turns_twice(here: np.ndarray, there: np.ndarray, mean: np.ndarray) -> np.ndarray:
+    """Where the cubic with these positive slopes at its ends, and this mean slope, falls in between."""
+    bend = 3.0 * (here + there - 2.0 * mean)
+    middle = 2.0 * here + there - 3.0 * mean
+    return (bend > 0.0) & (middle > 0.0) & (middle < bend) & (here * bend < middle * middle)

@@ -1,0 +1,152 @@
+"""Motions that a chart knows from continuation, carried to a place of the plane: what is stable there by its multipliers and margins.
+
+A simulation from a few starts may miss a motion with a small basin. What the graph and the loci have is therefore continued to the
+place, in straight steps of both parameters, and counts as found where it is stable and admissible and a simulation of one period agrees.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..branches.branch import Branch
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from ..problems.abilities import Attracting
+from ..problems.protocol import Problem
+from .layout import BRANCH, FOLD
+from .locus import Locus
+
+STEPS = (1, 6, 24)  # on the way to the place
+NEAREST = 3  # starts of one word that are tried
+AGREES = 1e-6  # deviation of a simulation over one period
+INSIDE = -1e-12  # margins below this are negative
+
+
+class Start(NamedTuple):
+    """A motion at (p, q), and the key of its word."""
+
+    problem: Problem
+    u: np.ndarray
+    p: float
+    q: float
+    key: str
+
+
+class KnownMotions:
+    """Stable motions of a graph and regular ones on loci, as starts.
+
+    Parameters
+    ----------
+    branches : iterable of Branch
+        At one value of the second parameter.
+    loci : iterable of Locus
+    over : str
+        The second parameter.
+    within : (interval, interval)
+        Of both parameters.
+    """
+
+    def __init__(
+        self, branches: Any, loci: Any, over: str, within: tuple[tuple[float, float], tuple[float, float]]
+    ) -> None:
+        self.over, self.within = over, within
+        self.starts = [start for branch in branches for start in self._of_branch(branch)]
+        self.starts += [start for locus in loci for start in self._of_locus(locus)]
+
+    def _of_branch(self, branch: Branch) -> list[Start]:
+        problem = branch.problem
+        if problem is None or not branch.real or not _told(problem):
+            return []
+        q, key, found = problem.parameters[self.over], _key(problem, branch.label), []
+        for first, last, stable in branch.pieces():
+            if stable:
+                for i in sorted({first, (first + last) // 2, last}):
+                    found.append(Start(problem, branch.points[i], float(branch.values[i]), q, key))
+        return found
+
+    def _of_locus(self, locus: Locus) -> list[Start]:
+        problem = locus.problem
+        if problem is None or problem.condition in (FOLD, BRANCH) or not _told(problem.base):
+            return []
+        key, found = _key(problem.base, locus.label), []
+        for i in np.linspace(0, len(locus) - 1, 12).astype(int):
+            u, p = problem.split(locus.branch.points[i])
+            found.append(Start(problem.base, u, float(p), float(locus.branch.values[i]), key))
+        return found
+
+    def at(self, place: tuple[float, float]) -> list[dict[str, Any]]:
+        """The motions that are stable at (p, q), each word once."""
+        (plow, phigh), (qlow, qhigh) = self.within
+        found: dict[str, dict[str, Any]] = {}
+        tried: dict[str, int] = {}
+
+        def far(start: Start) -> float:
+            return max(abs(start.p - place[0]) / (phigh - plow), abs(start.q - place[1]) / (qhigh - qlow))
+
+        for start in sorted(self.starts, key=far):
+            if start.key in found or tried.get(start.key, 0) >= NEAREST:
+                continue
+            tried[start.key] = tried.get(start.key, 0) + 1
+            entry = self._carried(start, place)
+            if entry is not None:
+                found[start.key] = entry
+        return list(found.values())
+
+    def _carried(self, start: Start, place: tuple[float, float]) -> dict[str, Any] | None:
+        for steps in STEPS:
+            u, solved = start.u, None
+            for share in np.arange(1, steps + 1) / steps:
+                p = start.p + share * (place[0] - start.p)
+                q = start.q + share * (place[1] - start.q)
+                problem: Any = start.problem.against(start.problem.parameter, {self.over: float(q)})
+                wide = self.within[0][1] - self.within[0][0]
+                engine = Engine(problem, (p - wide, p + wide), Settings())
+                solved = engine.at_value(u, p)
+                if solved is None:
+                    break
+                u = solved.u
+            if solved is not None:
+                row = solved.row
+                if not bool(engine.stable(row)) or not float(engine.smallest_margin(row)) > INSIDE:
+                    return None
+                deviation = problem.replay(u, p)
+                if deviation is not None and not deviation < AGREES:
+                    return None
+                while (smaller := problem.root(u, p)) is not None:
+                    problem, u = smaller
+                return problem.attractor(u, p) if isinstance(problem, Attracting) else None
+        return None
+
+
+def _told(problem: Any) -> bool:
+    """Whether a solution can be told as `witness` tells it; one without events is seen by any simulation."""
+    about = problem.describe()
+    return isinstance(problem, Attracting) and about.get("word") != ""
+
+
+def _key(problem: Any, label: str) -> str:
+    """Equal for motions of one word; of what has no words every branch is tried."""
+    about = problem.describe()
+    if "word" not in about:
+        return label
+    return f"{about.get('word')} {about.get('periods')} {bool(about.get('symmetric'))}"
+
+
+def together(simulated: list[dict[str, Any]], known: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What simulation found, and what it missed of the known ones."""
+    result = list(simulated)
+    for one in known:
+        if not any(_one(one, other) for other in result):
+            result.append(one)
+    return result
+
+
+def _one(a: dict[str, Any], b: dict[str, Any]) -> bool:
+    if (a["word"], a["periods"]) != (b["word"], b["periods"]):
+        return False
+    if "u" not in a or "u" not in b:
+        return True
+    size = 1e-3 * (np.abs(a["u"]) + np.abs(b["u"])).max()
+    return bool(np.abs(np.subtract(a["u"], b["u"])).max() <= size)

@@ -1,0 +1,190 @@
+"""Across a border of a declared machine: the word on the other side, and the orbit with which its branch begins.
+
+The rules of `edits` propose the word, and what vanishes at the border is given a size; where they do not lead on, the simulator
+writes the word. A proposal counts only if its equations have a real solution next to the border and the simulator follows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.changes import Change
+from orbits.contacts.letters import SLIP, STICK
+from orbits.cycles.claim import REAL
+from orbits.declared.attractor import settle
+from orbits.declared.deviation import deviation
+from orbits.declared.distance import distance
+from orbits.declared.edits import edits_at
+from orbits.declared.margins import per_node
+from orbits.declared.neighbours import Found, grown, margins_of
+from orbits.declared.orbit import DeclaredOrbit
+from orbits.declared.solving import SOLVED, newton
+from orbits.declared.stepper import SimulationError, Stepper
+from orbits.declared.system import DeclaredSystem
+from orbits.protocol import Seed
+
+FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
+CLOSE = 0.05  # of one that goes on from the border
+
+
+def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
+    """Seeds of the branches on the other side of a border (as `orbits.borders.crossing.cross`)."""
+    u, p = np.asarray(point.u, dtype=float), float(point.value)
+    index = int(point.margin_index)
+    old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), index)
+    seeds = []
+    for other, v, q, tangent, note in (*proposals(problem, u, p, index), *_simulated(problem, u, p)):
+        if not _followed(DeclaredOrbit.of(other, v, q)):
+            continue
+        smallest, v, tangent = _simplest(other, v, q, tangent)
+        persistence = bool(np.sign(q - p) != old_side)
+        kind = "persistence" if persistence else "nonsmooth fold"
+        text = f"{note}: {kind}, the word becomes {smallest.word.text or 'free of events'}"
+        seeds.append(Seed(smallest, v, q, tangent, "border", text, persistence))  # type: ignore[arg-type]
+        break
+    return seeds + list(_escapes(problem, u, p, index))
+
+
+def _followed(orbit: DeclaredOrbit) -> bool:
+    return orbit.margin >= REAL and deviation(orbit) < FOLLOWED
+
+
+def _simplest(
+    problem: DeclaredSystem, u: np.ndarray, p: float, tangent: np.ndarray | None
+) -> tuple[DeclaredSystem, np.ndarray, np.ndarray | None]:
+    """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
+    root = DeclaredOrbit.of(problem, u, p).root()
+    if len(root.word) == len(problem.word) and root.symmetric == problem.symmetric:
+        return problem, u, tangent
+    smallest = problem.sibling(root.word, root.periods, root.symmetric)
+    return smallest, smallest.reduce(root.nodes), None
+
+
+def turned(
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int
+) -> tuple[DeclaredSystem, np.ndarray, int]:
+    """The same border read from another event, so that what changes does not straddle the end of the word."""
+    width = per_node(problem.contacts)
+    place, column = divmod(index, width)
+    if problem.length < 3:
+        first = place if column < problem.contacts or column == width - 1 else place - 1
+    else:
+        first = place - 1
+    if first % problem.length == 0 or not len(problem.word):
+        return problem, u, index
+    orbit = DeclaredOrbit.of(problem, u, p).rotate(first % len(problem.word))
+    other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
+    return other, other.reduce(orbit.nodes), width * ((place - first) % problem.length) + column
+
+
+def proposals(
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, np.ndarray, str]]:
+    """Solutions next to the border with the words that the rules propose."""
+    first = problem
+    problem, u, index = turned(problem, u, p, index)
+    orbit = DeclaredOrbit.of(problem, u, p)
+    for edit in edits_at(orbit, index):
+        found = grown(problem, orbit, p, [edit])
+        if found is not None:
+            yield (*_read_alike(first, problem, edit.change, found), edit.change.what.value)
+
+
+def _read_alike(first: DeclaredSystem, problem: DeclaredSystem, edit: Change, found: Found) -> Found:
+    """The orbit found, read from the event from which the border orbit was read before it was turned; never from a slip."""
+    ahead = next((k for k in range(len(first.word)) if problem.word.rotate(k) == first.word), 0)
+    grown_by = len(edit.events) - (edit.stop - edit.start)
+    places = ahead + grown_by
+    if (
+        problem.symmetric and ahead >= problem.length + edit.stop
+    ):  # the mirrored edit stands before it as well
+        places += grown_by
+    if ahead == 0 or ahead < edit.stop or places <= 0:
+        places = 0
+    return _unslipped(_rotated(found, places))
+
+
+def _rotated(found: Found, places: int) -> Found:
+    """The same orbit and direction, read `places` events further on."""
+    other, v, q, tangent = found
+    if places == 0 or not len(other.word):
+        return found
+    orbit = DeclaredOrbit.of(other, v, q).rotate(places)
+    again = other.sibling(orbit.word, other.periods, other.symmetric)
+    direction = np.roll(other.expand_direction(tangent[:-1]), -places, axis=0)[: again.length]
+    return again, again.reduce(orbit.nodes), q, np.append(direction.ravel(), tangent[-1])
+
+
+def _unslipped(found: Found) -> Found:
+    """Read from the stick before a slip that would come first."""
+    word = found[0].word
+    slips = len(word) > 1 and word.letter(0).kind == SLIP and word.letter(-1).kind == STICK
+    return _rotated(found, len(word) - 1) if slips else found
+
+
+def _real_side(problem: DeclaredSystem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
+    """Sign of the parameter's change from the border into the branch's real part."""
+    length = 1e-4 / max(float(np.abs(tangent).max()), 1e-12)
+    sides = []
+    for sign in (1.0, -1.0):
+        v, q, residual, _ = newton(
+            problem, u + sign * length * tangent[:-1], p + sign * length * float(tangent[-1]), tangent
+        )
+        if residual < SOLVED:
+            sides.append((float(margins_of(problem, v, q)[index]), q - p))
+    return float(np.sign(max(sides)[1])) if sides else 0.0
+
+
+def _escapes(problem: DeclaredSystem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
+    """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
+    if not len(problem.word):
+        return
+    problem, u, index = turned(problem, u, p, index)
+    orbit = DeclaredOrbit.of(problem, u, p)
+    if problem.symmetric:
+        wider, what = (
+            problem.sibling(problem.word, problem.periods, False),
+            "the symmetry breaks at the border",
+        )
+    else:
+        orbit = orbit.repeat(2)
+        wider = problem.sibling(orbit.word, orbit.periods, False)
+        what = "the period doubles at the border"
+    for edit in edits_at(orbit, index):
+        found = grown(wider, orbit, p, [edit])
+        if found is None:
+            continue
+        other, v, q, tangent = found
+        there = DeclaredOrbit.of(other, v, q)
+        if there.symmetric or len(there.root().word) != len(other.word) or not _followed(there):
+            continue
+        note = f"{edit.change.what.value}: {what}, the word becomes {other.word.text}"
+        yield Seed(other, v, q, tangent, "border", note, False)  # type: ignore[arg-type]
+        return
+
+
+def _simulated(
+    problem: DeclaredSystem, u: np.ndarray, p: float
+) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, None, str]]:
+    """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
+    orbit = DeclaredOrbit.of(problem, u, p)
+    here = problem.canonical(u, p)[0]
+    for side in (1.0, -1.0):
+        q = p + side * 1e-6 * max(1.0, abs(p))
+        stepper = Stepper(problem.machine, problem.values(q))
+        try:
+            stepper.start(
+                orbit.nodes[0, 1:], float(orbit.nodes[0, 0]) if problem.forced else 0.0, orbit.word.modes[0]
+            )
+            found = settle(stepper, 60, max(2 * problem.periods, 4))
+        except SimulationError:
+            continue
+        if found is None or (problem.forced and found.periods % problem.periods):
+            continue
+        other = problem.sibling(found.word, found.periods, found.symmetric, found.params)
+        if other.canonical(other.reduce(found.nodes), q)[0] == here or distance(orbit, found) > CLOSE:
+            continue
+        yield other, other.reduce(found.nodes), q, None, "the simulator goes on"

@@ -1,0 +1,292 @@
+"""The formulas of a declared machine: what its page says, in every mode.
+
+The page is run once with symbols. A *pattern* says which frictions stick and which walls hold; in each the unknown contact forces
+follow from what they keep at rest, and the signs of sliding frictions and of switches stay numbers, so that one compiled flow
+serves all of them.
+
+Independent variable (`clock`) of every compiled flow: the forcing phase (radians) of a forced machine, time of a self-excited one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
+from orbits.contacts.switch import Switch
+from orbits.contacts.wall import HELD, Wall
+from orbits.declared import engine
+from orbits.declared.formulas import Named, NoPhase, PageError, States, called
+from orbits.symbols import Symbol
+
+CLOCK = "phase"
+PatternKey = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
+
+
+@dataclass(frozen=True)
+class Guard:
+    """A quantity of one contact that stays positive in a mode, and the event that happens where it falls to zero.
+
+    `sign` is that of the velocity after a slip.
+    """
+
+    contact: int
+    kind: int
+    value: Symbol
+    sign: int = 0
+
+
+class Pattern:
+    """The machine while given frictions stick, given walls hold and given frictions are absent.
+
+    Attributes
+    ----------
+    rates : list of Symbol
+        Time derivatives of the states.
+    forces, mobility : dict of int to Symbol
+        Force of each friction and each held wall, by the contact's index; for those that are solved for also the acceleration
+        that a unit of it gives while the others keep what they keep.
+    """
+
+    def __init__(
+        self, equations: Equations, stuck: tuple[int, ...], held: tuple[int, ...], absent: tuple[int, ...]
+    ) -> None:
+        self.equations, self.stuck, self.held, self.absent = equations, stuck, held, absent
+        e = equations
+        unknown = {j: engine.variable(f"force_{e.contacts[j].name}") for j in (*stuck, *held)}
+        sliding = [
+            j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction) and j not in stuck
+        ]
+        known = {j: engine.constant(0.0) if j in absent else -e.limit[j] * e.sign[j] for j in sliding}
+        base = e.motion_with({**known, **{j: unknown[j] for j in stuck}})
+        for j in held:
+            base = [r + d * unknown[j] for r, d in zip(base, e.push[j])]
+        conditions = [e.along(e.velocity[j], base) for j in stuck]
+        conditions += [e.along(e.gap_rate(j), base) for j in held]
+        solved, self.mobility = _solved(conditions, unknown)
+        self.forces: dict[int, Symbol] = {**known, **solved}
+        rates = e.motion_with({j: f for j, f in self.forces.items() if j not in held})
+        for j in held:
+            rates = [r + d * self.forces[j] for r, d in zip(rates, e.push[j])]
+        self.rates: list[Symbol] = rates
+
+    def rate(self, value: Symbol) -> Symbol:
+        """Time derivative of a quantity along this flow."""
+        return self.equations.along(value, self.rates)
+
+    @cached_property
+    def clock_rates(self) -> list[Symbol]:
+        """Derivatives of the states by the clock."""
+        omega = self.equations.phase_rate
+        return self.rates if omega is None else [rate / omega for rate in self.rates]
+
+    @cached_property
+    def guards(self) -> list[Guard]:
+        """What stays positive in this pattern, contact by contact."""
+        e, found = self.equations, []
+        for j, contact in enumerate(e.contacts):
+            if isinstance(contact, Wall):
+                if j in self.held:
+                    found.append(Guard(j, RELEASE, self.forces[j] * self.mobility[j]))
+                else:
+                    found.append(Guard(j, HIT, e.gap[j]))
+            elif isinstance(contact, Switch):
+                if not any(e.flips.get((wall, j)) for wall in self.held):  # the wall keeps it at zero
+                    found.append(Guard(j, SWITCH, e.sign[j] * e.surface[j]))
+            elif j in self.stuck:
+                for sign in (1, -1):
+                    reserve = self.mobility[j] * (e.limit[j] + float(sign) * self.forces[j])
+                    found.append(Guard(j, SLIP, reserve, sign))
+            elif j not in self.absent:
+                found.append(Guard(j, TURN, e.sign[j] * e.velocity[j]))
+        return found
+
+
+class Equations:
+    """What a page says, as symbols.
+
+    Attributes
+    ----------
+    contacts : tuple of Wall, DryFriction or Switch
+    layout : engine.Layout
+    sign : dict of int to Symbol
+        Sign of a sliding friction or of a switch: a number at run time.
+    gap, push, restitution; velocity, limit; surface : dict of int to Symbol (push: list of Symbol)
+        Of the walls; the frictions; the switches.
+    phase_rate : Symbol or None
+    flips : dict of (wall, contact) to int or None
+        What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
+    """
+
+    def __init__(
+        self,
+        states: tuple[str, ...],
+        parameters: tuple[str, ...],
+        phase_rate: str | None,
+        motion: Any,
+        contacts: tuple[Any, ...],
+    ) -> None:
+        self.states, self.contacts = states, contacts
+        self._motion = motion
+        self._patterns: dict[PatternKey, Pattern] = {}
+        self.flips: Mapping[tuple[int, int], int | None] = {}
+        signed = [j for j, c in enumerate(contacts) if isinstance(c, (DryFriction, Switch))]
+        numbers = (*(f"p_{name}" for name in parameters), *(f"sign_{contacts[j].name}" for j in signed))
+        self.layout = engine.Layout(tuple(f"x_{name}" for name in states), CLOCK, numbers)
+        self.signed = tuple(signed)
+        self.x = [engine.variable(name) for name in self.layout.states]
+        self.clock = engine.variable(CLOCK)
+        self.p = Named("p", {name: engine.variable(f"p_{name}") for name in parameters})
+        self.sign = {j: engine.variable(f"sign_{contacts[j].name}") for j in signed}
+        self.phase_rate = None if phase_rate is None else getattr(self.p, phase_rate)
+        self.phase: Any = NoPhase() if phase_rate is None else self.clock
+        self.state = States(states, self.x)
+        self.gap, self.push, self.restitution = {}, {}, {}
+        self.velocity, self.limit, self.surface = {}, {}, {}
+        for j, contact in enumerate(contacts):
+            if isinstance(contact, Wall):
+                self.gap[j] = self.value(contact.gap, f"the gap of wall {contact.letter!r}")
+                self.push[j] = [
+                    self.quantity(
+                        contact.push.get(name, 0.0), f"the push of wall {contact.letter!r} on {name}"
+                    )
+                    for name in states
+                ]
+                self.restitution[j] = self.quantity(
+                    contact.restitution, f"the restitution of wall {contact.letter!r}"
+                )
+            elif isinstance(contact, DryFriction):
+                self.velocity[j] = self.value(contact.velocity, f"the velocity of friction {contact.name!r}")
+                self.limit[j] = self.quantity(contact.limit, f"the limit of friction {contact.name!r}")
+            else:
+                self.surface[j] = self.value(contact.surface, f"the surface of switch {contact.name!r}")
+
+    # ------------------------------------------------------------------ reading the page
+    def value(self, function: Any, what: str) -> Symbol:
+        """A function of (state, phase, p), as a symbol."""
+        return self._symbol(called(what, function, self.state, self.phase, self.p), what)
+
+    def quantity(self, given: Any, what: str) -> Symbol:
+        """A number, the name of a parameter, or a function of (state, phase, p)."""
+        if isinstance(given, str):
+            try:
+                return getattr(self.p, given)
+            except PageError as error:
+                raise PageError(f"{what} = {given!r} is no parameter ({error})") from None
+        return self.value(given, what) if callable(given) else self._symbol(given, what)
+
+    def _symbol(self, value: Any, what: str) -> Symbol:
+        if isinstance(value, Symbol):
+            return value
+        try:
+            return engine.constant(float(value))
+        except (TypeError, ValueError):
+            raise PageError(f"{what} is {value!r}; it must be one formula or number") from None
+
+    def motion_with(self, forces: Mapping[int, Symbol]) -> list[Symbol]:
+        """Rates of the states with these friction forces; switches have their signs."""
+        given = {}
+        for j, contact in enumerate(self.contacts):
+            if isinstance(contact, DryFriction):
+                given[contact.name] = forces[j]
+            elif isinstance(contact, Switch):
+                given[contact.name] = self.sign[j]
+        rates = called("motion", self._motion, self.state, self.phase, self.p, Named("contact", given))
+        if isinstance(rates, Symbol) or not hasattr(rates, "__len__"):
+            rates = (rates,)
+        if len(rates) != len(self.states):
+            raise PageError(
+                f"motion returns {len(rates)} rate{'s' if len(rates) != 1 else ''} for {len(self.states)} states "
+                f"({', '.join(self.states)}); return one rate per state, in their order"
+            )
+        return [self._symbol(rate, f"motion's rate of {name}") for rate, name in zip(rates, self.states)]
+
+    # ------------------------------------------------------------------ derivatives
+    def along(self, value: Symbol, rates: Sequence[Symbol]) -> Symbol:
+        """Time derivative of a quantity along a flow."""
+        by = self.x if self.phase_rate is None else [*self.x, self.clock]
+        (slopes,) = engine.derivatives([value], by)
+        total = slopes[0] * rates[0]
+        for slope, rate in zip(slopes[1:], rates[1:]):
+            total = total + slope * rate
+        return total if self.phase_rate is None else total + slopes[-1] * self.phase_rate
+
+    def gap_rate(self, j: int) -> Symbol:
+        """Rate of a wall's gap: contact forces do not enter it (`checks` sees to that)."""
+        frictions = {
+            k: engine.constant(0.0) for k, c in enumerate(self.contacts) if isinstance(c, DryFriction)
+        }
+        return self.along(self.gap[j], self.motion_with(frictions))
+
+    def impact(self, j: int, rest: bool = False) -> list[Symbol]:
+        """The states after an impact on wall j: x + I d, with the impulse I that turns the gap's rate g into -e g (`rest`: into 0).
+
+        g(x + I d) = g(x) + I (dg/dx . d), so I = -(1 + e) g / (dg/dx . d).
+        """
+        rate = self.gap_rate(j)
+        (slopes,) = engine.derivatives([rate], self.x)
+        effect: Any = 0.0
+        for slope, push in zip(slopes, self.push[j]):
+            effect = slope * push + effect
+        impulse = -rate / effect if rest else -(1.0 + self.restitution[j]) * rate / effect
+        return [x + impulse * push for x, push in zip(self.x, self.push[j])]
+
+    def pattern(self, key: PatternKey) -> Pattern:
+        """The flow while these frictions stick, these walls hold and these frictions are absent."""
+        if key not in self._patterns:
+            self._patterns[key] = Pattern(self, *key)
+        return self._patterns[key]
+
+    def pattern_key(self, modes: Sequence[int]) -> PatternKey:
+        """Which frictions stick, which walls hold, which frictions are absent in a mode (one entry per contact)."""
+        kinds = list(enumerate(zip(self.contacts, modes)))
+        friction = [(j, m) for j, (c, m) in kinds if isinstance(c, DryFriction)]
+        return (
+            tuple(j for j, m in friction if m == STUCK),
+            tuple(j for j, (c, m) in kinds if isinstance(c, Wall) and m == HELD),
+            tuple(j for j, m in friction if m == ABSENT),
+        )
+
+    def signs(self, modes: Sequence[int]) -> list[float]:
+        """The runtime signs in a mode: 0 for a friction that sticks or is absent."""
+        return [float(modes[j]) if modes[j] in (-1, 1) else 0.0 for j in self.signed]
+
+
+def _solved(
+    conditions: Sequence[Symbol], unknown: Mapping[int, Symbol]
+) -> tuple[dict[int, Symbol], dict[int, Symbol]]:
+    """Solve conditions that are affine in the unknown forces, and say what a unit of each gives.
+
+    Cramer's rule by expansion: there are few at a time.
+    """
+    if not unknown:
+        return {}, {}
+    symbols = list(unknown.values())
+    matrix = engine.derivatives(list(conditions), symbols)
+    zero = {name: 0.0 for s in symbols for name in engine.variables_of(s)}
+    rest = [engine.replaced(c, zero) for c in conditions]
+    whole = _determinant(matrix)
+    forces, mobility = {}, {}
+    for column, j in enumerate(unknown):
+        changed = [
+            [-rest[i] if k == column else entry for k, entry in enumerate(row)]
+            for i, row in enumerate(matrix)
+        ]
+        forces[j] = _determinant(changed) / whole
+        minor = [[v for c, v in enumerate(row) if c != column] for r, row in enumerate(matrix) if r != column]
+        mobility[j] = whole / _determinant(minor) if minor else whole
+    return forces, mobility
+
+
+def _determinant(matrix: Sequence[Sequence[Symbol]]) -> Symbol:
+    if len(matrix) == 1:
+        return matrix[0][0]
+    total: Any = 0.0
+    for k, entry in enumerate(matrix[0]):
+        minor = [[v for c, v in enumerate(row) if c != k] for row in matrix[1:]]
+        term = entry * _determinant(minor)
+        total = total + term if k % 2 == 0 else total - term
+    return total

@@ -1,0 +1,236 @@
+"""Machine: a hybrid system on a page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.switch import Switch
+from orbits.contacts.wall import FREE, Wall
+from orbits.declared import checks
+from orbits.declared.compiled import Compiled
+from orbits.declared.equations import Equations
+from orbits.declared.formulas import PageError
+from orbits.declared.page import Page, page_of
+from orbits.doors import above
+from orbits.machines.parameters import ParameterError
+from orbits.words.alphabet import Alphabet
+from orbits.words.of_pages import PageWord, parse
+
+
+class Machine:
+    """A machine declared by its equations of motion and its contacts.
+
+    Parameters
+    ----------
+    name : str
+    states : sequence of str
+    parameters : mapping of str to float
+        Names and the values they have where none are given.
+    motion : callable
+        ``(state, phase, p, contact)`` -> rates of the states, in their order. `state` unpacks and knows its names, `p` has the
+        parameters, `contact` the friction forces and the signs of switches. Functions come from `orbits.symbols`.
+    contacts : sequence of Wall, DryFriction, Switch
+    phase_rate : str, optional
+        The parameter that is the forcing's frequency: the phase grows by it per unit of time, and the machine has the period
+        2 pi in the phase. Left out: a self-excited machine, whose motions have periods of their own.
+    mirror : mapping of str to str, optional
+        The machine equals its mirror image: all states change sign, these contacts change places (those not named stay), half a
+        forcing period on. ``{}``: no contact changes its place. Checked at random states.
+    starts : mapping of str to (low, high), optional
+        Ranges of the states among which atlases and basins draw their starts; by default twice what the motion from rest reaches.
+
+    Raises
+    ------
+    PageError
+        If the page is no machine; the sentence names the contact and the way out.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        states: Sequence[str],
+        parameters: Mapping[str, float],
+        motion: Callable,
+        contacts: Sequence[Any] = (),
+        phase_rate: str | None = None,
+        mirror: Mapping[str, str] | None = None,
+        starts: Mapping[str, tuple[float, float]] | None = None,
+    ) -> None:
+        checks.check_names(name, states, parameters, phase_rate, contacts)
+        self.name = name
+        self.states = tuple(states)
+        self.parameters = {key: float(value) for key, value in parameters.items()}
+        self.parameter_names = tuple(self.parameters)
+        self.starts = checks.check_starts(starts, self.states)
+        self.phase_rate, self.contacts = phase_rate, tuple(contacts)
+        self.page: Page = page_of(motion)
+        self.equations = Equations(self.states, self.parameter_names, phase_rate, motion, self.contacts)
+        params = self.vector()
+        flips = self.equations.flips = checks.check_contacts(self.equations, params)
+        images, turned = (
+            (None, frozenset()) if mirror is None else checks.check_mirror(self.equations, params, mirror)
+        )
+        self.alphabet = Alphabet(self.contacts, images, turned, flips)
+        self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
+
+    def __repr__(self) -> str:
+        kind = "self-excited" if self.phase_rate is None else f"forced at {self.phase_rate}"
+        return f"<Machine {self.name}: {', '.join(self.states)}; {kind}; letters {' '.join(self.alphabet.letters)}>"
+
+    # ------------------------------------------------------------------ facts
+    @property
+    def forced(self) -> bool:
+        """Whether a forcing sets the clock."""
+        return self.phase_rate is not None
+
+    @property
+    def size(self) -> int:
+        """Number of states."""
+        return len(self.states)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters and measures: a declared machine has plain numbers."""
+        return {}
+
+    @property
+    def default_parameter(self) -> str:
+        """The parameter that varies when none is named: the forcing's frequency, else the first."""
+        return self.phase_rate or self.parameter_names[0]
+
+    @cached_property
+    def _frictions(self) -> list[int]:
+        return [j for j, contact in enumerate(self.contacts) if isinstance(contact, DryFriction)]
+
+    @cached_property
+    def compiled(self) -> Compiled:
+        """Its compiled functions."""
+        return Compiled(self.equations)
+
+    def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
+        """The parameter vector, shape (P,), with `values` in place of the page's own.
+
+        Raises
+        ------
+        ParameterError
+            If a name is unknown, or a value is not finite or out of range.
+        """
+        given = dict(values or {})
+        for key, value in given.items():
+            if key not in self.parameters:
+                raise ParameterError(
+                    f"{key} is no parameter of the machine {self.name!r}; it has {', '.join(self.parameter_names)}"
+                )
+            try:
+                number = float(value)
+            except (TypeError, ValueError):
+                raise ParameterError(f"{key} = {value!r} is not a number") from None
+            if not np.isfinite(number):
+                raise ParameterError(f"{key} = {number} is not finite; give a number")
+        merged = {**self.parameters, **{key: float(value) for key, value in given.items()}}
+        for key, value in merged.items():
+            self.check_value(key, value)
+        return np.array([merged[key] for key in self.parameter_names])
+
+    def check_value(self, name: str, value: float) -> None:
+        """Refuse a value that a parameter cannot have: the forcing's frequency and coefficients of restitution have limits.
+
+        Raises
+        ------
+        ParameterError
+            Naming the parameter, the value and what would do.
+        """
+        if name == self.phase_rate and not value > 0.0:
+            raise ParameterError(f"{name} = {value:g}: a forcing frequency is above 0")
+        for contact in self.contacts:
+            if isinstance(contact, Wall) and contact.restitution == name and not 0.0 < value <= 1.0:
+                raise ParameterError(
+                    f"{name} = {value:g} is out of range: the restitution of wall {contact.letter!r} is above 0 and at most 1"
+                )
+
+    def absent(self, params: np.ndarray) -> frozenset[int]:
+        """Frictions whose limit is zero at these parameters, at random states: they have no events."""
+        if not self._frictions:
+            return frozenset()
+        draws = checks.Draws(self.equations, params)
+        numbers = np.hstack([draws.params, draws.signs])
+        values = self.compiled.limits(tuple(self._frictions))(draws.states, draws.clock, numbers)
+        return frozenset(j for j, column in zip(self._frictions, values.T) if np.all(column == 0.0))
+
+    def settings(self) -> dict[str, Any]:
+        """What a file keeps of the machine, ready for JSON: where its page is, the page's text and digest."""
+        return {"name": self.name, **self.page.describe(self), **self.parameters}
+
+    # ------------------------------------------------------------------ motions
+    def word(
+        self, text: str | PageWord, params: np.ndarray | None = None, default: Sequence[int] | None = None
+    ) -> PageWord:
+        """Read a word of this machine."""
+        if isinstance(text, PageWord):
+            return text
+        vector = self.vector() if params is None else params
+        return parse(text, self.alphabet, self.absent(vector), default)
+
+    def rest_mode(self, params: np.ndarray, state: np.ndarray, clock: float) -> tuple[int, ...]:
+        """Modes that a state suggests: free walls, signs of velocities and surfaces."""
+        absent = self.absent(params)
+        numbers = np.concatenate([params, np.zeros(len(self.equations.signed))])
+        values = (
+            self.compiled.contact_values()(state[None], np.array([clock]), numbers[None])[0]
+            if self.contacts
+            else []
+        )
+        modes = []
+        for j, (contact, value) in enumerate(zip(self.contacts, values)):
+            if isinstance(contact, Wall):
+                modes.append(FREE)
+            elif isinstance(contact, Switch):
+                modes.append(1 if value >= 0.0 else -1)
+            elif j in absent:
+                modes.append(ABSENT)
+            else:
+                modes.append(STUCK if value == 0.0 else (1 if value > 0.0 else -1))
+        return tuple(modes)
+
+    def simulate(
+        self,
+        start: Mapping[str, float] | None = None,
+        *,
+        periods: float | None = None,
+        time: float | None = None,
+        events: int | None = None,
+        **parameters: float,
+    ) -> Any:
+        """Simulate from event to event; see `orbits.declared.simulation.simulate`."""
+        return above("simulate_page")(self, start, periods=periods, time=time, events=events, **parameters)
+
+    def attractor(self, start: Mapping[str, float] | None = None, **parameters: float) -> Any:
+        """The attractor that a start leads to; see `orbits.declared.attractor.find_attractor`."""
+        return above("attractor_of_page")(self, start, parameters=parameters)
+
+    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: float) -> list[Any]:
+        """The different attractors that `count` random starts (states within +-`size`) lead to; see `orbits.declared.attractor`."""
+        return above("attractors_of_page")(self, count, seed, size, parameters=parameters)
+
+    def population(self, over: str | None = None, **parameters: float) -> Any:
+        """Many starts and what they settle on; see `orbits.declared.population.DeclaredPopulation`."""
+        return above("DeclaredPopulation")(self, over or self.default_parameter, parameters)
+
+    def orbit(
+        self,
+        word: str | PageWord,
+        periods: int = 1,
+        guess: Any = None,
+        **parameters: float,
+    ) -> Any:
+        """Solve for the orbit with this word; see `orbits.declared.starts.find`."""
+        return above("find_on_page")(self, word, periods, guess, parameters)
+
+
+__all__ = ["Machine", "PageError"]

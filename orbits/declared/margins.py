@@ -1,0 +1,134 @@
+"""Margins of an orbit of a declared machine: nothing may happen that is not in its word, and what is in it must.
+
+Per node and the flight after it: for every contact the least value that its guard has in that flight (at the ends, unless the event
+there is its own, and at every minimum inside, found as roots of the guard's rate in the Taylor steps); the strength of the event;
+the duration.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.letters import BORDERS, HIT, SLIP, STICK, STRENGTH, STROBE, SWITCH, TURN
+from orbits.declared.flights import Work
+from orbits.words.of_pages import PageWord
+
+DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes
+OWN = (
+    1e-9  # share of a flight next to its ends in which the guard of the event there has no minimum of its own
+)
+
+
+def per_node(contacts: int) -> int:
+    """Margins per node: one per contact, the event's, the duration."""
+    return contacts + 2
+
+
+def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
+    """All margins of a linearised solution, shape (L (contacts + 2),); infinity where one does not apply."""
+    n, length, contacts = data.size, data.length, data.contacts
+    nodes = np.asarray(u).reshape(length, n + 1)
+    begin, end = data.clocks(nodes)
+    table = row.reshape(length, contacts + 2)
+    table[:] = np.inf
+    table[:, contacts + 1] = (end - begin) / data.clock_rate(work.numbers)
+    drift = max((abs(work.drift[j]) for j in data.pinned), default=0.0)
+    if drift > DRIFTING:  # it comes back shifted: no orbit
+        table[:, contacts + 1] = -drift
+    for values, guards, watch, places in data.guard_groups:
+        m, count = len(places), len(guards)
+        if not count:
+            continue
+        both = values(
+            np.concatenate([nodes[places, 1:], work.arrival[places]]),
+            np.concatenate([begin[places], end[places]]),
+            np.concatenate([work.numbers[places], work.numbers[places]]),
+        )
+        at_start, at_end = both[:m, :count], both[m:, :count]
+        rate_start, rate_end = both[:m, count:], both[m:, count:]
+        found: list[tuple[int, int, np.ndarray, float]] = []
+        for k, i in enumerate(places):
+            first, last = data.letters[i], data.letters[i + 1]
+            told, tells = data.owned[i], data.owned[i + 1]
+            span = end[i] - begin[i]
+            for g, guard in enumerate(guards):
+                j = guard.contact
+                if j not in told:
+                    table[i, j] = min(table[i, j], at_start[k, g])
+                if j not in tells:
+                    table[i, j] = min(table[i, j], at_end[k, g])
+                _strength(
+                    table, data, i, first, last, guard, at_start[k, g], rate_start[k, g], rate_end[k, g]
+                )
+            if not span > 0.0:
+                continue
+            for clock, g, state in watch(nodes[i, 1:], begin[i], end[i], work.numbers[i]):
+                own = OWN * span
+                j = guards[g].contact
+                if (j in told and clock - begin[i] < own) or (j in tells and end[i] - clock < own):
+                    continue
+                found.append((i, g, state, clock))
+        if found:
+            inner = values(
+                np.array([f[2] for f in found]),
+                np.array([f[3] for f in found]),
+                work.numbers[[f[0] for f in found]],
+            )
+            for (i, g, _, _), there in zip(found, inner):
+                j = guards[g].contact
+                table[i, j] = min(table[i, j], there[g])
+
+
+def owned(word: PageWord, place: int) -> frozenset[int]:
+    """The contacts of which an event says itself what their guards are at it.
+
+    Its own; those that an impact turns; and, where a crossing is next to an impact that may jump over it, that impact's wall: as
+    the two fall together the distance vanishes with the time between them, which is watched.
+    """
+    if not len(word):
+        return frozenset()
+    letter, flips = word.letter(place), word.alphabet.flips
+    found = {letter.contact} | {j for (wall, j), sign in flips.items() if wall == letter.contact and sign}
+    for near in (word.letter(place - 1), word.letter(place + 1)):
+        if flips.get((near.contact, letter.contact), 0) is None:
+            found.add(near.contact)
+    return frozenset(found)
+
+
+def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -> None:
+    """How definite the events at both ends of flight i are, as far as this guard tells."""
+    column = data.contacts
+    following = (i + 1) % data.length
+    if guard.contact == first.contact:
+        if first.kind == TURN or first.kind == SWITCH:
+            table[i, column] = min(table[i, column], rate_start)
+        elif first.kind == STICK:
+            table[i, column] = min(table[i, column], start)
+    if guard.contact == last.contact and (
+        last.kind in (HIT, SWITCH) or (last.kind == SLIP and guard.sign == data.slips[i + 1])
+    ):
+        table[following, column] = min(table[following, column], -rate_end)
+
+
+def margin_name(word: PageWord, index: int) -> str:
+    """What margin `index` watches."""
+    contacts = word.alphabet.contacts
+    place, column = divmod(index, per_node(len(contacts)))
+    if column == len(contacts) + 1:
+        return "duration"
+    if column == len(contacts):
+        return STRENGTH[word.letter(place).kind if len(word) else STROBE]
+    return contacts[column].watched(word.mode(place)[column])
+
+
+def border_kind(word: PageWord, index: int) -> str:
+    """The kind of border that is met where margin `index` vanishes."""
+    name = margin_name(word, index)
+    if name != "duration":
+        return BORDERS[name]
+    if not len(word):
+        return "corner"
+    place = index // per_node(len(word.alphabet.contacts))
+    return word.alphabet.together(word.letter(place), word.letter(place + 1))

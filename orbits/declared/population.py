@@ -1,0 +1,322 @@
+"""Many starts of a declared machine and what they settle on, each motion once.
+
+It is what `contvines` asks of a machine for atlases and basins: the contract is that of `orbits.population`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors.low_discrepancy import low_discrepancy
+from orbits.attractors.motion import Motion
+from orbits.contacts.letters import RELEASE
+from orbits.contacts.wall import Wall
+from orbits.declared.attractor import RETURNED, look, returning, skip
+from orbits.declared.growth import growth
+from orbits.declared.machine import Machine
+from orbits.declared.orbit import DeclaredOrbit
+from orbits.declared.simulation import Trajectory, collect, letter_of, outside
+from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+
+BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
+LONGEST = 16  # forcing periods of the longest recurrence looked for
+SURE = 1e-7  # a state so near to a known motion, relative to 1 + states, lies on it
+NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto it
+REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
+WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
+BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page are integrated one by one
+SIGMAS = 3.0  # an exponent so many standard errors above zero is chaos
+TOLD = 5  # looks after which a motion that does not recur is taken for the one that is known not to
+WANDERING = ("chaotic", "quasi-periodic", "slow")
+RELEASED = 1e-6  # difference of the clocks of two releases that are one
+DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
+
+
+class DeclaredPopulation:
+    """Starts of a declared machine against one of its parameters.
+
+    Parameters
+    ----------
+    machine : Machine
+    parameter : str
+    parameters : mapping
+        In place of the page's own.
+
+    Raises
+    ------
+    ValueError
+        If the machine has no such parameter.
+    """
+
+    def __init__(
+        self, machine: Machine, parameter: str, parameters: Mapping[str, float] | None = None
+    ) -> None:
+        self.machine, self.parameter = machine, parameter
+        self.parameters = {k: float(v) for k, v in dict(parameters or {}).items() if k != parameter}
+        machine.vector({**self.parameters, parameter: machine.parameters.get(parameter, 1.0)})
+        self._boxes: dict[float, np.ndarray] = {}
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """The machine's page and settings."""
+        return self.machine.settings()
+
+    @property
+    def brief(self) -> tuple[int, int]:
+        """Values, and starts at each, of a brief look."""
+        return BRIEF
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Coordinates of a start: the phase of a forced machine, then its states."""
+        return (*(["phase"] if self.machine.forced else []), *self.machine.states)
+
+    def vector(self, p: float) -> np.ndarray:
+        """All parameters at the value `p` of the one that varies, shape (P,)."""
+        return self.machine.vector({**self.parameters, self.parameter: float(p)})
+
+    def box(self, p: float) -> np.ndarray:
+        """Smallest and largest coordinate of the starts, shape (n, 2).
+
+        What the page says (``starts=``), else twice what the motion from rest reaches in sixty periods.
+        """
+        if p not in self._boxes:
+            given = self.machine.starts
+            missing = [name for name in self.machine.states if name not in given]
+            reached = self._reached(self.vector(p)) if missing else np.zeros(self.machine.size)
+            rows = [[0.0, TWO_PI]] if self.machine.forced else []
+            for name, reach in zip(self.machine.states, reached):
+                rows.append(list(given.get(name, (-REACH * reach, REACH * reach))))
+            self._boxes[p] = np.array(rows)
+        return self._boxes[p]
+
+    def _reached(self, params: np.ndarray) -> np.ndarray:
+        """Largest absolute value of each state on the motion from rest (moved out of the walls), shape (S,)."""
+        stepper = Stepper(self.machine, params)
+        zero = np.zeros(self.machine.size)
+        stepper.start(outside(stepper, zero, 0.0), 0.0)
+        try:
+            run = collect(stepper, TWO_PI * WARM, 5000)
+            clocks = np.linspace(run.clocks[0], run.end, 2000)
+            reach = np.abs(run.sample(clocks)).max(axis=0)
+        except SimulationError:
+            reach = zero
+        largest = float(reach.max())
+        return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
+
+    def starts(self, count: int, seed: int, p: float) -> np.ndarray:
+        """Low-discrepancy starts in the box and outside the walls, shape (count, n).
+
+        Raises
+        ------
+        ValueError
+            If the walls leave nearly none of the box.
+        """
+        box = self.box(p)
+        kept: list[np.ndarray] = []
+        drawn = 0
+        while sum(map(len, kept)) < count:
+            if drawn > DRAWS * max(count, 2):
+                raise ValueError(
+                    f"the walls of {self.machine.name!r} leave nearly none of the box of starts at {self.parameter} = {p:g}; "
+                    "say in the page where starts are drawn: Machine(..., starts={'x': (low, high)})"
+                )
+            points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn) * (box[:, 1] - box[:, 0])
+            drawn += len(points)
+            kept.append(points[self._free(points, self.vector(p))])
+        return np.concatenate(kept)[:count]
+
+    def _free(self, points: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Which starts have all gaps open, bool array (m,)."""
+        machine = self.machine
+        walls = [j for j, contact in enumerate(machine.contacts) if isinstance(contact, Wall)]
+        if not walls:
+            return np.ones(len(points), dtype=bool)
+        clocks = points[:, 0] if machine.forced else np.zeros(len(points))
+        states = np.ascontiguousarray(points[:, 1:] if machine.forced else points)
+        numbers = np.concatenate([params, np.zeros(len(machine.equations.signed))])
+        rows = np.repeat(numbers[None], len(points), axis=0)
+        values = machine.compiled.contact_values()(states, np.ascontiguousarray(clocks), rows)
+        return np.all(values[:, walls] >= 0.0, axis=1)
+
+    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+        """Simulate all starts and recognise what they settle on.
+
+        Parameters
+        ----------
+        starts : float array (m, n)
+        p : float
+
+        Returns
+        -------
+        motions : list of Motion
+            In the order of their first start. Starts inside a wall are ``impossible``.
+        index : int array (m,)
+        mirrored : bool array (m,)
+        """
+        starts = np.asarray(starts, dtype=float)
+        sorting = _Sorting(self, self.vector(p))
+        free = self._free(starts, sorting.params)
+        found = [
+            sorting.sort(start) if ok else sorting.plain("impossible") for start, ok in zip(starts, free)
+        ]
+        return sorting.motions, np.array([k for k, _ in found]), np.array([side for _, side in found])
+
+
+@dataclass(frozen=True, eq=False)
+class _Marks:
+    """States just after the events of a known motion, by which another motion is seen to have fallen onto it."""
+
+    place: int  # among the motions
+    mirrored: bool
+    rows: dict[str, np.ndarray]  # per letter (m, n)
+    known: np.ndarray  # which columns count
+
+
+class _Sorting:
+    """The starts of one census, sorted by the motions they reach."""
+
+    def __init__(self, population: DeclaredPopulation, params: np.ndarray) -> None:
+        self.population, self.machine, self.params = population, population.machine, params
+        self.motions: list[Motion] = []
+        self.forms: list[tuple[Any, np.ndarray] | None] = []
+        self.marks: list[_Marks] = []
+
+    def plain(self, kind: str, **facts: Any) -> tuple[int, bool]:
+        """The motion of a kind that is not told apart any further."""
+        for k, motion in enumerate(self.motions):
+            if motion.kind == kind and self.forms[k] is None:
+                return k, False
+        self.motions.append(Motion(kind, **facts))
+        self.forms.append(None)
+        return len(self.motions) - 1, False
+
+    def sort(self, start: np.ndarray) -> tuple[int, bool]:
+        """Which motion a start reaches, and whether its mirror image."""
+        stepper = Stepper(self.machine, self.params)
+        state, clock = (start[1:], start[0]) if self.machine.forced else (start, 0.0)
+        try:
+            stepper.start(state, float(clock))
+            return self._followed(stepper)
+        except SimulationError:
+            return self.plain("escaped")
+
+    def _followed(self, stepper: Stepper) -> tuple[int, bool]:
+        before: tuple[_Marks | None, float] = (None, np.inf)
+        for looks, block in enumerate(BLOCKS):
+            skip(stepper, block)
+            marks, gap = self._nearest(stepper)
+            if marks is not None and (gap < SURE or (marks is before[0] and gap < 0.5 * before[1])):
+                return marks.place, marks.mirrored
+            before = marks, gap
+            if looks < 1 or (marks is not None and looks < 4):
+                continue
+            run = look(stepper, LONGEST)
+            orbit = returning(run, LONGEST, RETURNED)
+            if orbit is not None:
+                return self._add(orbit, stepper)
+            if not run.events or run.held:
+                return self.plain("stuck")
+            if _chatters(run):
+                return self.plain("chatter", periods=0)
+            if looks >= TOLD and any(m.kind in WANDERING for m in self.motions):
+                break
+        known = next((k for k, m in enumerate(self.motions) if m.kind in WANDERING), None)
+        if known is not None:
+            return known, False
+        exponent, error = growth(stepper)
+        if exponent > SIGMAS * error:
+            kind = "chaotic"
+        elif exponent > -SIGMAS * error and self.machine.size > 2:
+            kind = "quasi-periodic"
+        else:
+            kind = "slow"
+        return self.plain(kind, exponent=exponent, error=error)
+
+    def _row(self, stepper: Stepper) -> np.ndarray:
+        if not self.machine.forced:
+            return stepper.state.copy()
+        return np.concatenate([[np.cos(stepper.clock), np.sin(stepper.clock)], stepper.state])
+
+    def _nearest(self, stepper: Stepper) -> tuple[_Marks | None, float]:
+        """The known motion that the next event lies nearest to, and how far from it, relative to 1 + states."""
+        if not self.marks:
+            return None, np.inf
+        here = stepper.base + stepper.clock
+        whole = TWO_PI * (np.floor(here / TWO_PI) + 1.0)
+        until = whole + TWO_PI * LONGEST if self.machine.forced else here + 1e4
+        event = stepper.advance(until)
+        letter = "" if event is None else letter_of(self.machine, event)
+        row = self._row(stepper)
+        best: tuple[_Marks | None, float] = (None, np.inf)
+        for marks in self.marks:
+            rows = marks.rows.get(letter)
+            if rows is None:
+                continue
+            gap = float((np.abs(rows - row) * marks.known).max(axis=1).min()) / (
+                1.0 + float(np.abs(row).max())
+            )
+            if gap < min(NEAR, best[1]):
+                best = marks, gap
+        return best
+
+    def _add(self, orbit: DeclaredOrbit, stepper: Stepper) -> tuple[int, bool]:
+        root = orbit.root()
+        problem = root.problem(self.population.parameter)
+        u, p = root.seed(problem)
+        form = problem.canonical(u, p)
+        for k, known in enumerate(self.forms):
+            if known is not None and known[0] == form[0] and np.allclose(known[1], form[1], atol=1e-6):
+                return k, self._side(k, stepper)
+        place = len(self.motions)
+        kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
+        self.motions.append(
+            Motion(kind, root.word.text, root.periods, problem, u, state=stepper.state.copy())
+        )
+        self.forms.append(form)
+        self.marks.append(self._marks(place, root, False))
+        if root.word.alphabet.mirror is not None and not root.symmetric:
+            self.marks.append(self._marks(place, root.mirror(), True))
+        return place, False
+
+    def _side(self, place: int, stepper: Stepper) -> bool:
+        marks, _ = self._nearest(stepper)
+        return marks is not None and marks.place == place and marks.mirrored
+
+    def _moves(self, orbit: DeclaredOrbit) -> bool:
+        """Whether any state of a motion without events changes."""
+        return bool(
+            np.any(np.ptp(np.array([orbit.sample(50)[s] for s in self.machine.states]), axis=1) > 1e-9)
+        )
+
+    def _marks(self, place: int, orbit: DeclaredOrbit, mirrored: bool) -> _Marks:
+        loose = orbit.system(symmetric=False).loose
+        states = orbit.nodes[:, 1:]
+        rows = states
+        if self.machine.forced:
+            phases = orbit.nodes[:, :1]
+            rows = np.hstack([np.cos(phases), np.sin(phases), states])
+        known = np.ones(rows.shape[1])
+        known[[rows.shape[1] - states.shape[1] + j for j in loose]] = 0.0
+        letters = orbit.word.events or ("",)
+        table = {
+            letter: rows[[k for k, own in enumerate(letters) if own == letter]] for letter in set(letters)
+        }
+        return _Marks(place, mirrored, table, known)
+
+
+def _chatters(run: Trajectory) -> bool:
+    """Whether a wall takes hold again and again at the same clock: the motion recurs, with infinitely many impacts in between."""
+    releases = np.array(
+        [clock for clock, (_, kind, _) in zip(run.clocks[1:], run.events, strict=True) if kind == RELEASE]
+    )
+    for step in range(1, len(releases) // 2 + 1):
+        spans = releases[step:] - releases[:-step]
+        turns = np.round(spans / TWO_PI) * TWO_PI if run.machine.forced else spans[-1]
+        if np.all(np.abs(spans - turns)[-step:] < RELEASED) and np.ptp(spans[-step:]) < RELEASED:
+            return True
+    return False

@@ -1,0 +1,84 @@
+"""The motion of a declared machine seen once per period of a cycle, by simulation.
+
+The section is where the forcing passes phase zero; of a self-excited machine just after the event with which the cycle begins.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from orbits.declared.machine import Machine
+from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.words.of_pages import PageWord
+
+LONGEST = 1e3  # clock without the event of the section after which a motion does not come back
+
+
+class Section:
+    """A section of the motions of a declared machine.
+
+    Parameters
+    ----------
+    machine : Machine
+    params : ndarray, shape (P,)
+    word : PageWord
+        Of the cycle.
+    periods : int
+        Forcing periods of the cycle.
+    """
+
+    def __init__(self, machine: Machine, params: np.ndarray, word: PageWord, periods: int) -> None:
+        self.machine, self.params, self.periods = machine, params, periods
+        self.modes = word.modes[0]
+        letter = word.letter(0) if len(word) else None
+        self.event = None if letter is None else (letter.contact, letter.kind)
+        self.times = sum(
+            (word.letter(i).contact, word.letter(i).kind) == self.event for i in range(len(word))
+        )
+        self.stepper = Stepper(machine, params)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The states."""
+        return tuple(self.machine.states)
+
+    def through(self, u: np.ndarray) -> np.ndarray:
+        """Where the motion that begins with the first of the nodes u meets the section, shape (d,)."""
+        node = np.asarray(u, dtype=float)[: self.machine.size + 1]
+        if not self.machine.forced:
+            return node[1:].copy()
+        self.stepper.start(node[1:], float(node[0]), self.modes)
+        return self._until(self.stepper.base + TWO_PI)
+
+    def rounds(self, u: np.ndarray) -> np.ndarray:
+        """Where the cycle meets the section, once per forcing period, shape (periods, d); of a self-excited machine, one point."""
+        first = self.through(u)
+        if not self.machine.forced:
+            return first[None]
+        begun = self.stepper.base + self.stepper.clock
+        return np.array([first, *(self._until(begun + TWO_PI * k) for k in range(1, self.periods))])
+
+    def step(self, x: np.ndarray) -> np.ndarray:
+        """One period of the cycle later; NaN where the motion does not come back."""
+        try:
+            if self.machine.forced:
+                self.stepper.start(x, 0.0)
+                return self._until(TWO_PI * self.periods)
+            self.stepper.start(x, 0.0, self.modes)
+            return self._events()
+        except SimulationError:
+            return np.full(self.machine.size, np.nan)
+
+    def _until(self, clock: float) -> np.ndarray:
+        while self.stepper.advance(clock) is not None:
+            pass
+        return self.stepper.state.copy()
+
+    def _events(self) -> np.ndarray:
+        left = self.times
+        while left:
+            found = self.stepper.advance(self.stepper.base + self.stepper.clock + LONGEST)
+            if found is None:
+                return np.full(self.machine.size, np.nan)
+            left -= found[:2] == self.event
+        return self.stepper.state.copy()

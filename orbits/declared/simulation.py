@@ -1,0 +1,239 @@
+"""Event-driven simulation of declared machines: exact event lists, and the motion between the events."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.letters import HIT, HOLD, RELEASE
+from orbits.contacts.wall import HELD, Wall
+from orbits.declared.machine import Machine
+from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+
+MOST_EVENTS = 1_000_000
+REACHED, FULL, STILL = 0, 1, 2
+FOREVER = 1e5  # clock after which a run that waits for events gives up
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A simulated motion of a declared machine.
+
+    Attributes
+    ----------
+    machine : Machine
+    params : float array (P,)
+    clocks : float array (m + 1,)
+        Phase (or time) of the start and of every event, counted through.
+    states : float array (m + 1, n)
+        At the start, and just after every event.
+    modes : list of tuple of int, m + 1 entries
+        After them.
+    events : list of (contact, kind, sign), m entries
+    end : float
+        Clock at which the run ended.
+    status : int
+        REACHED the wanted time; FULL: as many events as were asked for; STILL: nothing happened for very long.
+    """
+
+    machine: Machine
+    params: np.ndarray
+    clocks: np.ndarray
+    states: np.ndarray
+    modes: list[tuple[int, ...]]
+    events: list[tuple[int, int, int]]
+    end: float
+    status: int
+
+    def __len__(self) -> int:
+        return len(self.events)
+
+    @property
+    def letters(self) -> list[str]:
+        """The events as they are written; "(R" and "R)" are where wall R begins and ends to hold."""
+        return [letter_of(self.machine, event) for event in self.events]
+
+    @property
+    def impacts(self) -> int:
+        """Number of impacts."""
+        return sum(kind == HIT for _, kind, _ in self.events)
+
+    @property
+    def chatters(self) -> int:
+        """How often infinitely many impacts piled up and a wall held the body."""
+        return sum(kind == HOLD for _, kind, _ in self.events)
+
+    @property
+    def held(self) -> bool:
+        """Whether one of the walls holds the body from the beginning to the end."""
+        walls = [j for j, contact in enumerate(self.machine.contacts) if isinstance(contact, Wall)]
+        return any(all(mode[j] == HELD for mode in self.modes) for j in walls)
+
+    @property
+    def ended(self) -> str:
+        """Why the run ended, and whether impacts piled up on the way."""
+        sentence = (
+            "the requested time was reached",
+            "the requested number of events was reached",
+            f"no further event within {FOREVER:g} of the clock",
+        )[self.status]
+        if self.chatters:
+            times = "once" if self.chatters == 1 else f"{self.chatters} times"
+            sentence += f"; impacts piled up and a wall held the body {times}"
+        return sentence
+
+    def sample(self, clocks: np.ndarray) -> np.ndarray:
+        """States, shape (m, n), at increasing clocks within the run."""
+        clocks = np.asarray(clocks, dtype=float)
+        out = np.empty((len(clocks), self.machine.size))
+        segment = np.clip(np.searchsorted(self.clocks, clocks, side="right") - 1, 0, len(self.clocks) - 1)
+        compiled, e = self.machine.compiled, self.machine.equations
+        for i in np.unique(segment):
+            places = np.flatnonzero(segment == i)
+            watch = compiled.watch(e.pattern_key(self.modes[i]))
+            numbers = compiled.numbers(self.params, self.modes[i])
+            first = self.clocks[i]
+            offset = TWO_PI * math.floor(first / TWO_PI) if self.machine.forced else first
+            grid = np.concatenate([[first], clocks[places]]) - offset
+            out[places] = watch.path(self.states[i], grid, numbers)[1:]
+        return out
+
+
+def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:
+    """How an event is written."""
+    contact, kind, sign = event
+    if kind == HOLD:
+        return f"({machine.contacts[contact].letter}"
+    if kind == RELEASE:
+        return f"{machine.contacts[contact].letter})"
+    return machine.alphabet.text_of(contact, kind, sign)
+
+
+def first_state(machine: Machine, start: Mapping[str, float] | None) -> tuple[np.ndarray, float]:
+    """State and phase of a start given by names.
+
+    Raises
+    ------
+    SimulationError
+        If a name is unknown or a value not finite.
+    """
+    allowed = [*machine.states, *(["phase"] if machine.forced else [])]
+    given = dict(start or {})
+    for key, value in given.items():
+        if key not in allowed:
+            raise SimulationError(f"start has no entry {key!r}; it may have {', '.join(allowed)}")
+        if not math.isfinite(float(value)):
+            raise SimulationError(f"start: {key} = {value!r} is not finite; give a number")
+    return np.array([float(given.get(s, 0.0)) for s in machine.states]), float(given.get("phase", 0.0))
+
+
+def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
+    """A state moved out of the walls that lie over it, shape (S,)."""
+    machine, state = stepper.machine, np.array(state, dtype=float)
+    stepper.state, stepper.clock = state, clock
+    stepper.modes = machine.rest_mode(stepper.params, state, stepper.clock)
+    for _ in range(200):  # walls that push against one another are left in turn
+        gaps = stepper.contact_values()
+        deep = [j for j, c in enumerate(machine.contacts) if isinstance(c, Wall) and gaps[j] < 0.0]
+        if not deep:
+            break
+        slopes = machine.compiled.gap_slopes(deep[0])(
+            state[None],
+            np.array([stepper.clock]),
+            machine.compiled.numbers(stepper.params, stepper.modes)[None],
+        )[0]
+        state += (1e-12 - gaps[deep[0]]) * slopes / float(slopes @ slopes)
+    return state
+
+
+def simulate(
+    machine: Machine,
+    start: Mapping[str, float] | None = None,
+    *,
+    periods: float | None = None,
+    time: float | None = None,
+    events: int | None = None,
+    **parameters: float,
+) -> Trajectory:
+    """Simulate a declared machine from event to event.
+
+    Parameters
+    ----------
+    machine : Machine
+    start : mapping, optional
+        States by name, and `phase` (radians) of a forced machine; what is not given is 0.
+    periods, time : float, optional
+        How long: forcing periods, or time.
+    events : int, optional
+        Stop after so many events. Without it at most a million.
+    **parameters
+        In place of the page's own.
+
+    Raises
+    ------
+    SimulationError
+        If the start cannot be, no length is given, or the laws do not continue the motion.
+    """
+    params = machine.vector(parameters)
+    if periods is None and time is None and events is None:
+        raise SimulationError("neither periods, time nor events are given: say how long to simulate")
+    if periods is not None and not machine.forced:
+        raise SimulationError("periods: a self-excited machine has no forcing to count; give time or events")
+    for name, value in (("periods", periods), ("time", time), ("events", events)):
+        if value is not None and not (math.isfinite(value) and value >= 0):
+            raise SimulationError(f"{name} = {value}: give a number, 0 or above")
+    stepper = Stepper(machine, params)
+    state, clock = first_state(machine, start)
+    stepper.start(state, clock)
+    rate = params[machine.parameter_names.index(machine.phase_rate)] if machine.phase_rate else 1.0
+    length = math.inf
+    if periods is not None:
+        length = TWO_PI * periods
+    elif time is not None:
+        length = time * rate
+    return collect(stepper, length, MOST_EVENTS if events is None else events)
+
+
+def collect(stepper: Stepper, length: float, most: int) -> Trajectory:
+    """Run on for a length of the clock, or so many events."""
+    clocks = [stepper.base + stepper.clock]
+    states, modes, events = [stepper.state.copy()], [stepper.modes], []
+    until = clocks[0] + (FOREVER if math.isinf(length) else length)
+    status = FULL
+    while len(events) < most:
+        event = stepper.advance(until)
+        if event is None:
+            status = STILL if math.isinf(length) else REACHED
+            break
+        clocks.append(stepper.base + stepper.clock)
+        states.append(stepper.state.copy())
+        modes.append(stepper.modes)
+        events.append(event)
+        if math.isinf(length):
+            until = clocks[-1] + FOREVER
+    return Trajectory(
+        stepper.machine,
+        stepper.params,
+        np.array(clocks),
+        np.array(states),
+        modes,
+        events,
+        stepper.base + stepper.clock,
+        status,
+    )
+
+
+__all__: list[Any] = [
+    "SimulationError",
+    "Stepper",
+    "Trajectory",
+    "collect",
+    "first_state",
+    "letter_of",
+    "outside",
+    "simulate",
+]

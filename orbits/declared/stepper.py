@@ -1,0 +1,306 @@
+"""The stepper of a declared machine: from event to event. It knows no equations of orbits and no words."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
+from orbits.contacts.wall import FREE, HELD, Wall
+from orbits.declared.machine import Machine
+
+TWO_PI = 2.0 * np.pi
+OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
+TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the depth is roundoff
+NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
+SLOW = 1e-6  # squared approach speed below which impacts may be piling up
+FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
+
+
+class SimulationError(ValueError):
+    """A start that cannot be, or a motion that the machine's laws do not continue; the sentence says what would do."""
+
+
+class Stepper:
+    """Moves a state of a declared machine from event to event.
+
+    Attributes
+    ----------
+    state : float array (n,)
+    modes : tuple of int
+    clock : float
+        The phase in [0, 2 pi) of a forced machine; else time since the last event.
+    base : float
+        Whole turns (or time) before `clock`.
+    """
+
+    def __init__(self, machine: Machine, params: np.ndarray) -> None:
+        self.machine, self.params = machine, np.asarray(params, dtype=float)
+        self.compiled, self.equations = machine.compiled, machine.equations
+        self.absent = machine.absent(self.params)
+        self.state = np.zeros(machine.size)
+        self.clock, self.base = 0.0, 0.0
+        self.modes: tuple[int, ...] = ()
+        self._cache: dict[tuple[int, ...], tuple[Any, Any, Any, np.ndarray, Any]] = {}
+        self._touched = {  # frictions and switches whose sign an impact may change
+            w: [j for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
+            for w, contact in enumerate(machine.contacts)
+            if isinstance(contact, Wall)
+        }
+        self._fresh = False  # something starts from rest: leave the surface before looking for events
+
+    # ------------------------------------------------------------------ beginning
+    def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
+        """Begin at a state; the modes follow from it unless they are given.
+
+        Raises
+        ------
+        SimulationError
+            If a gap is negative.
+        """
+        self.state = np.array(state, dtype=float)
+        self.base = 0.0
+        if self.machine.forced:
+            turns = math.floor(clock / TWO_PI)
+            self.base, self.clock = TWO_PI * turns, clock - TWO_PI * turns
+        else:
+            self.clock = 0.0
+        if modes is not None:
+            self.modes = tuple(modes)
+            self._fresh = True
+            self._settle_touches()
+            return
+        found = list(self.machine.rest_mode(self.params, self.state, self.clock))
+        self.modes = tuple(found)
+        values = self.contact_values()
+        for j, contact in enumerate(self.machine.contacts):
+            if isinstance(contact, Wall) and values[j] < -FIRST_EVENT * (1.0 + np.abs(self.state).max()):
+                raise SimulationError(
+                    f"the gap of wall {contact.letter!r} is {values[j]:.6g} at the start: bodies overlap; "
+                    "give a start with all gaps at 0 or above"
+                )
+        for j, contact in enumerate(self.machine.contacts):
+            if isinstance(contact, DryFriction) and found[j] == STUCK:
+                found[j] = self._at_rest(j)
+                self.modes = tuple(found)
+        self._fresh = True
+        self._impacts_at_start(values)
+
+    def contact_values(self) -> np.ndarray:
+        """Gaps, velocities and surfaces at the state: one value per contact."""
+        if not self.machine.contacts:
+            return np.zeros(0)
+        numbers = self.compiled.numbers(self.params, self.modes)
+        return self.compiled.contact_values()(self.state[None], np.array([self.clock]), numbers[None])[0]
+
+    def _impacts_at_start(self, values: np.ndarray) -> None:
+        for j, contact in enumerate(self.machine.contacts):
+            if isinstance(contact, Wall) and abs(values[j]) <= FIRST_EVENT and self._gap_rate(j) < 0.0:
+                self._impact(j)
+
+    # ------------------------------------------------------------------ laws
+    def _tools(self, modes: tuple[int, ...]) -> tuple[Any, Any, Any, np.ndarray, Any]:
+        """(run, guards, list of guards, numbers, watch) of a mode."""
+        found = self._cache.get(modes)
+        if found is None:
+            key = self.equations.pattern_key(modes)
+            found = self._cache[modes] = (
+                self.compiled.run(key),
+                self.compiled.guards(key),
+                self.equations.pattern(key).guards,
+                self.compiled.numbers(self.params, modes),
+                self.compiled.watch(key),
+            )
+        return found
+
+    def _guards(self, modes: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, Any]:
+        """Values and rates of the guards in a mode, at the state, and the guards."""
+        _, values, guards, numbers, _ = self._tools(modes)
+        row = values(self.state[None], np.array([self.clock]), numbers[None])[0]
+        return row[: len(guards)], row[len(guards) :], guards
+
+    def _with(self, contact: int, mode: int) -> tuple[int, ...]:
+        changed = list(self.modes)
+        changed[contact] = mode
+        return tuple(changed)
+
+    def _at_rest(self, friction: int) -> int:
+        """The mode of a friction whose velocity is zero: stuck, or the sign of the motion that begins."""
+        values, _, guards = self._guards(self._with(friction, STUCK))
+        for value, guard in zip(values, guards):
+            if guard.contact == friction and value < 0.0:
+                return guard.sign
+        return STUCK
+
+    def _gap_rate(self, wall: int) -> float:
+        numbers = self.compiled.numbers(self.params, self.modes)
+        row = self.compiled.impact_map(wall)(self.state[None], np.array([self.clock]), numbers[None])[0]
+        return float(row[-1])
+
+    def _impact(self, wall: int) -> int:
+        """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
+        numbers = self._tools(self.modes)[3]
+        row = self.compiled.impact_map(wall)(self.state[None], np.array([self.clock]), numbers[None])[0]
+        before = float(row[-1])
+        self.state[:] = row[:-1]
+        if self._touched[wall]:
+            modes, values = list(self.modes), self.contact_values()
+            for j in self._touched[wall]:
+                if values[j] != 0.0:
+                    modes[j] = 1 if values[j] > 0.0 else -1
+            self.modes = tuple(modes)
+        if before * before < SLOW:
+            push = self._push_back(wall)
+            if push < 0.0 and before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
+                return self._hold(wall)
+        return HIT
+
+    def _push_back(self, wall: int) -> float:
+        """Acceleration of a free wall's gap."""
+        key = self.equations.pattern_key(self.modes)
+        numbers = self.compiled.numbers(self.params, self.modes)
+        values = self.compiled.gap_acceleration(wall, key)
+        return float(values(self.state[None], np.array([self.clock]), numbers[None])[0, 0])
+
+    def _hold(self, wall: int) -> int:
+        """Rest on a wall: the rate of the gap that is left is taken out."""
+        self.state[:] = self.compiled.settled(wall)(
+            self.state[None], np.array([self.clock]), self.compiled.numbers(self.params, self.modes)[None]
+        )[0]
+        tied = [j for (w, j), sign in self.machine.alphabet.flips.items() if w == wall and sign is not None]
+        modes = list(self.modes)
+        modes[wall] = HELD
+        for j in tied:  # the same contact keeps the velocity at zero: friction need not
+            if isinstance(self.machine.contacts[j], DryFriction):
+                modes[j] = ABSENT
+        self.modes = tuple(modes)
+        return HOLD
+
+    # ------------------------------------------------------------------ going on
+    def advance(self, until: float) -> tuple[int, int, int] | None:
+        """Move to the next event, or to `until` (base + clock).
+
+        Returns
+        -------
+        (contact, kind, sign) or None
+            Of the event that happened; None: the time was reached.
+
+        Raises
+        ------
+        SimulationError
+            If the motion blows up, or a switch would slide.
+        """
+        end = until - self.base
+        while True:
+            run, _, guards, numbers, watch = self._tools(self.modes)
+            if self._fresh:
+                self._fresh = False
+                self._leave(watch, numbers, min(self.clock + OFF, end))
+            if not end > self.clock:
+                self._rebase()
+                return None
+            self.clock, place = run(self.state, self.clock, end, numbers)
+            if place is None:
+                self._rebase()
+                return None
+            if place < 0:
+                raise SimulationError(
+                    f"the motion of {self.machine.name!r} left the range of numbers: give parameters and a start of moderate size"
+                )
+            event = self._happened(guards[place])
+            if event is not None:
+                self._rebase()
+                return event
+
+    def _leave(self, watch: Any, numbers: np.ndarray, end: float) -> None:
+        """Leave a surface on which a quantity starts without a rate, unless something else happens first."""
+        if not end > self.clock:
+            return
+        before = self.state.copy()
+        watch.move(self.state, self.clock, end, numbers)
+        begin, self.clock = self.clock, end
+        values, _, guards = self._guards(self.modes)
+        for value, guard in zip(values, guards):
+            if value < 0.0 and guard.kind == HIT:
+                self.state, self.clock = before, begin
+                return
+
+    def _settle_touches(self) -> None:
+        """A start on the surface of a switch that is only touched is on the side to which the flow leads."""
+        values, rates, guards = self._guards(self.modes)
+        near = TOUCH * (1.0 + np.abs(self.state).max())
+        for value, rate, guard in zip(values, rates, guards):
+            if guard.kind == SWITCH and abs(value) < near and abs(rate) < near:
+                _, _, _, numbers, watch = self._tools(self.modes)
+                moved = self.state.copy()
+                watch.move(moved, self.clock, self.clock + OFF, numbers)
+                kept, self.state = self.state, moved
+                there = self._guards(self.modes)[0]
+                self.state = kept
+                if next(v for v, g in zip(there, guards) if g is guard) < 0.0:
+                    self.modes = self._with(guard.contact, -self.modes[guard.contact])
+
+    def _rebase(self) -> None:
+        if self.machine.forced:
+            turns = math.floor(self.clock / TWO_PI)
+            if turns:
+                self.clock -= TWO_PI * turns
+                self.base += TWO_PI * turns
+        else:
+            self.base += self.clock
+            self.clock = 0.0
+
+    def _touches(self, switch: int) -> bool:
+        """Whether the surface of a switch is only touched; the state has then moved past it."""
+        values, rates, guards = self._guards(self.modes)
+        place = next(k for k, g in enumerate(guards) if g.contact == switch)
+        if abs(rates[place]) > TOUCH * (1.0 + np.abs(self.state).max()):
+            return False
+        _, _, _, numbers, watch = self._tools(self.modes)
+        before = self.state.copy()
+        watch.move(self.state, self.clock, self.clock + OFF, numbers)
+        self.clock += OFF
+        values, _, _ = self._guards(self.modes)
+        if values[place] > 0.0:
+            return True
+        self.state, self.clock = before, self.clock - OFF
+        return False
+
+    def _happened(self, guard: Any) -> tuple[int, int, int] | None:
+        j, kind = guard.contact, guard.kind
+        if kind == HIT:
+            return j, self._impact(j), 0
+        if kind == TURN:
+            before = self.modes[j]
+            after = self._at_rest(j)
+            if after == before:
+                return None  # it only touches zero
+            self.modes = self._with(j, after)
+            return j, STICK if after == STUCK else TURN, after
+        if kind == SLIP:
+            self.modes = self._with(j, guard.sign)
+            self._fresh = True
+            return j, SLIP, guard.sign
+        if kind == RELEASE:
+            modes = list(self._with(j, FREE))
+            for (wall, k), sign in self.machine.alphabet.flips.items():
+                if wall == j and sign is not None and k not in self.absent:
+                    modes[k] = sign
+            self.modes = tuple(modes)
+            self._fresh = True
+            return j, RELEASE, 0
+        if self._touches(j):
+            return None
+        after = -self.modes[j]
+        self.modes = self._with(j, after)
+        values, rates, guards = self._guards(self.modes)
+        rate = next(r for r, g in zip(rates, guards) if g.contact == j and g.kind == SWITCH)
+        if rate < 0.0:
+            raise SimulationError(
+                f"switch {self.machine.contacts[j].name!r}: both flows lead to its surface, so the motion would slide along it; "
+                "declare a law that crosses (a spring and damper that do not pull), or a DryFriction"
+            )
+        return j, SWITCH, after

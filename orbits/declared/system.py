@@ -1,0 +1,284 @@
+"""The equations F(u, p) = 0 of a declared machine's orbits with one word: unknowns, data, kernels in plain Python round compiled flights."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.letters import HIT, STICK, STROBE, Letter
+from orbits.cycles.identity import canonical, size_of_one
+from orbits.declared import flights, loci
+from orbits.declared.engine import variables_of
+from orbits.declared.machine import Machine
+from orbits.declared.margins import fill_margins, owned, per_node
+from orbits.words.of_pages import PageWord
+
+TURN_OF_PHASE = 2.0 * np.pi
+STROBED = Letter("", -1, STROBE)
+
+
+class Kernels(NamedTuple):
+    """The functions that a continuation calls; plain Python."""
+
+    linearise: Any
+    bordered: Any
+    inspect: Any
+    compiled: bool = False
+    digest: str = "declared"
+    assign: Any = loci.assign
+    flip: Any = loci.flip
+    transpose: Any = loci.transpose
+    column: int = 3
+    matrix: Any = loci.matrix
+
+
+def inspect(data: DeclaredSystem, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
+    """Multipliers as (re, im) pairs, then the margins, into `row`."""
+    m = data.n_multipliers
+    values = flights.multipliers(data, work)
+    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = values.real, values.imag
+    fill_margins(data, u, work, row[2 * m :])
+
+
+KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
+
+
+def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
+    """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
+    e, names = machine.equations, machine.equations.layout.states
+    known: set[str] = set()
+    for i, mode in enumerate(word.modes):
+        pattern = e.pattern(e.pattern_key(mode))
+        known |= set().union(*(variables_of(rate) for rate in pattern.rates))
+        for guard in pattern.guards:
+            if guard.kind != HIT:
+                known |= variables_of(guard.value)
+        if len(word) and word.letter(i).kind == HIT:
+            return ()
+    return tuple(j for j, name in enumerate(names) if name not in known)
+
+
+class DeclaredSystem:
+    """Periodic orbits with a given word, against one parameter of a declared machine.
+
+    Parameters
+    ----------
+    machine : Machine
+    word : PageWord
+        Of the whole cycle.
+    periods : int
+        Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
+    parameter : str
+    params : float array (P,)
+        The entry of `parameter` is the starting value only.
+    symmetric : bool
+        Solve for symmetric orbits, on half the word.
+
+    Raises
+    ------
+    ValueError
+        If the parameter is unknown, or `symmetric` is asked of a word whose halves are not mirror images.
+    """
+
+    spectrum = "map"
+
+    def __init__(
+        self,
+        machine: Machine,
+        word: PageWord,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
+    ) -> None:
+        if parameter not in machine.parameter_names:
+            raise ValueError(
+                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}; choose one of "
+                + ", ".join(machine.parameter_names)
+            )
+        if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):
+            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
+        if not len(word) and not machine.forced:
+            raise ValueError(
+                f"the machine {machine.name!r} has no forcing, so a motion without events is no cycle whose period can be "
+                "counted; give a word"
+            )
+        self.machine, self.word, self.periods = machine, word, int(periods)
+        self.parameter, self.params = parameter, np.array(params, dtype=float)
+        self.symmetric, self.forced = bool(symmetric), machine.forced
+        self.mirrored = word.alphabet.mirror is not None
+        self.index = machine.parameter_names.index(parameter)
+        self.size, self.contacts = machine.size, len(machine.contacts)
+        whole = max(1, len(word))
+        self.length = whole if not symmetric or not len(word) else whole // 2
+        self.dimension = self.length * (self.size + 1)
+        self.twist = -1.0 if symmetric else 1.0
+        self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0
+        self.loose = loose_states(machine, word)
+        self.pinned = () if symmetric else self.loose
+        stuck = [
+            j
+            for j, contact in enumerate(machine.contacts)
+            if isinstance(contact, DryFriction) and all(mode[j] == STUCK for mode in word.modes)
+        ]
+        self.trivial = len(self.loose) + len(stuck)
+        self.still = () if symmetric else self._still(stuck)
+        self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
+        self.n_margins = per_node(self.contacts) * self.length
+        self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
+        self.period_shift = np.zeros(self.dimension) if self.forced else None
+        if self.period_shift is not None:
+            self.period_shift[:: self.size + 1] = TURN_OF_PHASE
+        self.turned = np.full(self.size + 1, self.twist)
+        self.turned[0] = 1.0
+        self.identity = np.eye(self.size)
+        self.minus = np.zeros((self.size + 1, self.size + 1))
+        self.minus[1:, 1:] = -self.identity
+        self.kernels, self.data = KERNELS, self
+        self._assign()
+
+    def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Any], ...]:
+        """For each friction that sticks for ever: the state whose closing its velocity replaces, and the velocity compiled."""
+        e, found, taken = self.machine.equations, [], set(self.loose)
+        for j in frictions:
+            known = variables_of(e.velocity[j])
+            places = [k for k, name in enumerate(e.layout.states) if name in known and k not in taken]
+            taken.add(places[-1])
+            letter = Letter("", j, STICK)
+            key = e.pattern_key(self.word.modes[0])
+            found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
+        return tuple(found)
+
+    def _assign(self) -> None:
+        """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
+        compiled, e, word = self.machine.compiled, self.machine.equations, self.word
+        modes = [word.modes[i % len(word.modes)] for i in range(self.length)]
+        keys = [e.pattern_key(mode) for mode in modes]
+        active = (self.index,)
+        self.base_numbers = np.array([compiled.numbers(self.params, mode) for mode in modes])
+        self.letters = [word.letter(i) if len(word) else STROBED for i in range(self.length + 1)]
+        self.owned = [owned(word, i) for i in range(self.length + 1)]
+        self.slips = [
+            word.modes[i % len(word.modes)][letter.contact] if letter.contact >= 0 else 0
+            for i, letter in enumerate(self.letters)
+        ]
+        self.flights = [compiled.flight(key, active) for key in keys]
+        self.rate_groups = [
+            (compiled.rates(key), np.array([i for i in range(self.length) if keys[i] == key]))
+            for key in dict.fromkeys(keys)
+        ]
+        events: dict[int, tuple[Any, list[int], bool]] = {}
+        for i in range(self.length):
+            letter = self.letters[i + 1]
+            if letter.kind == STROBE:
+                events[-1] = (None, [i], False)
+                continue
+            values = compiled.event(letter, self.slips[i + 1], keys[i], active)
+            events.setdefault(id(values), (values, [], values.count > self.size + 3))[1].append(i)
+        self.event_groups = [(values, np.array(places), jumps) for values, places, jumps in events.values()]
+        self._keys = keys
+
+    @cached_property
+    def guard_groups(self) -> list[tuple[Any, Any, Any, list[int]]]:
+        """(guards compiled, guards, watch, flights) per pattern."""
+        compiled, e = self.machine.compiled, self.machine.equations
+        return [
+            (
+                compiled.guards(key),
+                e.pattern(key).guards,
+                compiled.watch(key),
+                [i for i in range(self.length) if self._keys[i] == key],
+            )
+            for key in dict.fromkeys(self._keys)
+        ]
+
+    @cached_property
+    def sparsity(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of the bordered matrix's entries."""
+        return flights.sparsity(self.length, self.size + 1)
+
+    # ------------------------------------------------------------------ numerics
+    def workspace(self) -> flights.Work:
+        """Arrays for the kernels."""
+        return flights.workspace(self.length, self.size, self.base_numbers.shape[1])
+
+    def values(self, p: float) -> np.ndarray:
+        """The parameter vector at parameter value `p`."""
+        params = self.params.copy()
+        params[self.index] = p
+        return params
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return float(params[self.index])
+
+    def allowed(self, p: float) -> bool:
+        """Whether the parameter may have this value."""
+        return not (self.machine.phase_rate == self.parameter and p <= 0.0)
+
+    def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Clock at the beginning and the end of every flight, from the nodes (L, n + 1)."""
+        if not self.forced:
+            return np.zeros(self.length), nodes[:, 0].copy()
+        begin = nodes[:, 0].copy()
+        end = np.empty_like(begin)
+        end[:-1] = begin[1:]
+        end[-1] = begin[0] + self.shift
+        return begin, end
+
+    def clock_rate(self, numbers: np.ndarray) -> Any:
+        """Clock per unit of time, from runtime numbers (L, ...)."""
+        if not self.forced:
+            return 1.0
+        return numbers[:, self.machine.parameter_names.index(str(self.machine.phase_rate))]
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        spectrum = np.asarray(spectrum, dtype=complex)
+        return spectrum**2 if self.symmetric else spectrum
+
+    # ------------------------------------------------------------------ shapes
+    def expand(self, u: np.ndarray) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n + 1)."""
+        u = np.asarray(u, dtype=float)
+        nodes = u.reshape(*u.shape[:-1], self.length, self.size + 1)
+        if not self.symmetric or not len(self.word):
+            return nodes
+        return np.concatenate([nodes, self._image(nodes)], axis=-2)
+
+    def _image(self, nodes: np.ndarray) -> np.ndarray:
+        image = -nodes
+        image[..., 0] = nodes[..., 0] + self.shift
+        return image
+
+    def expand_direction(self, direction: np.ndarray) -> np.ndarray:
+        """A direction of the unknowns, shape (N,), as one of the nodes of the whole cycle."""
+        nodes = np.asarray(direction).reshape(self.length, self.size + 1)
+        if not self.symmetric or not len(self.word):
+            return nodes
+        image = -nodes
+        image[:, 0] = nodes[:, 0]
+        return np.concatenate([nodes, image])
+
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
+        return float(np.linalg.norm(direction[: self.size + 1]))
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
+
+    # ------------------------------------------------------------------ identity and other words
+    def sibling(self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Self:
+        """The same for another word of the machine, against the same parameter."""
+        given = self.params if params is None else params
+        return type(self)(self.machine, word, periods, self.parameter, given, symmetric)
+
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
+        """Key and vector that are equal for one orbit in all its descriptions."""
+        nodes = self.expand(u)
+        return canonical(self.word, self.periods, nodes, forced=self.forced, same=size_of_one(nodes))

@@ -1,0 +1,100 @@
+"""Which of a machine's numbers may vary, how the others follow, and in which units they are given.
+
+A machine whose numbers are all its own varies one of them at a time; a machine of physical quantities
+(`orbits.machines.physical.machine`) varies a direction in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from orbits.machines.parameters import Parameter, ParameterError
+from orbits.machines.path import single
+
+
+class Varying:
+    """The part of a machine (`orbits.machines.base.Model`) that knows what may vary."""
+
+    if TYPE_CHECKING:
+        name: str
+        table: tuple[Parameter, ...]
+        parameter_names: tuple[str, ...]
+
+        def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray: ...
+
+    @property
+    def amount_names(self) -> tuple[str, ...]:
+        """Names of all parameters that may vary, in the order of `amounts`; here the numbers themselves."""
+        return self.parameter_names
+
+    def amounts(self, params: np.ndarray) -> np.ndarray:
+        """Values of all parameters that may vary, shape (Q,)."""
+        return params
+
+    def amount(self, name: str, params: np.ndarray) -> float:
+        """The value of one of them."""
+        return float(self.amounts(params)[self.place_of(name)])
+
+    def path(self, name: str, params: np.ndarray) -> np.ndarray:
+        """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.path`."""
+        return single(params.size, self.place_of(name))
+
+    @property
+    def law(self) -> np.ndarray:
+        """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
+        return np.zeros((0, len(self.parameter_names)))
+
+    def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        """`vector` with the parameter that may vary called `name` at `value`.
+
+        Raises
+        ------
+        ParameterError
+            As `vector` does.
+        """
+        return self.vector({**(values or {}), name: value})
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters and measures by name; none here, where all are numbers."""
+        return {}
+
+    def described(self, params: np.ndarray) -> dict[str, Any]:
+        """A parameter vector by name, ready for JSON."""
+        return {"parameters": dict(zip(self.parameter_names, (float(v) for v in params), strict=True))}
+
+    def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
+        """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
+        return 1.0
+
+    def natural_units(self, params: np.ndarray) -> tuple[float, float]:
+        """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.
+
+        They are exactly as large as the machine: whatever is compared with a number is then the same in every unit, but for
+        rounding. 1 where the machine's equations have no unit to choose.
+        """
+        return 1.0, 1.0
+
+    def factors(self, units: tuple[float, float]) -> np.ndarray:
+        """What one dimensionless number of each of the machine's own parameters is, (P,), in units of a length and a rate."""
+        length, rate = units
+        sizes = {"b": length, "omega_0": rate, "b omega_0^2": length * rate * rate}
+        return np.array([sizes.get(parameter.unit, 1.0) for parameter in self.table])
+
+    def place_of(self, name: str) -> int:
+        """Place of a parameter among `amount_names`.
+
+        Raises
+        ------
+        ParameterError
+            If there is none of this name.
+        """
+        if name not in self.amount_names:
+            raise ParameterError(
+                f"parameter = {name!r} is unknown to the model {self.name!r}; choose one of "
+                + ", ".join(self.amount_names)
+            )
+        return self.amount_names.index(name)

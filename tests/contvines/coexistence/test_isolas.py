@@ -1,0 +1,16 @@
+"""Isolas of closed form, and an orbit that no diagram has: atlases find them. The list has slower ones, too."""
+
+import pytest
+
+from tests.contvines.coexistence.isolas import ISOLAS
+
+
+@pytest.mark.parametrize("isola", [isola for isola in ISOLAS if isola.quick], ids=lambda isola: isola.name)
+def test_an_isola_is_found(isola):
+    graph = isola.atlas()
+    assert isola.found(graph), str(graph)
+
+
+def test_the_list_is_long_and_names_are_told_apart():
+    assert len(ISOLAS) >= 20
+    assert len({isola.name for isola in ISOLAS}) == len(ISOLAS)

@@ -1,0 +1,81 @@
+"""Where an atlas looks: even gaps, one value in every stretch between two changes, narrow windows, a stated end."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import contvines as cv
+from contvines.branches.branch import Branch
+from contvines.coexistence.places import changes, scattered, unasked
+from contvines.graph.graph import Graph
+
+
+@given(st.integers(0, 1000), st.integers(2, 400))
+def test_scattered_values_leave_no_gap_wider_than_the_theorem_says(seed, count):
+    values = np.sort([scattered((2.0, 5.0), seed, k) for k in range(count)])
+    gaps = np.append(np.diff(values), values[0] + 3.0 - values[-1])  # on the circle
+    assert gaps.max() <= 1.9 / count * 3.0 + 1e-12
+    assert values[0] >= 2.0 and values[-1] <= 5.0
+
+
+def graph_with(*intervals):
+    """A graph whose branches are stable on these intervals alone."""
+    graph = Graph(within=(0.0, 1.0))
+    for k, (first, last) in enumerate(intervals):
+        values = np.linspace(first, last, 5)
+        points, tangents = np.zeros((5, 1)), np.tile([0.0, 1.0], (5, 1))
+        branch = Branch.__new__(Branch)
+        branch.__dict__.update(label=f"B{k + 1}", values=values, points=points, tangents=tangents, real=True)
+        branch.__dict__["stable_intervals"] = lambda a=first, b=last: [(a, b)]
+        graph.branches[branch.label] = branch
+    return graph
+
+
+@given(st.lists(st.tuples(st.floats(0.01, 0.98), st.floats(1e-3, 0.3)), max_size=6), st.integers(0, 20))
+def test_every_stretch_between_two_changes_is_asked(pairs, asked):
+    graph = graph_with(*[(a, min(a + width, 0.99)) for a, width in pairs])
+    known = [scattered(graph.within, 1, k) for k in range(asked)]
+    all_asked = [*known, *unasked(graph, known, 1000)]
+    marks = changes(graph)
+    for first, last in pairwise(marks):
+        if last - first > 1e-6:
+            assert any(first < p < last for p in all_asked)
+    assert unasked(graph, all_asked, 1000) == []  # it ends
+    assert len(unasked(graph, known, 2)) <= 2
+
+
+def test_asked_for_is_what_lies_just_outside_of_stable_stretches():
+    found = unasked(graph_with((0.3, 0.6)), [0.1, 0.45, 0.9], 1000)
+    assert any(0.29 < p < 0.3 for p in found) and any(0.6 < p < 0.61 for p in found)
+
+
+def windows(x, p):
+    """x = 0 attracts everywhere; x = 1 attracts |x - 1| < 1/2 for 0.40 < p < 0.42 alone."""
+    inside = 40.0 * ((p - 0.41) ** 2 - 0.01**2) * 1e4
+    near = 1.0 + (x - 1.0) * (0.5 + 0.6 * (1.0 + np.tanh(inside)) / 2.0)
+    return np.where(np.abs(x - 1.0) < 0.5, near, 0.5 * x)
+
+
+def test_a_window_narrower_than_the_distance_of_the_values_is_found():
+    population = cv.MapProblem(windows, [0.0], 0.5).population(box=[(-2.0, 2.0)])
+    few = cv.atlas(population, within=(0.0, 1.0), values=8, starts=32, depth=0, scan=0)
+    assert len(few.branches) == 1
+    atlas = cv.atlas(population, within=(0.0, 1.0), values=8, starts=32, depth=0, scan=96)
+    other = next(b for b in atlas if abs(b.points[0, 0] - 1.0) < 1e-9)
+    (stable,) = other.stable_intervals()
+    assert stable == pytest.approx((0.4, 0.42), abs=4e-4)
+    assert atlas.settings["scanned"] >= 96 and atlas.settings["quiet"] == 96
+    assert "the last 96 met nothing new" in str(atlas)
+    assert any(a.branch == other.label and a.starts == 16 for a in atlas.attractors)
+
+
+def test_the_default_scan_has_as_many_starts_as_the_values():
+    population = cv.MapProblem(lambda x, p: 0.5 * x, [0.0], 0.5).population(box=[(-2.0, 2.0)])
+    atlas = cv.atlas(population, within=(0.0, 1.0), values=3, starts=32)
+    assert atlas.settings["scan"] == atlas.settings["scanned"] == 6
+    rows = [line for line in str(atlas).splitlines() if line.startswith("1-cycle") or "attractor" in line]
+    assert rows[0].split()[0] == "attractor"
+    assert rows[1].split()[-2:] == ["100.00%", "100%"]

@@ -1,0 +1,164 @@
+"""Studies whose machine is a page of Python."""
+
+import json
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+import contvines as cv
+from contvines.command.cli import app
+from contvines.command.study import StudyError, read_study
+
+PAGE = """
+from orbits import Machine, Wall
+from orbits.symbols import cos
+
+machine = Machine(
+    name="stop",
+    states=("x", "v"),
+    parameters={"forcing": 1.0, "frequency": 2.3, "damping": 0.05, "gap": 0.1, "restitution": 0.8},
+    phase_rate="frequency",
+    motion=lambda s, phase, p, contact: (s.v, p.forcing * cos(phase) - 2 * p.damping * s.v - s.x),
+    contacts=[Wall("R", gap=lambda s, phase, p: p.gap - s.x, push={"v": -1.0}, restitution="restitution")],
+)
+"""
+STUDY = """
+[model]
+name = "stop.py:machine"
+gap = 0.05
+[start]
+frequency = 2.3
+[continue]
+parameter = "frequency"
+within = [2.2, 2.5]
+depth = 0
+[sweep]
+count = 4
+transient = 30
+"""
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "stop.py").write_text(PAGE)
+    (tmp_path / "stop.toml").write_text(STUDY)
+    return tmp_path / "stop.toml"
+
+
+def run(*words):
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def test_a_page_from_study_to_file(study):
+    assert run("diagram", study, "-q").exit_code == 0
+    graph = cv.load("stop.vines")
+    assert graph.model["gap"] == 0.05 and "Machine(" in graph.model["source"]
+    assert graph["B1"].description["word"] == "R"
+    assert "R  k = 1  (real)" in run("orbit", study).stdout
+    assert run("sweep", study, "-q", "--plot", "s.png").exit_code == 0
+    rows = (study.parent / "stop-sweep.csv").read_text().splitlines()
+    assert len(rows) == 5 and all(",periodic,R,1,1," in row for row in rows[1:])
+
+
+REFUSED = {
+    'name = "stop.py"': 'names a page but no machine on it; "stop.py:machine" would do',
+    'name = "stop.py:other"': "it has no machine 'other'; it declares machine",
+    'name = "none.py:machine"': "there is no such file",
+    'name = "stop.py:machine"\nmass = 1.0': "the machine 'stop' has no such parameter",
+    'name = "stop.py:machine"\ndamping = "much"': "[model] damping = 'much' is not a number",
+    'name = "stop.py:machine"\nrestitution = 2.0': "the restitution of wall 'R' is above 0 and at most 1",
+}
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_refusals(study, line):
+    study.write_text(STUDY.replace('name = "stop.py:machine"', line))
+    with pytest.raises(StudyError) as refused:
+        read_study(study)
+    assert REFUSED[line] in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "within", "sentence"),
+    [
+        ("frequency", [-1.0, 3.0], "within = [-1.0, 3.0]: frequency = -1: a forcing frequency is above 0"),
+        ("restitution", [0.5, 1.5], "within = [0.5, 1.5]: restitution = 1.5 is out of range"),
+    ],
+)
+def test_limits_of_what_varies(study, parameter, within, sentence):
+    text = STUDY.replace('parameter = "frequency"', f'parameter = "{parameter}"')
+    study.write_text(re.sub(r"within = .*", f"within = {within}", text))
+    with pytest.raises(StudyError, match=re.escape(sentence)):
+        read_study(study)
+
+
+def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
+    run("diagram", study, "-q")
+    from orbits.declared import stored
+
+    monkeypatch.setattr(stored, "loaded", lambda settings: None)  # as in another process
+    assert cv.load("stop.vines")["B1"].problem is None
+    assert cv.load("stop.vines", trust=True)["B1"].problem is not None
+    (study.parent / "stop.py").write_text(PAGE + "# another\n")
+    assert "the page has changed since the result was made" in run("show", "stop.vines").output
+    done = run("orbit", "stop.vines", "B1", "--trust")
+    assert done.exit_code != 0 and "make the result anew" in str(done.exception)
+    assert "does not hold" not in str(done.exception)
+
+
+def test_robustness_of_a_page(study):
+    run("diagram", study, "-q", "--no-look")
+    graph = cv.load("stop.vines", trust=True)
+    branch = next(b for b in graph if b.real and b.stable_intervals())
+    low, high = branch.stable_intervals()[0]
+    at = 0.5 * (low + high)
+    done = run("robustness", "stop.vines", branch.label, "--at", at, "--starts", 6, "--trust")
+    assert done.exit_code == 0, done.output
+    assert "share of starts" in done.output and "kick" in done.output, done.output
+
+
+def test_an_atlas_and_basins_of_a_page(study):
+    study.write_text(study.read_text() + "[atlas]\nvalues = [2.3]\nstarts = 6\nscan = 0\n")
+    done = run("atlas", study, "-q", "-o", "a.vines")
+    assert done.exit_code == 0, done.output
+    met = cv.load("a.vines").attractors
+    assert [(a.word, a.kind, a.share) for a in met] == [("R", "periodic", 1.0)]
+    done = run("basins", study, "--at", "2.3", "--points", "4", "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["plane"] == ["x", "v"] and {a["kind"] for a in found["attractors"]} == {
+        "periodic",
+        "impossible",
+    }
+
+
+def test_sections_of_a_page_study_are_checked(study):
+    study.write_text(study.read_text() + '[chart]\nparameter = "gab"\nwithin = [0.0, 1.0]\n')
+    with pytest.raises(StudyError, match="gab.*did you mean 'gap'"):
+        read_study(study)
+
+
+def test_a_survey_of_a_page(study):
+    """With the wall at zero the machine is as large as its forcing: twice the forcing, twice the speeds, at the same frequencies."""
+    vary = '[survey]\nvary = {forcing = [1.0, 2.0, 4.0]}\noutcomes = ["peak", "stable:R"]\ngaps = 0\n'
+    study.write_text(STUDY.replace("gap = 0.05", "gap = 0.0") + vary)
+    done = run("survey", study, "--json", "--workers", "1", "-q")
+    assert done.exit_code == 0, done.output
+    rows = json.loads(done.stdout)["rows"]
+    assert [row["peak"] / rows[0]["peak"] for row in rows] == pytest.approx([1.0, 2.0, 4.0], rel=1e-6)
+    assert [row["stable_R"] for row in rows] == pytest.approx([rows[0]["stable_R"]] * 3, rel=1e-9)
+    study.write_text(study.read_text().replace('"stable:R"', '"dissipation"'))
+    assert "'dissipation' is told by the built-in machines alone" in str(run("survey", study).exception)
+    study.write_text(study.read_text().replace("forcing = [1", "mass = [1"))
+    assert "has no such parameter; it has forcing, frequency" in str(run("survey", study).exception)
+
+
+def test_commands_that_know_the_built_in_machines_alone(study):
+    for command, why in (
+        ("design", "closed forms of the built-in absorbers"),
+        ("prove", "offers no proofs"),
+    ):
+        done = run(command, study)
+        assert done.exit_code == 1 and why in str(done.exception)

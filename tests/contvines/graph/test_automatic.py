@@ -1,0 +1,239 @@
+"""The automatic diagram: order, identity, resume."""
+
+import json
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.journal import MemoryJournal
+from orbits import Absorber
+
+
+def logistic(x, r):
+    return r * x * (1 - x)
+
+
+def cascade(**options):
+    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+    return cv.diagram(problem, within=(2.4, 3.5), depth=2, settings={"max_step": 0.1}, **options)
+
+
+def assert_same(a, b):
+    assert a.to_dict() == b.to_dict()
+    for one, other in zip(a, b):
+        for name in ("points", "values", "tangents", "multipliers", "margin", "stable"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+        assert one.marks == other.marks
+    for label in a.special:
+        np.testing.assert_array_equal(a[label].u, b[label].u)
+        np.testing.assert_array_equal(a[label].tangent, b[label].tangent)
+
+
+def test_deterministic():
+    assert_same(cascade(), cascade())
+
+
+class Killed(Exception):
+    pass
+
+
+class Fragile(MemoryJournal):
+    """Dies after a number of records."""
+
+    def __init__(self, entries, survive):
+        super().__init__()
+        self.entries, self.survive = entries, survive
+
+    def record(self, key, values):
+        if self.survive == 0:
+            raise Killed
+        self.survive -= 1
+        assert key not in self.entries
+        super().record(key, values)
+
+
+def test_resume_after_an_interruption_at_each_record():
+    whole = MemoryJournal()
+    undisturbed = cascade(journal=whole)
+    total = len(whole.entries)
+    assert total >= 10
+    for survive in range(total):
+        entries: dict = {}
+        with pytest.raises(Killed):
+            cascade(journal=Fragile(entries, survive))
+        assert len(entries) == survive
+        resumed = Fragile(entries, total - survive)
+        assert_same(cascade(journal=resumed), undisturbed)
+        assert list(resumed.entries) == list(whole.entries)
+
+
+def test_resume_one_record_at_a_time():
+    entries: dict = {}
+    for _ in range(200):
+        try:
+            graph = cascade(journal=Fragile(entries, 1))
+        except Killed:
+            continue
+        break
+    assert_same(graph, cascade())
+
+
+def test_interrupt_keeps_a_checkpoint_and_says_how_to_go_on():
+    journal = MemoryJournal()
+
+    def stop(progress):
+        if progress.branches == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        cascade(journal=journal, progress=stop)
+    assert not journal.graph.finished and "again" in journal.graph.message and "B1" in journal.graph
+    assert_same(cascade(journal=journal), cascade())
+    assert journal.graph.finished
+
+
+def test_labels_run_along_the_branch():
+    problem = cv.AlgebraicProblem(lambda x, p: p + x - x**3, [0.0], 0.0)
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    marks = graph["B1"].marks
+    assert [label for _, label in marks] == ["EP1", "LP1", "LP2", "EP2"]
+    assert [i for i, _ in marks] == sorted(i for i, _ in marks)
+    assert marks[0][0] == 0 and marks[-1][0] == len(graph["B1"]) - 1
+    for i, label in marks:
+        assert graph["B1"].values[i] == graph[label].value
+        np.testing.assert_array_equal(graph["B1"].points[i], graph[label].u)
+    # tangents all point forward along the stored order
+    steps = np.column_stack([np.diff(graph["B1"].points[:, 0]), np.diff(graph["B1"].values)])
+    assert ((steps * graph["B1"].tangents[1:]).sum(axis=1) > 0.0).all()
+
+
+def test_network_of_branches_listed_once():
+    """x (p - x^2) (x - p + 1/2) = 0: a line, a parabola and a line, which cross in five places; each is one branch."""
+
+    def f(u, p):
+        x = u[0]
+        return np.array([x * (p - x * x) * (x - p + 0.5)])
+
+    graph = cv.diagram(cv.AlgebraicProblem(f, [0.0], -0.5), within=(-1.0, 2.0), depth=5)
+    assert len(graph) == 3
+    places = sorted((round(p.value, 9), round(float(p.u[0]), 9)) for p in graph.of_kind("branch-point"))
+    x = np.array([0.5 * (1 - np.sqrt(3)), 0.5 * (1 + np.sqrt(3))])  # x^2 = x + 1/2
+    exact = sorted([(0.0, 0.0), (0.5, 0.0), *((round(a * a, 9), round(a, 9)) for a in x)])
+    np.testing.assert_allclose(places, exact, atol=2e-9)
+    ties = {(s.point, frozenset((s.source, s.target))) for s in graph.switches}
+    assert len(ties) == len(graph.switches) == 4
+
+
+def test_seed_on_a_known_branch_is_not_traced_again():
+    """The circle x^2 + p^2 = 1 and the line x = p: met twice, listed once."""
+
+    def f(u, p):
+        return np.array([(u[0] ** 2 + p * p - 1.0) * (u[0] - p)])
+
+    graph = cv.diagram(cv.AlgebraicProblem(f, [1.0], 0.0), within=(-2.0, 2.0), depth=4)
+    assert len(graph) == 2 and graph["B1"].closed
+    half = np.sqrt(0.5)
+    assert sorted(p.value for p in graph.of_kind("branch-point")) == pytest.approx([-half, half], abs=1e-12)
+    assert len(graph.switches) == 2
+
+
+def test_a_cascade_is_followed_where_doublings_lie_closer_than_the_first_step():
+    """The logistic map's doublings crowd at r = 3.5699456718709449 (Briggs, Math. Comp. 57 (1991) 435)."""
+    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+    graph = cv.diagram(problem, within=(2.0, 4.0), depth=8)
+    found = sorted(point.value for point in graph.of_kind("period-doubling"))
+    known = [3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228, 3.5644072660954326, 3.5687594195438266]
+    assert found[:5] == pytest.approx(known, abs=1e-12)
+    assert len(found) == 9
+    a, b, c = found[-3:]
+    assert c - (c - b) ** 2 / (c - 2.0 * b + a) == pytest.approx(3.5699456718709449, abs=1e-9)
+    assert (b - a) / (c - b) == pytest.approx(4.669201609, abs=1e-2)
+
+
+def test_depth_counts_switches():
+    for depth, branches in ((0, 1), (1, 2), (2, 3)):
+        problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+        assert len(cv.diagram(problem, within=(2.4, 3.55), depth=depth)) == branches
+
+
+def test_max_branches_is_said():
+    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+    graph = cv.diagram(problem, within=(2.4, 3.55), depth=3, settings={"max_branches": 2})
+    assert len(graph) == 2 and "max_branches" in graph.message
+    left = [point for point in graph.special.values() if any("max_branches = 2" in r for r in point.remarks)]
+    assert left and not any(s.point == point.label for s in graph.switches for point in left)
+
+
+def test_switch_extends_a_graph():
+    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+    graph = cv.diagram(problem, within=(2.4, 3.5), depth=0)
+    assert cv.switch(graph, "PD1") == ["B2"]
+    assert graph["PD2"].value == pytest.approx(1 + np.sqrt(6), abs=1e-12)
+    assert cv.switch(graph, "PD1") == [] and len(graph.switches) == 1
+    assert cv.switch(graph, "PD2") == ["B3"] and cv.switch(graph, "EP1") == []
+    with pytest.raises(KeyError, match="PD9"):
+        cv.switch(graph, "PD9")
+
+
+def test_graph_speaks():
+    graph = cascade()
+    text = str(graph)
+    assert "PD1" in text and "B1 -> B2" in text and "supercritical" in text
+    data = json.loads(json.dumps(graph.to_dict()))
+    assert data["branches"][1]["range"][0] == pytest.approx(3.0)
+    assert {"label", "kind", "branch", "value", "multipliers", "real", "criticality"} <= set(
+        data["special"][0]
+    )
+    network = graph.network()
+    assert set(network.nodes) == set(graph.branches) and network.number_of_edges() == len(graph.switches)
+    with pytest.raises(KeyError, match="no label"):
+        graph["XX1"]
+    assert graph.on("B1")[1] is graph["PD1"] and graph["PD1"].orbit.shape == (1, 1)
+
+
+def test_orbit_like_seed():
+    class Orbit:
+        def problem(self, parameter):
+            return cv.MapProblem(logistic, [0.5], 2.5, parameter=parameter)
+
+        def seed(self, problem):
+            return problem.u0, problem.p0
+
+    graph = cv.diagram(Orbit(), over="r", within=(2.0, 2.9))
+    assert graph.parameter == "r" and len(graph) == 1
+    with pytest.raises(ValueError, match="over"):
+        cv.diagram(Orbit(), within=(2.0, 2.9))
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("angle", [0.02, 0.1, 0.25])
+def test_special_points_do_not_depend_on_tolerance_or_step(tolerance, angle):
+    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
+    graph = cv.diagram(
+        problem,
+        within=(2.0, 3.56),
+        depth=2,
+        settings={"tolerance": tolerance, "angle": angle, "max_step": 0.1},
+    )
+    found = [p.value for p in graph.of_kind("period-doubling")]
+    assert found == pytest.approx([3.0, 1.0 + np.sqrt(6.0), 3.5440903595519228], abs=1e-12)
+
+
+@pytest.mark.parametrize("word, periods, times", [("LRtt", 1, 2), ("LR", 1, 3), ("LRtt", 1, 4)])
+def test_a_repeated_start_gives_the_graph_of_its_root(word, periods, times):
+    """P_l^k written twice is P_l^k: the labels, the special points and the stable pieces are those of the word itself."""
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    root = machine.orbit(word, periods, amplitude=1.0)
+    options = {"over": "amplitude", "within": (0.9, 1.1), "depth": 1}
+    one, other = cv.diagram(root, **options), cv.diagram(root.repeat(times), **options)
+    assert [(b.description["word"], b.description["periods"]) for b in one.branches.values()] == [
+        (b.description["word"], b.description["periods"]) for b in other.branches.values()
+    ]
+    assert one["B1"].description["periods"] == periods
+    assert list(one.special) == list(other.special)
+    assert [p.value for p in one.special.values()] == pytest.approx(
+        [p.value for p in other.special.values()], abs=1e-11
+    )
+    for label, branch in one.branches.items():
+        assert np.allclose(branch.stable_intervals(), other[label].stable_intervals(), atol=1e-11)

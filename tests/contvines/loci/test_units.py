@@ -1,0 +1,109 @@
+"""Loci and points of codimension two do not depend on the units of unknowns, parameters and time."""
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+import contvines as cv
+from contvines.loci.codimension_two import find
+from contvines.loci.coefficients_at import coefficients
+from orbits.machines.physical import physical
+from tests.contvines.loci.test_absorber_loci import closed_form
+
+powers = st.floats(-6.0, 6.0).map(lambda exponent: 10.0**exponent)
+
+
+def henon(U, P, Q):
+    """The generalized Henon map, a Neimark-Sacker locus with resonances 1:2, 1:3 and 1:4; be in units of P, al of Q, x of U."""
+
+    def f(x, p):
+        y, be, al = x / U, p.be / P, p.al / Q
+        return U * np.array([y[1], al - be * y[0] - y[1] ** 2 - 0.1 * y[0] * y[1]])
+
+    problem = cv.MapProblem(f, np.array([-0.1, -0.1]) * U, {"al": 0.1 * Q, "be": 0.5 * P}, parameter="be")
+    graph = cv.diagram(problem, over="be", within=(0.1 * P, 1.5 * P), depth=0)
+    locus = cv.locus(graph["NS1"], over="al", within=(-0.5 * Q, 3.0 * Q), bounds=(0.1 * P, 1.5 * P))
+    points = [point for _, point in find(locus)]
+    return locus.values / (P, Q), [
+        (point.kind, point.value[0] / P, point.value[1] / Q, coefficients(point)) for point in points
+    ]
+
+
+def predator(U, P, Q, T):
+    """Bazykin's predator and prey, two fold and two Hopf loci with two Bogdanov-Takens points; rates in units of T."""
+    U = np.asarray(U)
+
+    def f(u, p):
+        (x, y), de, al = u / U, p.de / P, p.al / Q
+        eaten = x * y / (1 + al * x)
+        return T * U * np.array([x - eaten - 0.01 * x * x, -y + eaten - de * y * y])
+
+    problem = cv.AlgebraicProblem(
+        f, np.array([2.0, 1.6]) * U, {"al": 0.3 * Q, "de": 0.2 * P}, parameter="de", spectrum="flow"
+    )
+    graph = cv.diagram(problem, over="de", within=(0.02 * P, 0.6 * P), depth=0)
+    chart = cv.chart(graph, over="al", within=(0.05 * Q, 0.9 * Q), bounds=(0.005 * P, P), regions=False)
+    points = [(p.kind, p.value[0] / P, p.value[1] / Q, p.coefficients) for p in chart.points.values()]
+    kinds = sorted(locus.kind for locus in chart.loci.values())
+    return kinds, sorted(points, key=lambda point: point[:2])
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return henon(1.0, 1.0, 1.0), predator((1.0, 1.0), 1.0, 1.0, 1.0)
+
+
+@settings(max_examples=4, deadline=None, derandomize=True)
+@given(powers, powers, powers)
+@example(1e-6, 1e6, 1e-6)
+@example(1e6, 1e-6, 1e6)
+def test_a_map_in_other_units(plain, U, P, Q):
+    (values, points), _ = plain
+    assert [kind for kind, *_ in points].count("resonance-1-3") == 1
+    other, found = henon(U, P, Q)
+    assert abs(len(other) - len(values)) <= 2
+    assert [kind for kind, *_ in found] == [kind for kind, *_ in points]
+    for (_, be, al, own), (_, p, q, there) in zip(points, found):
+        assert (p, q) == pytest.approx((be, al), abs=1e-10)
+        assert set(there) == set(own)
+        for name in own:  # cubic coefficients are per square of an unknown, quadratic ones per unknown
+            power = {"a": 0, "b": 1, "A_re": 0, "A_im": 0, "c": 2, "d": 2}[name]
+            assert there[name] * U**power == pytest.approx(own[name], rel=1e-6)
+
+
+@settings(max_examples=2, deadline=None, derandomize=True)
+@given(st.tuples(powers, powers), powers, powers, powers)
+@example((1e-6, 1e-6), 1e6, 1e-6, 1e6)
+@example((1e4, 1e-4), 1e-6, 1e6, 1e-6)
+def test_a_flow_in_other_units(plain, U, P, Q, T):
+    _, (kinds, points) = plain
+    assert [kind for kind, *_ in points].count("bogdanov-takens") == 2
+    there, found = predator(U, P, Q, T)
+    assert there == kinds and [kind for kind, *_ in found] == [kind for kind, *_ in points]
+    for (_, de, al, own), (_, p, q, other) in zip(points, found):
+        assert (p, q) == pytest.approx((de, al), abs=1e-9)
+        # both grow like the length of the unit vector; a like the square of the rates, b like a rate
+        assert other["b"] / other["a"] * T == pytest.approx(own["b"] / own["a"], rel=1e-6)
+
+
+@pytest.mark.parametrize("b", [0.02, 1000.0])
+def test_a_machine_in_millimetres(b):
+    """Amplitude against half-width, both in mm; the closed form knows ratios only."""
+    rate, g = 2.0 * np.pi * 2.0, 0.2 * b * (2.0 * np.pi * 2.0) ** 2
+    given = {
+        "amplitude": f"{0.6 * b} mm",
+        "half_width": f"{b} mm",
+        "frequency": "2 Hz",
+        "natural_frequency": "2 Hz",
+    }
+    given |= {"restitution": 0.76, "friction": 0.5, "gravity": f"{g / 1e3} m/s^2"}
+    machine = physical("absorber", given | {"oscillator_mass": "1 kg", "absorber_mass": "6 g"})
+    graph = cv.diagram(machine.orbit("LR"), over="amplitude", within=(0.4 * b, 0.8 * b), depth=0)
+    (point,) = graph.of_kind("symmetry-breaking")
+    locus = cv.locus(point, over="half_width", within=(0.8 * b, 1.6 * b), bounds=(0.0, 2.0 * b))
+    assert 8 < len(locus) < 60
+    for amplitude, width in locus.values:
+        ratio = closed_form("symmetry-breaking", gravity=g / (width * rate**2))
+        assert amplitude == pytest.approx(ratio * width, rel=1e-12)
+    assert len(locus.at(1.2 * b)) == 1

@@ -1,0 +1,170 @@
+"""Every plot function draws on given axes and respects what the user asks of style, legend and size."""
+
+import itertools
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.graph.attractor import Attractor
+from contvines.plots import (
+    plot_atlas,
+    plot_basins,
+    plot_circles,
+    plot_diagram,
+    plot_multipliers,
+    plot_network,
+    plot_portrait,
+    plot_survey,
+    plot_sweep,
+)
+from contvines.survey import Plan
+from contvines.survey.results import Survey
+from tests.contvines import fakes
+
+DOTS = [(x, x**2) for x in np.linspace(0, 1, 20)]
+
+
+def atlas():
+    graph = fakes.pitchfork_graph()
+    graph.attractors = [
+        Attractor(value=v, word=w, periods=1, kind="periodic", branch=None, share=0.5)
+        for v in (-0.5, 0.5)
+        for w in ("LR", "tt")
+    ]
+    return graph
+
+
+@pytest.fixture(scope="module")
+def basins():
+    henon = cv.MapProblem(
+        lambda x, p: [1 - p.a * x[0] ** 2 + x[1], p.b * x[0]], [0.63, 0.19], {"a": 0.2, "b": 0.3}
+    )
+    return cv.basins(henon.population(box=[(-2, 2), (-2, 2)]), at=0.2, points=8)
+
+
+@pytest.fixture(scope="module")
+def circles():
+    delayed = cv.MapProblem(lambda x, p: [p.r * x[0] * (1 - x[1]), x[0]], [0.4, 0.4], {"r": 1.7})
+    return cv.diagram(delayed, within=(1.2, 2.4))["NS1"].circles(to=2.02)
+
+
+@pytest.fixture
+def functions(basins, circles):
+    graph = fakes.pitchfork_graph()
+    plan = Plan({"gap": np.array([1.0, 2.0, 3.0])}, {"friction": np.array([0.1, 0.2])})
+    survey = Survey(
+        plan, {"peak": np.array([[1.0, 2.0], [2.0, 3.0], [3.0, 5.0]])}, np.full((3, 2), ""), {}, {}
+    )
+    return {
+        "diagram": (1, lambda **k: plot_diagram(graph, **k)),
+        "sweep": (1, lambda **k: plot_sweep(DOTS, "p", graph, "u0", **k)),
+        "sweep alone": (1, lambda **k: plot_sweep(DOTS, "amplitude", **k)),
+        "network": (1, lambda **k: plot_network(graph, **k)),
+        "multipliers": (2, lambda **k: plot_multipliers(graph.branches["B2"], **k)),
+        "atlas": (2, lambda **k: plot_atlas(atlas(), **k)),
+        "basins": (1, lambda **k: plot_basins(basins, **k)),
+        "circles": (3, lambda **k: plot_circles(circles, **k)),
+        "portrait": (1, lambda **k: plot_portrait(np.array([[0.0, 1.0], [1.0, 0.0]]), **k)),
+        "survey": (1, lambda **k: plot_survey(survey, **k)),
+    }
+
+
+NAMES = (
+    "diagram",
+    "sweep",
+    "sweep alone",
+    "network",
+    "multipliers",
+    "atlas",
+    "basins",
+    "circles",
+    "portrait",
+    "survey",
+)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_draws_on_given_axes_and_pyplot_keeps_no_figure_of_ours(functions, name):
+    count, function = functions[name]
+    before = plt.get_fignums()
+    function()
+    assert plt.get_fignums() == before
+    figure, axes = plt.subplots(1, count, squeeze=False, figsize=(4 * count, 3))
+    drawn = axes.ravel()
+    others = len(figure.axes)
+    assert function(axes=drawn[0] if count == 1 else drawn) is figure
+    for one in drawn:
+        assert one.lines or one.images or one.texts or one.patches or one.collections
+    assert len(figure.axes) - others <= 1  # a bar of colours at most
+    plt.close(figure)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_respects_the_users_style_and_settings_stay(functions, name):
+    _, function = functions[name]
+    before = dict(mpl.rcParams)
+    with mpl.rc_context({"axes.facecolor": "#ffeecc"}):
+        assert function().axes[0].get_facecolor()[:3] == mpl.colors.to_rgb("#ffeecc")
+    figure = function(style={"axes.facecolor": "#cceeff"})
+    assert figure.axes[0].get_facecolor()[:3] == mpl.colors.to_rgb("#cceeff")
+    assert dict(mpl.rcParams) == before
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(functions, name):
+    _, function = functions[name]
+    figure = function(figsize=(3.4, 2.4))
+    figure.canvas.draw()
+    page = figure.bbox
+    axes = figure.axes[0]
+    assert axes.get_window_extent().width > 0.4 * page.width
+    for one in figure.axes:
+        shown = [seen_ticks(axis) for axis in (one.xaxis, one.yaxis)] if one.axison else [[], []]
+        things = [
+            one.xaxis.label,
+            one.yaxis.label,
+            one.title,
+            *one.texts,
+            *figure.legends,
+            *shown[0],
+            *shown[1],
+        ]
+        for thing in things:
+            box = thing.get_window_extent()
+            if one.axison and thing.get_visible() and box.width > 1:
+                assert box.x0 >= page.x0 - 2 and box.x1 <= page.x1 + 2, thing
+                assert box.y0 >= page.y0 - 2 and box.y1 <= page.y1 + 2, thing
+        boxes = sorted((label.get_window_extent() for label in shown[0]), key=lambda box: box.x0)
+        assert all(a.x1 < b.x0 for a, b in itertools.pairwise(boxes))
+
+
+def seen_ticks(axis):
+    """The labels of ticks that can be seen."""
+    low, high = sorted(axis.get_view_interval())
+    ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    return [tick.label1 for tick in ticks if tick.label1.get_visible() and tick.label1.get_text()]
+
+
+@pytest.mark.parametrize("name", ("diagram", "sweep", "atlas", "basins", "circles", "survey", "multipliers"))
+def test_a_legend_can_be_left_out_or_put_somewhere(functions, name):
+    _, function = functions[name]
+
+    def legends(**options):
+        figure = function(**options)
+        return [*figure.legends, *(a.get_legend() for a in figure.axes if a.get_legend())]
+
+    assert legends(legend=False) == []
+    for legend in legends(legend="lower left"):
+        box, frame = legend.get_window_extent(), legend.axes.get_window_extent()
+        assert box.x0 - frame.x0 < frame.x1 - box.x1 and box.y0 - frame.y0 < 12
+
+
+def test_a_key_below_given_axes_stands_under_their_label():
+    figure, axes = plt.subplots(figsize=(5, 4))
+    plot_diagram(fakes.pitchfork_graph(), axes=axes, legend="below")
+    figure.canvas.draw()
+    assert axes.get_legend().get_window_extent().y1 < axes.xaxis.label.get_window_extent().y0 + 1
+    plt.close(figure)

@@ -1,0 +1,13 @@
+"""The example pages, loaded once."""
+
+from functools import cache
+from pathlib import Path
+
+from orbits.declared.loading import load_page
+
+PAGES = Path(__file__).resolve().parents[3] / "examples" / "machines"
+
+
+@cache
+def page(name):
+    return load_page(PAGES / f"{name}.py", "machine")

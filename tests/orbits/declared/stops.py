@@ -1,0 +1,52 @@
+"""A mass with dry friction between two stops, for very long: it never leaves them.
+
+`python -m tests.orbits.declared.stops [IMPACTS]` simulates a million impacts by default and prints how far the mass was ever beyond a
+stop: at every event, and at the largest and smallest displacement inside every flight, found as roots of the velocity in the steps.
+"""
+
+import sys
+import time
+
+import numpy as np
+
+from orbits.contacts.letters import HIT
+from orbits.declared.stepper import Stepper
+from tests.orbits.declared.test_simulation import rattler
+
+
+def farthest(impacts: int, forcing: float = 5.0, frequency: float = 1.1) -> tuple[float, int]:
+    """Largest |x| met, and the number of events, over so many impacts between stops at -1 and 1."""
+    machine = rattler()
+    stepper = Stepper(machine, machine.vector({"forcing": forcing, "frequency": frequency}))
+    stepper.start(np.array([0.3, 0.1]), 0.0)
+    e, far, hits, events = machine.equations, 0.0, 0, 0
+    numbers, watches = {}, {}
+    while hits < impacts:
+        modes, state, begin = stepper.modes, stepper.state.copy(), stepper.base + stepper.clock
+        start = stepper.clock
+        event = stepper.advance(begin + 1e3)
+        if event is None:
+            continue
+        if modes not in watches:
+            watches[modes] = machine.compiled.extremes(e.pattern_key(modes))
+            numbers[modes] = machine.compiled.numbers(stepper.params, modes)
+        end = start + stepper.base + stepper.clock - begin
+        inside = watches[modes](state, start, end, numbers[modes])
+        far = max(far, abs(float(stepper.state[0])), *(abs(float(x[0])) for _, _, x in inside), 0.0)
+        hits += event[1] == HIT
+        events += 1
+    return far, events
+
+
+def main() -> None:
+    """Print the largest excess."""
+    impacts = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
+    began = time.process_time()
+    far, events = farthest(impacts)
+    print(
+        f"{impacts} impacts, {events} events: |x| at most 1 + {far - 1.0:.1e}; {time.process_time() - began:.0f} s"
+    )
+
+
+if __name__ == "__main__":
+    main()

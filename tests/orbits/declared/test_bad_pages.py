@@ -1,0 +1,134 @@
+"""Every bad page is refused with a sentence that names the contact and the way out."""
+
+import math
+
+import pytest
+
+from orbits import DryFriction, Machine, Switch, Wall
+from orbits.machines.parameters import ParameterError
+from orbits.proofs.obstacles import ProofError
+from orbits.symbols import cos
+from orbits.words import WordError
+from tests.orbits.declared.pages import page
+
+
+def motion(state, phase, p, contact):
+    return state.v, p.forcing * cos(phase) - state.x
+
+
+def wall(letter="R", push=None, **options):
+    return Wall(letter, lambda state, phase, p: p.gap - state.x, push or {"v": -1.0}, **options)
+
+
+def declared(**changes):
+    page = {
+        "name": "box",
+        "states": ("x", "v"),
+        "parameters": {"forcing": 1.0, "frequency": 1.3, "gap": 1.0},
+        "phase_rate": "frequency",
+        "motion": motion,
+        "contacts": [wall()],
+    }
+    return Machine(**{**page, **changes})
+
+
+def rubbing(state, phase, p, contact):
+    return state.v, p.forcing * cos(phase) - state.x + contact.floor
+
+
+def floor(**options):
+    return DryFriction("floor", lambda state, phase, p: state.v, 0.2, **options)
+
+
+def stepped(state, phase, p, contact):
+    return state.v, -state.x if state.x > 0 else 0.0
+
+
+BAD = {
+    "none": ({"contacts": []}, r"contacts = \[\]: give at least one Wall, DryFriction or Switch"),
+    "rates": ({"motion": lambda s, ph, p, c: (s.v,)}, "motion returns 1 rate for 2 states .x, v.; return one rate per state"),
+    "parameter": ({"motion": lambda s, ph, p, c: (s.v, p.mass)}, "p.mass: the page declares no such parameter; it has forcing"),
+    "branching": ({"motion": stepped}, r"a comparison \(>\) of a symbol has no single formula.*declare a Switch"),
+    "absolute": ({"motion": lambda s, ph, p, c: (s.v, -abs(s.x))}, "the absolute value of a symbol.*Switch"),
+    "math": ({"motion": lambda s, ph, p, c: (s.v, math.cos(ph))}, "take cos, sin, sqrt, exp ... from orbits.symbols"),
+    "ignored": ({"contacts": [floor()]}, "friction 'floor': motion ignores contact.floor; add the force"),
+    "backwards": (
+        {"motion": lambda s, ph, p, c: (s.v, -s.x - c.floor), "contacts": [floor()]},
+        "friction 'floor': a positive contact.floor must speed its velocity up.*Change the sign",
+    ),
+    "letters": (
+        {"motion": rubbing, "contacts": [floor(), wall("t")]},
+        "friction 'floor' and wall 't' share the letter 't'; give one of them another",
+    ),
+    "push": ({"contacts": [wall(push={"x": 1.0})]}, "wall 'R': an impulse along push .* does not change the rate of its gap"),
+    "pushed": ({"contacts": [wall(push={"w": 1.0})]}, "wall 'R': push names 'w'; say how an impulse changes the states, of x, v"),
+    "moved": ({"contacts": [wall(push={"x": 1.0, "v": -1.0})]}, "wall 'R': the impulse moves the gap itself; push rates of positions"),
+    "restitution": ({"contacts": [wall(restitution=1.5)]}, "wall 'R': restitution = 1.5 is out of range; give a number above 0"),
+    "named": ({"contacts": [wall(restitution="bounce")]}, "the restitution of wall 'R' = 'bounce' is no parameter"),
+    "rate": ({"phase_rate": "omega"}, "phase_rate = 'omega' is no parameter; name the forcing's frequency"),
+    "phase": ({"phase_rate": None}, "a self-excited machine .phase_rate=None. has no forcing phase"),
+    "mirror": ({"mirror": {}}, "mirror: the gap of wall 'R' is not the mirror image: at x = .*set mirror=None"),
+    "strangers": ({"mirror": {"R": "L"}}, "'L' is no contact; there are R"),
+    "number": ({"parameters": {"forcing": "one", "frequency": 1.0, "gap": 1.0}}, "forcing = 'one' is not a number"),
+    "state": ({"motion": lambda s, ph, p, c: (s.speed, -s.x)}, "state.speed: there is no state of this name; the states are x, v"),
+    "contact": ({"motion": rubbing}, "contact.floor: the page declares no such contact; it has none"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_refusals(case):
+    changes, sentence = BAD[case]
+    with pytest.raises((ValueError, TypeError), match=sentence):
+        declared(**changes)
+
+
+def test_a_force_that_is_not_affine_is_refused():
+    with pytest.raises(ValueError, match="motion must be affine in contact.floor"):
+        declared(motion=lambda s, ph, p, c: (s.v, c.floor**2 - s.x), contacts=[floor()])
+
+
+def test_values_that_cannot_be():
+    machine = declared(contacts=[wall(restitution="gap")])
+    with pytest.raises(ParameterError, match="gap = 2 is out of range: the restitution of wall 'R'"):
+        machine.vector({"gap": 2.0})
+    with pytest.raises(ParameterError, match="frequency = -1: a forcing frequency is above 0"):
+        machine.vector({"frequency": -1.0})
+    with pytest.raises(ParameterError, match="mass is no parameter of the machine 'box'; it has forcing"):
+        machine.simulate(periods=1, mass=1.0)
+
+
+def test_a_negative_gap_at_the_start_is_refused():
+    with pytest.raises(ValueError, match="the gap of wall 'R' is -1 at the start: bodies overlap"):
+        declared().simulate({"x": 2.0}, periods=1)
+    with pytest.raises(ValueError, match="start has no entry 'y'; it may have x, v, phase"):
+        declared().simulate({"y": 2.0}, periods=1)
+    with pytest.raises(ValueError, match="neither periods, time nor events are given"):
+        declared().simulate()
+
+
+def test_words_that_cannot_be():
+    machine = declared(motion=rubbing, contacts=[floor(), wall()])
+    with pytest.raises(WordError, match="'L' begins no letter of this machine; it has t, s, u, R"):
+        machine.word("RL")
+    with pytest.raises(WordError, match="only a stick or a slip takes a sign"):
+        machine.word("R+")
+
+
+def test_a_switch_towards_which_both_flows_lead_is_refused():
+    machine = Machine(
+        name="sliding",
+        states=("x", "v"),
+        parameters={},
+        motion=lambda state, phase, p, contact: (state.v, -5 * contact.side - 0.1 * state.v),
+        contacts=[Switch("side", lambda state, phase, p: state.v + state.x)],
+    )
+    with pytest.raises(
+        ValueError, match="switch 'side': both flows lead to its surface, so the motion would slide"
+    ):
+        machine.simulate({"x": 0.01, "v": 0.05}, time=100.0)
+
+
+def test_orbits_of_pages_have_no_proofs():
+    orbit = page("impact_oscillator").orbit("R", 1, frequency=2.0)
+    with pytest.raises(ProofError, match="offers no proofs, for flights on a page have no closed form"):
+        orbit.prove()

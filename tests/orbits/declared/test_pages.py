@@ -1,0 +1,25 @@
+"""The example pages: short, and each with a motion that the simulator follows."""
+
+import pytest
+
+from tests.orbits.declared.pages import PAGES, page
+
+STARTS = {
+    "bouncing_ball": ({"y": 0.1, "v": 0.33, "phase": -0.8}, {"amplitude": 0.05}),
+    "belt_slider": ({"x": 1.0, "v": 0.5}, {}),
+    "two_absorbers": ({"s1": 0.3, "s2": 0.3}, {"forcing": 0.03, "frequency": 1.01}),
+}
+NAMES = sorted(p.stem for p in PAGES.glob("*.py") if p.stem != "draw")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_is_short_and_its_machine_moves(name):
+    assert len((PAGES / f"{name}.py").read_text().splitlines()) <= 30
+    start, parameters = STARTS.get(name, (None, {}))
+    found = page(name).attractor(start, **parameters)
+    assert found.kind == "periodic" and found.orbit.real and found.orbit.stable
+    assert found.orbit.replay() < 1e-9
+
+
+def test_there_are_nine_pages():
+    assert len(NAMES) == 9

@@ -1,0 +1,120 @@
+"""Many starts of declared machines: against the built-in machine's, and against a bouncing ball written out here."""
+
+import numpy as np
+import pytest
+
+from orbits import Absorber, Machine, Wall, Word
+from orbits.declared.growth import growth
+from orbits.declared.stepper import Stepper
+from tests.orbits.declared.pages import page
+
+
+def spelled(text):
+    """One spelling for one motion; a page's own begins anywhere."""
+    return Word.parse(text).spelled() if text else text
+
+
+@pytest.mark.parametrize("amplitude", [0.55, 1.2])
+def test_the_declared_absorber_sorts_the_starts_of_the_built_in_one(amplitude):
+    own = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).population("amplitude")
+    declared = page("absorber").population("amplitude")
+    starts = own.starts(24, 3, amplitude)
+    ours, index, sides = own.settle(starts, amplitude)
+    theirs, image, mirrored = declared.settle(starts, amplitude)
+    assert [spelled(ours[k].word) for k in index] == [spelled(theirs[k].word) for k in image]
+    assert [ours[k].periods for k in index] == [theirs[k].periods for k in image]
+    for k in range(len(ours)):  # twins: the same split, whichever was found first
+        members = index == k
+        if ours[k].word and not np.array_equal(sides[members], mirrored[members]):
+            assert np.array_equal(sides[members], ~mirrored[members])
+    for motion in theirs:
+        problem, u = motion.problem, motion.u
+        assert problem.parameter == "amplitude"
+        assert problem.data is not None and np.all(np.isfinite(u))
+
+
+def ball_exponent(amplitude, gravity, restitution, periods):
+    """Lyapunov exponent per period of y'' = -g over A cos t: hits by bisection, tangents by the variational equations."""
+    t, y, v = 0.3, 3.0, 0.0
+    tangent, total, end = np.array([1.0, 0.3]), 0.0, t + 2 * np.pi * periods
+    table, rate, second = (
+        lambda t: amplitude * np.cos(t),
+        lambda t: -amplitude * np.sin(t),
+        lambda t: -amplitude * np.cos(t),
+    )
+    while t < end:
+        grid = np.linspace(1e-9, 150.0, 15_000)
+        gaps = y + v * grid - 0.5 * gravity * grid**2 - table(t + grid)
+        low = grid[np.argmax(gaps < 0.0) - 1]
+        high = grid[np.argmax(gaps < 0.0)]
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            if y + v * middle - 0.5 * gravity * middle**2 - table(t + middle) > 0.0:
+                low = middle
+            else:
+                high = middle
+        t, y, v = t + low, table(t + low), v - gravity * low
+        flight = np.array([[1.0, low], [0.0, 1.0]])
+        before = np.array([v, -gravity])
+        jump = np.array([[1.0, 0.0], [0.0, -restitution]])
+        v = (1 + restitution) * rate(t) - restitution * v
+        after = np.array([v, -gravity])
+        # saltation: the hit comes earlier or later by dt = -dgap / (gap's rate)
+        normal = np.array([1.0, 0.0])
+        closing = before[0] - rate(t)
+        of_time = np.array([0.0, (1 + restitution) * second(t)])
+        saltation = jump + np.outer(after - jump @ before - of_time, normal) / closing
+        tangent = saltation @ flight @ tangent
+        size = np.linalg.norm(tangent)
+        total += np.log(size)
+        tangent /= size
+    return total / periods
+
+
+def test_the_exponent_of_a_chaotic_bouncing_ball():
+    machine = page("bouncing_ball")
+    params = machine.vector({"amplitude": 0.2, "gravity": 0.1, "restitution": 0.8, "frequency": 1.0})
+    stepper = Stepper(machine, params)
+    stepper.start(np.array([3.0, 0.0]), 0.3)
+    value, error = growth(stepper)
+    expected = ball_exponent(0.2, 0.1, 0.8, 400)
+    assert value > 5 * error > 0.0
+    assert abs(value - expected) < 5 * error + 0.03  # the written-out one scatters, too
+
+
+def test_starts_lie_outside_the_walls_and_in_the_ranges_of_the_page():
+    machine = Machine(
+        name="between",
+        states=("x", "v"),
+        parameters={"gap": 0.1, "damping": 0.1},
+        motion=lambda s, phase, p, contact: (s.v, -s.x - p.damping * s.v),
+        contacts=[Wall("R", gap=lambda s, phase, p: p.gap - s.x, push={"v": -1.0}, restitution=0.5)],
+        starts={"x": (-1.0, 1.0), "v": (-3.0, 2.0)},
+    )
+    population = machine.population("gap")
+    starts = population.starts(100, 0, 0.1)
+    assert starts.shape == (100, 2) and np.all(starts[:, 0] <= 0.1)
+    assert starts[:, 1].min() < -2.5 and starts[:, 1].max() > 1.5
+    assert np.array_equal(starts, population.starts(100, 0, 0.1))
+    motions, index, _ = population.settle(np.array([[0.5, 0.0], [0.0, 1.0]]), 0.1)
+    assert [m.kind for m in motions] == ["impossible", "stuck"] and list(index) == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("starts", "sentence"),
+    [
+        ({"y": (0, 1)}, "no state"),
+        ({"x": (1, 0)}, "no interval"),
+        ({"x": "wide"}, "two numbers"),
+    ],
+)
+def test_ranges_that_are_none(starts, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        Machine(
+            name="free",
+            states=("x", "v"),
+            parameters={"damping": 0.1},
+            motion=lambda s, phase, p, contact: (s.v, -s.x - p.damping * s.v),
+            contacts=[Wall("R", lambda s, phase, p: 1.0 - s.x, {"v": -1.0})],
+            starts=starts,
+        )

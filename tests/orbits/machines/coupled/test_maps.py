@@ -1,0 +1,231 @@
+"""Elementary maps of the coupled machine against matrix exponentials in many digits."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from orbits import Coupled
+from orbits.compiling.arguments import CycleData
+from orbits.elimination.block_cyclic import workspace
+from orbits.machines.coupled.flow import first_zero, wave
+from orbits.machines.coupled.maps import linearise, margins
+from orbits.machines.path import single
+from tests.orbits.machines.coupled.motion import path
+
+L, R, T, S, U = range(5)
+# arriving event and the modes: every kind of segment
+SEGMENTS = [
+    (L, -1, R, 1),
+    (R, 1, L, -1),
+    (L, -1, T, 1),
+    (T, 1, L, -1),
+    (S, 0, U, 1),
+    (U, 1, S, 0),
+    (S, 0, U, -1),
+    (U, -1, R, 1),
+]
+PARAMETERS = [
+    [2.47, 0.98, 1.0, 0.006, 0.76, 0.5, 0.211, 1.0],
+    [1.3, 1.21, 0.7, 0.16, 0.5, 0.35, 0.4, 0.4],
+    [2.0, 0.8, 0.0, 0.05, 0.9, 0.1, 0.3, 0.0],
+]
+
+
+def residual(params, start, mode, arrival, after, x0, x1):
+    """The map's four rows: the linear equations of motion, with sin Psi and cos Psi as states, by matrix exponential."""
+    G, Omega, lam, eps, r, mu, g, chi = params
+    psi, y, v, v_rate = x0
+    w = mp.mpf(1 - 2 * start) if start < 2 else y
+    w_rate = v_rate - y if start < 2 else mp.mpf(0)
+    force = [-1, -eps * lam, 0, 0, eps * G, eps * G * chi * eps * lam * Omega, 0]
+    matrix = mp.zeros(7)
+    matrix[0, 1] = matrix[2, 3] = 1
+    matrix[4, 5], matrix[5, 4] = Omega, -Omega
+    for j in range(7):
+        matrix[1, j] = force[j] if mode else force[j] / (1 + eps)
+        matrix[3, j] = 0 if mode else force[j] / (1 + eps)
+    matrix[1, 6] -= eps * mu * g * mode
+    matrix[3, 6] += mu * g * mode
+    state = mp.matrix(
+        [
+            (v + eps * w) / (1 + eps),
+            (v_rate + eps * w_rate) / (1 + eps),
+            (v - w) / (1 + eps),
+            (v_rate - w_rate) / (1 + eps),
+            mp.sin(psi),
+            mp.cos(psi),
+            1,
+        ]
+    )
+    end = mp.expm(matrix * ((x1[0] - psi) / Omega)) * state
+    q1, p1, q2, p2 = end[:4]
+    v, v_rate, w, w_rate = q1 + eps * q2, p1 + eps * p2, q1 - q2, p1 - p2
+    if arrival < 2:
+        rows = [w - (1 - 2 * arrival), v_rate + r * w_rate - x1[1]]
+    elif arrival == U:
+        rows = [sum(force[j] * end[j] for j in range(7)) - after * (1 + eps) * mu * g, w - x1[1]]
+    else:
+        from_rest = start >= 2 and mode  # then the map is the mean of w'' over the flight
+        rows = [w_rate / ((x1[0] - psi) / Omega) if from_rest else w_rate, w - x1[1]]
+    return [*rows, v - x1[2], v_rate - x1[3]]
+
+
+def closed(events, modes, params, path, twist=1.0):
+    """Data of a cycle that closes after one period, or after half of one where it is turned round."""
+    shift = 2 * np.pi if twist > 0.0 else np.pi
+    return CycleData(events, modes, params, path, twist, shift, 0, 0, params, np.zeros((0, 8)))
+
+
+@pytest.mark.parametrize("segment", SEGMENTS)
+def test_maps_and_all_their_derivatives(segment):
+    start, mode, arrival, after = segment
+    generator = np.random.default_rng(sum(segment) + 7)
+    params = np.array(PARAMETERS[generator.integers(3)])
+    u = np.array([0.3, 0.4, 0.2, -0.6, 2.9, -0.5, 0.35, 0.25]) + 0.1 * generator.standard_normal(8)
+    work = workspace(2, 4, 8)
+    events, modes = np.array([start, arrival], np.int8), np.array([mode, after], np.int8)
+    with mp.workdps(40):
+        numbers = [mp.mpf(float(value)) for value in (*params, *u)]
+
+        def rows(values):
+            return residual(values[:8], start, mode, arrival, after, values[8:12], values[12:])
+
+        def slope(j):
+            h = mp.mpf(10) ** -13
+            ends = []
+            for sign in (1, -1):
+                moved = list(numbers)
+                moved[j] += sign * h
+                ends.append(rows(moved))
+            return np.array([float((a - b) / (2 * h)) for a, b in zip(*ends)])
+
+        for ip in range(8):
+            assert np.isfinite(linearise(closed(events, modes, params, single(8, ip)), u, params[ip], work))
+            F, A, D, Q = (work[i][0] for i in range(4))
+            np.testing.assert_allclose(Q, slope(ip), rtol=1e-12, atol=1e-13)
+        # a parameter that moves several numbers, each with its own power: the chain rule
+        powers = np.array([-1.0, 0.5, -0.5, 2.0, 0.0, 1.0, -2.0, 0.0])
+        path = np.array([params / 1.3**powers, powers])
+        linearise(closed(events, modes, params, path), u, 1.3, work)
+        chain = sum(slope(j) * powers[j] * params[j] / 1.3 for j in range(8) if powers[j])
+        np.testing.assert_allclose(work[3][0], chain, rtol=1e-11, atol=1e-12)
+        linearise(closed(events, modes, params, single(8, 0)), u, params[0], work)
+        np.testing.assert_allclose(F, [float(value) for value in rows(numbers)], atol=1e-14)
+        for j in range(4):
+            np.testing.assert_allclose(A[:, j], slope(8 + j), rtol=1e-12, atol=1e-13)
+            np.testing.assert_allclose(D[:, j], slope(12 + j), rtol=1e-12, atol=1e-13)
+
+
+def inner_minima(values):
+    """Values at interior minima, from the parabola through three points."""
+    a, b, c = values[:-2], values[1:-1], values[2:]
+    here = (b < a) & (b <= c)
+    return (b - (c - a) ** 2 / (8.0 * (a - 2.0 * b + c)))[here]
+
+
+@pytest.mark.parametrize("segment", SEGMENTS)
+@pytest.mark.parametrize("case", range(3))
+def test_margins_are_those_of_the_motion(segment, case):
+    """Against the motion sampled finely: what friction has left, the lowest speed, the walls, the events' own margins."""
+    start, mode, arrival, after = segment
+    params = np.array(PARAMETERS[case])
+    eps, r, mu, g = params[3], params[4], params[5], params[6]
+    generator = np.random.default_rng(10 * case + sum(segment))
+    u = np.array([0.3, 0.4, 0.2, -0.6, 5.9, -0.5, 0.35, 0.25]) + 0.2 * generator.standard_normal(8)
+    work = workspace(2, 4, 8)
+    events, modes = np.array([start, arrival], np.int8), np.array([mode, after], np.int8)
+    data = closed(events, modes, params, single(8, 0))
+    linearise(data, u, params[0], work)
+    found = np.full(8, np.nan)
+    margins(data, u, params[0], work, found)
+    duration = (u[4] - u[0]) / params[1]
+    w, w_rate = (1.0 - 2.0 * start, u[3] - u[1]) if start < 2 else (u[1], 0.0)
+    states, q1_2, q2_2 = path(params, mode, u[0], w, w_rate, u[2], u[3], duration, 20000)
+    a = (1.0 + eps) * mu * g
+    push = q1_2 + eps * q2_2
+    if mode == 0:
+        left = a - np.abs(push)
+        expected = inner_minima(left)
+    else:
+        speed = mode * (states[:, 1] - states[:, 3])
+        after_start = slice(1, None) if start == S else slice(None)
+        expected = inner_minima(speed[after_start])
+    if start != T and start != U:
+        assert found[0] == pytest.approx(expected.min() if expected.size else np.inf, abs=1e-7)
+    assert found[3] == pytest.approx(duration)
+    assert found[2] == (pytest.approx(1.0 - abs(u[1])) if start >= 2 else np.inf)
+    if start == S:
+        assert found[1] == pytest.approx(a - abs(push[0]), abs=1e-12)
+    elif start == T:
+        assert found[1] == pytest.approx(mode * push[0] - a, abs=1e-12)
+    elif start == U:
+        h = duration / 20000
+        jerk = (-3.0 * q1_2[0] + 4.0 * q1_2[1] - q1_2[2]) / (2.0 * h)
+        assert found[1] == pytest.approx(mode * jerk, abs=1e-5)
+    if arrival < 2:
+        assert found[5] == pytest.approx((1.0 - 2.0 * arrival) * (u[5] - u[7]) / r)
+
+
+def test_half_and_whole_words_agree():
+    """A symmetric orbit closes on its half word with twist -1 and on the whole word with twist +1."""
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47
+    )
+    orbit = machine.symmetric_orbit(frequency=0.99)
+    u = orbit.nodes.ravel()
+    codes, modes = orbit.word.codes, orbit.word.mode_codes
+    whole = closed(codes, modes, orbit.params, single(8, 1))
+    half = closed(codes[:1].copy(), modes[:1].copy(), orbit.params, single(8, 1), -1.0)
+    one, two = workspace(1, 4, 8), workspace(2, 4, 8)
+    assert linearise(half, u[:4].copy(), 0.99, one) < 1e-14
+    assert linearise(whole, u, 0.99, two) < 1e-14
+    short, long = np.empty(4), np.empty(8)
+    margins(half, u[:4].copy(), 0.99, one, short)
+    margins(whole, u, 0.99, two, long)
+    np.testing.assert_allclose(long, np.tile(short, 2), atol=1e-13)
+
+
+def test_what_cannot_be_evaluated_is_infinite():
+    machine = Coupled(
+        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.0, forcing=2.47
+    )
+    params = machine.vector({"frequency": 0.9})
+    events, modes = np.array([L, R], np.int8), np.array([-1, 1], np.int8)
+    u = np.array([0.3, 1.0, 0.1, 0.2, 3.4, -1.0, -0.1, -0.2])
+    work = workspace(2, 4, 8)
+    assert (
+        linearise(closed(events, modes, params, single(8, 1)), u, 1.0, work) == np.inf
+    )  # undamped resonance
+    assert linearise(closed(events, modes, params, single(8, 2)), u, 400.0, work) == np.inf  # overdamped
+
+
+def test_first_zero_finds_every_zero():
+    """Against sign changes on a fine grid, for sums of a harmonic and a damped oscillation with nearby frequencies."""
+    generator = np.random.default_rng(3)
+    for _ in range(200):
+        constant, P, Q, A, B = generator.normal(size=5)
+        Omega, beta, alpha, phase = (
+            *generator.uniform(0.4, 2.5, 2),
+            generator.uniform(0.0, 0.3),
+            generator.uniform(0, 6),
+        )
+        if generator.random() < 0.5:
+            beta = Omega * (1.0 + 0.01 * generator.normal())
+        wave_of = (constant, P, Q, A, B, Omega, alpha, beta, phase)
+        tau = np.linspace(0.0, 12.0, 24001)
+        Psi = phase + Omega * tau
+        values = constant + P * np.sin(Psi) + Q * np.cos(Psi)
+        values += np.exp(-alpha * tau) * (A * np.cos(beta * tau) + B * np.sin(beta * tau))
+        expected = tau[1:][values[1:] * values[:-1] < 0.0]
+        found, place = [], 0.0
+        while True:
+            place, slope = first_zero(*wave_of, place, 12.0)
+            if place >= 12.0:
+                break
+            value, rate = wave(*wave_of, place)
+            assert abs(value) < 1e-13
+            assert slope == pytest.approx(rate, abs=1e-6)
+            found.append(place)
+        assert len(found) >= len(expected)  # the grid may miss a pair, `first_zero` may not
+        for grid in expected:
+            assert min(abs(grid - place) for place in found) <= 6e-4

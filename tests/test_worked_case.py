@@ -1,0 +1,65 @@
+"""The worked case of `examples/design`: its study is read, a small survey of it is made and drawn, and a choice follows."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from contvines.command.best import read_wish
+from contvines.command.cli import main
+from contvines.command.study import read_study
+from contvines.command.survey_study import plan_and_machine
+
+STUDY = Path(__file__).parents[1] / "examples" / "design" / "absorber.toml"
+
+
+def run(*words):
+    with pytest.raises(SystemExit) as ended:
+        main(list(words))
+    return ended.value.code
+
+
+def test_the_plan_of_the_case():
+    plan, machine = plan_and_machine(read_study(STUDY))
+    assert plan.shape == (7, 6) and plan.axes["half_width"].tolist() == [8, 10, 12, 14, 16, 18, 20]
+    assert plan.samples["restitution"].min() >= 0.5 and plan.samples["friction"].max() <= 0.3
+    assert machine.units["half_width"] == "mm"
+
+
+def test_a_small_survey_and_its_choice(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = STUDY.read_text().replace("count = 7", "count = 3").replace("samples = 6", "samples = 1")
+    text = text.replace("depth = 2", "depth = 0").replace(
+        "friction = { uniform = [0.05, 0.3] }", "friction = [0.1]", 1
+    )
+    text = text.replace("vary.friction = [0.1]\n", "").replace(
+        'within = ["8 mm", "20 mm"]', 'within = ["13 mm", "15 mm"]'
+    )
+    text = text.replace("vary.restitution = { uniform = [0.5, 0.7] }\n", "")
+    text = text.replace('["peak", "lower_peak", "covered", "stable:LR"]', '["peak", "stable:LR"]\ngaps = 0')
+    (tmp_path / "case.toml").write_text(text)
+    assert run("survey", "case.toml", "--workers", "1", "--json", "--plot", "map.png") == 0
+    about = json.loads(capsys.readouterr().out)
+    assert about["units"]["half_width"] == "mm" and len(about["rows"]) == 3
+    assert all(row["note"] == "" for row in about["rows"])
+    assert (tmp_path / "case-survey.nc").exists() and (tmp_path / "map.png").exists()
+    assert run("survey", "case.toml", "--workers", "1", "-q") == 0  # nothing to compute
+
+
+@pytest.mark.parametrize(
+    ("text", "wish"),
+    [
+        ("lowest worst-case peak", (False, None, "peak")),
+        ("largest stable_LR", (True, None, "stable_LR")),
+        ("lowest 95 % peak", (False, 0.95, "peak")),
+        ("lowest 95% quantile of peak", (False, 0.95, "peak")),
+    ],
+)
+def test_wishes_are_read(text, wish):
+    assert read_wish(text) == wish
+
+
+@pytest.mark.parametrize("text", ["best peak", "lowest", "lowest 120 % peak", "lowest peak please now"])
+def test_wishes_that_cannot_be_read(text):
+    with pytest.raises(ValueError, match=r"^--best"):
+        read_wish(text)
