@@ -219,7 +219,7 @@ def grazing():
         axes.text(0.05, 0.22, "LR", color=BLUE, va="top")
         axes.text(0.95, 0.6, "LR, virtual", color=BLUE, ha="right", va="top", fontsize=9)
         axes.text(
-            other[0][1], 0.95, "LsR: with a stick", color=STICK, ha="right" if i == 0 else "left", va="bottom"
+            other[0][1], 0.95, "LRs: with a stick", color=STICK, ha="right" if i == 0 else "left", va="bottom"
         )
         axes.set(xlim=(0, 1), ylim=(0.05, 1.1), xticks=[], yticks=[], title=title, xlabel="parameter")
         axes.set_ylabel("motion" if i == 0 else "")

@@ -1,10 +1,11 @@
-"""Proves every special point of the example studies and of the gallery's diagrams, verifies the certificates, writes `points.md`.
+"""Proves every special point of the examples' and the gallery's diagrams, verifies the certificates, writes `points.md`.
 
 python examples/certificates/points.py            # all; some minutes
-python examples/certificates/points.py friction   # one of them
+python examples/certificates/points.py friction   # one of them; the others' tables stay as they are
 """
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -14,11 +15,17 @@ from unittest import mock
 
 import contvines as cv
 from orbits.proofs.checker import Refused, check
+from orbits.proofs.wording import spelling
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent
-STUDIES = ("friction", "friction_low", "frequency")
-SCRIPTS = ("charts", "inclined_cavity")  # of the gallery, those that make diagrams
+FILE = HERE / "points.md"
+STUDIES = ("friction", "friction_low", "frequency", "bouncing_ball")
+SCRIPTS = {
+    "absorber": EXAMPLES,
+    "inclined_cavity": EXAMPLES / "gallery",
+}  # the gallery's charts begin at absorber's diagram
+HEAD = ["point", "kind", "word", "parameter", "value", "radius", "the orbit is", "verified", "seconds"]
 GOAL = 1e-10
 
 
@@ -40,7 +47,7 @@ def of_study(name):
 
 
 def of_script(name):
-    """The graphs that a script of the gallery makes."""
+    """The graphs that a script makes."""
     found = []
     original = cv.diagram
 
@@ -48,9 +55,11 @@ def of_script(name):
         found.append(original(*given, **options))
         return found[-1]
 
-    sys.path.insert(0, str(EXAMPLES / "gallery"))
-    with mock.patch.object(cv, "diagram", remembered):
+    sys.path.insert(0, str(SCRIPTS[name]))
+    with tempfile.TemporaryDirectory() as folder, mock.patch.object(cv, "diagram", remembered):
+        os.chdir(folder)  # where the script leaves its pictures
         __import__(name).main()
+        os.chdir(HERE)
     return found
 
 
@@ -75,7 +84,7 @@ def prove(graph):
             )
             continue
         seconds = f"{time.process_time() - started:.2f}"
-        word = "".join(proof.motif.events) + (" + mirror image" if proof.motif.half else "")
+        word = spelling(proof)
         value = proof.value[0][:22] if proof.value else f"{point.value:.12g}"
         verified = "nothing proved"
         if proof.existence:
@@ -94,21 +103,47 @@ def prove(graph):
     return rows
 
 
+def good(row):
+    """Whether a point is proved within the goal, decided to be real or virtual, and verified."""
+    return bool(row[5]) and float(row[5]) <= GOAL and row[6] != "open" and row[7] == "yes"
+
+
+def kept():
+    """The tables that `points.md` holds, by name: rows of cells."""
+    found, rows = {}, []
+    for line in FILE.read_text(encoding="utf-8").splitlines() if FILE.exists() else []:
+        if line.startswith("## "):
+            rows = found[line[3:]] = []
+        elif line.startswith("| ") and not line.startswith("| point |"):
+            rows.append([cell.strip() for cell in line.strip("|").split("|")])
+    return found
+
+
+def write(tables):
+    """All tables, and how many of their points are proved."""
+    rows = [row for table in tables.values() for row in table]
+    done = sum(map(good, rows))
+    lines = [
+        "# Special points, proved",
+        "",
+        f"{len(rows)} points; {done} of them with a radius of at most {GOAL:g}, decided to be real or virtual, and verified.",
+    ]
+    for name, table in tables.items():
+        lines += ["", f"## {name}", "", "| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)]
+        lines += ["| " + " | ".join(row) + " |" for row in table]
+    FILE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print(lines[2])
+    return len(rows) - done
+
+
 def main(names=()):
-    """Prove all; returns the number of points that are not proved within the goal, real or virtual, and verified."""
-    head = ["point", "kind", "word", "parameter", "value", "radius", "the orbit is", "verified", "seconds"]
-    lines, open_, count = [], 0, 0
+    """Prove all; returns the number of points that are not proved within the goal, decided, and verified."""
+    tables, open_ = kept() if names else {}, 0
     for name, graph in graphs(names):
-        lines += ["", f"## {name}", "", "| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-        for row in prove(graph):
-            lines.append("| " + " | ".join(row) + " |")
+        tables[name] = prove(graph)
+        for row in tables[name]:
             print(name, *row, flush=True)
-            count += 1
-            open_ += not (row[5] and float(row[5]) <= GOAL and row[6] != "open" and row[7] == "yes")
-    head = f"# Special points, proved\n\n{count} points; {count - open_} of them with a radius of at most {GOAL:g}, decided to be real or virtual, and verified."
-    print(head)
-    if not names:
-        (HERE / "points.md").write_text(head + "\n" + "\n".join(lines) + "\n", encoding="utf-8")
+        open_ = write(tables)
     return open_
 
 
