@@ -16,8 +16,8 @@ LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbou
 def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
 
-    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part; where only branch points are looked
-    for ("real"), the first of these.
+    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part. Where only branch points are looked for
+    ("real"): eigenvalues with positive real part, so that a double one, which rounding makes a pair or two, counts twice either way.
     """
     result = np.zeros((len(spectrum), 3), dtype=np.int64)
     real = spectrum.imag == 0.0
@@ -29,7 +29,7 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
             upper & (np.abs(spectrum) > 1.0 + PAST),
         )
     elif kind == "real":
-        columns = (real & (spectrum.real > PAST),)
+        columns = (spectrum.real > PAST,)
     elif kind == "flow":
         columns = (real & (spectrum.real > PAST), np.zeros_like(real), upper & (spectrum.real > PAST))
     else:
@@ -45,6 +45,8 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
     if name == "pair":
         part = spectrum[spectrum.imag > 0.0]
         values = np.sort(np.abs(part) if kind == "map" else part.real)[::-1]
+    elif kind == "real":
+        values = np.sort(spectrum.real)[::-1]
     else:
         values = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
     if len(values) < k:

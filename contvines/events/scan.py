@@ -130,7 +130,7 @@ def mark_segments(
                 else:
                     pairs += im > 0.0 and re > PAST
             elif kind == REAL:
-                plus += im == 0.0 and re > PAST
+                plus += re > PAST
         before_that, before = before, damping
         if kind == MAP:
             damping = -math.log(outermost) if outermost > 0.0 else np.inf
