@@ -32,7 +32,7 @@ def rounding(matrix: Any, units: np.ndarray) -> float:
     sizes = abs(matrix)
     sums = [float((sizes @ units / units).max()), float(np.asarray(sizes.sum(axis=1)).max())]
     if isinstance(matrix, np.ndarray):
-        balanced = matrix_balance(matrix, permute=False)[0]
+        balanced = np.asarray(matrix_balance(matrix, permute=False)[0])
         sums.append(float(np.abs(balanced).sum(axis=1).max()))
     return 2.0**-53 * min(sums)
 
