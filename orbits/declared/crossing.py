@@ -64,15 +64,18 @@ def _simplest(
 
 
 def turned(
-    problem: DeclaredSystem, u: np.ndarray, p: float, index: int
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int, ahead: int | None = None
 ) -> tuple[DeclaredSystem, np.ndarray, int]:
-    """The same border read from another event, so that what changes does not straddle the end of the word."""
+    """The same border read from another event, so that what changes does not straddle the end of the word.
+
+    `ahead` events stand before that of the margin: one, unless a word of two has no room for it and the one after.
+    """
     width = per_node(problem.contacts)
     place, column = divmod(index, width)
-    if problem.length < 3:
-        first = place if column < problem.contacts or column == width - 1 else place - 1
-    else:
-        first = place - 1
+    if ahead is None:
+        roomy = problem.length > 2 or problem.contacts <= column < width - 1
+        ahead = 1 if roomy else 0
+    first = place - ahead
     if first % problem.length == 0 or not len(problem.word):
         return problem, u, index
     orbit = DeclaredOrbit.of(problem, u, p).rotate(first % len(problem.word))
@@ -84,13 +87,13 @@ def proposals(
     problem: DeclaredSystem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the rules propose."""
-    first = problem
-    problem, u, index = turned(problem, u, p, index)
-    orbit = DeclaredOrbit.of(problem, u, p)
-    for edit in edits_at(orbit, index):
-        found = grown(problem, orbit, p, [edit])
-        if found is not None:
-            yield (*_read_alike(first, problem, edit.change, found), edit.change.what.value)
+    for ahead in (None,) if problem.length > 2 or not len(problem.word) else (None, 0, 1):
+        read, v, place = turned(problem, u, p, index, ahead)
+        orbit = DeclaredOrbit.of(read, v, p)
+        for edit in edits_at(orbit, place):
+            found = grown(read, orbit, p, [edit])
+            if found is not None:
+                yield (*_read_alike(problem, read, edit.change, found), edit.change.what.value)
 
 
 def _read_alike(first: DeclaredSystem, problem: DeclaredSystem, edit: Change, found: Found) -> Found:
