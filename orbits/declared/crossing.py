@@ -28,6 +28,7 @@ from orbits.protocol import Seed
 
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
 CLOSE = 0.05  # of one that goes on from the border
+ROOM = 4  # events that may stand before that of the margin
 
 
 def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
@@ -63,18 +64,18 @@ def _simplest(
     return smallest, smallest.reduce(root.nodes), None
 
 
-def turned(
-    problem: DeclaredSystem, u: np.ndarray, p: float, index: int, ahead: int | None = None
-) -> tuple[DeclaredSystem, np.ndarray, int]:
-    """The same border read from another event, so that what changes does not straddle the end of the word.
+def usual_room(problem: DeclaredSystem, index: int) -> int:
+    """Events that stand before that of a margin where a border is read: one, unless a word of two has no room for it and the next."""
+    width = per_node(problem.contacts)
+    return 1 if problem.length > 2 or index % width == width - 2 else 0
 
-    `ahead` events stand before that of the margin: one, unless a word of two has no room for it and the one after.
-    """
+
+def turned(
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int, ahead: int
+) -> tuple[DeclaredSystem, np.ndarray, int]:
+    """The same border read from another event, so that what changes does not straddle the end of the word."""
     width = per_node(problem.contacts)
     place, column = divmod(index, width)
-    if ahead is None:
-        roomy = problem.length > 2 or problem.contacts <= column < width - 1
-        ahead = 1 if roomy else 0
     first = place - ahead
     if first % problem.length == 0 or not len(problem.word):
         return problem, u, index
@@ -87,7 +88,8 @@ def proposals(
     problem: DeclaredSystem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the rules propose."""
-    for ahead in (None,) if problem.length > 2 or not len(problem.word) else (None, 0, 1):
+    usual = usual_room(problem, index)  # a change may need more room on either side
+    for ahead in dict.fromkeys((usual, *range(min(ROOM, problem.length)))):
         read, v, place = turned(problem, u, p, index, ahead)
         orbit = DeclaredOrbit.of(read, v, p)
         for edit in edits_at(orbit, place):
@@ -145,7 +147,7 @@ def _escapes(problem: DeclaredSystem, u: np.ndarray, p: float, index: int) -> It
     """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
     if not len(problem.word):
         return
-    problem, u, index = turned(problem, u, p, index)
+    problem, u, index = turned(problem, u, p, index, usual_room(problem, index))
     orbit = DeclaredOrbit.of(problem, u, p)
     if problem.symmetric:
         wider, what = (
