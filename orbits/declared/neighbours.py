@@ -81,7 +81,9 @@ def _durations(orbit: DeclaredOrbit, nodes: np.ndarray, edit: Edit) -> np.ndarra
         passed = np.cumsum(durations[: change.stop - change.start + 1])
         instants = []
         for spot in change.spots:
-            place = (spot.node if spot.clock is None else spot.clock) - change.start
+            event = spot.node if spot.clock is None else spot.clock
+            assert event is not None  # nothing is met where events give way to others
+            place = event - change.start
             ahead = 0.5 * (passed[place + 1] - passed[place]) if spot.between else 0.0
             instants.append(passed[place] + ahead + spot.later * FIRST)
         whole = np.array(

@@ -63,7 +63,7 @@ def compared(kind: str, built_in: Any, declared: Any) -> Differences:
             n = min(len(a), len(b))
             multipliers = max(multipliers, float(np.abs(a[:n] - b[:n]).max()))
         here, there = _meeting(built_in, one), _meeting(declared, other)
-        if {branches.get(label) for label in here} != there:
+        if {branches.get(label, "") for label in here} != there:
             wrong.append(f"{one} joins {sorted(here)}, on the page {other} joins {sorted(there)}")
     return Differences(len(points), values, multipliers, wrong)
 
@@ -83,8 +83,8 @@ def _matched(
         gaps = {
             k: float(np.abs(numbers - others).max()) for k, (other, others) in left.items() if other == form
         }
-        best = min(gaps, key=lambda k: gaps[k], default=None)
-        if best is None or gaps[best] > near:
+        best = min(gaps, key=lambda k: gaps[k], default="")
+        if not best or gaps[best] > near:
             wrong.append(f"{label} {form} at {numbers} is not on the page")
         else:
             found[label] = best
@@ -106,7 +106,7 @@ def _point(point: Any) -> tuple[Any, np.ndarray]:
     return (point.kind, point.real), np.array([point.value])
 
 
-def _meeting(graph: Any, label: str) -> set[str | None]:
+def _meeting(graph: Any, label: str) -> set[str]:
     joined = {b for s in graph.switches if s.point == label for b in (s.source, s.target)}
     return joined | {graph.special[label].branch}
 

@@ -14,6 +14,8 @@ def test_a_dead_end_names_the_contact_and_what_simulation_does():
     (point,) = [p for p in graph.special.values() if p.kind == "wall-graze"]
     assert point.value == pytest.approx(1.7**2 - 1, abs=1e-10)  # the amplitude is the gap
     said = graph.branches[point.branch].problem.dead_end(point)
-    assert said.startswith("no motion that goes on from this one was found, neither by the rules of wall 'R' nor")
+    assert said.startswith(
+        "no motion that goes on from this one was found, neither by the rules of wall 'R' nor"
+    )
     assert "simulation stays with this word just below it" in said
     assert "just above it" in said
