@@ -108,6 +108,7 @@ def chunks(
                 values: dict[str, Any] = {part: getattr(chunk, part) for part in ARRAYS}
                 values["rows"] = chunk.rows.copy()
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})
+        chunk.before = history[-2] if len(history) > 1 else None
         retrace = yield chunk
         if retrace is not None:
             chunk = chunk.cut(retrace.count)
