@@ -185,7 +185,10 @@ def mark_segments(
                 flags[i - 2] |= HUMP
                 flags[i - 1] |= HUMP
         if i > 1:
-            if real and dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length):
+            if real and (
+                dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length)
+                or one_dips(rows, i, first_margin, short, length)
+            ):
                 flags[i - 2] |= SHALLOW
                 flags[i - 1] |= SHALLOW
             if kind in (MAP, FLOW) and first_margin > 0 and dips(before_that, before, damping, short, length):
@@ -209,6 +212,23 @@ def dips(left, middle, right, h1, h2):
     return -h1 < vertex < h2 and middle - 0.25 * slope * slope / bend < 0.0
 
 
+def one_dips(rows, i, first_margin, h1, h2):
+    """Whether one of the margins dips before point i, be others smaller or lost: by the parabola through the last three points."""
+    if not (h1 > 0.0 and h2 > 0.0):
+        return False
+    # a parabola through the three falls below the lowest of them by at most this part of the changes between them
+    share = 0.25 * max(h1 / h2, h2 / h1) ** 2
+    suspects = 0
+    for j in range(first_margin, rows.shape[1]):
+        a, b, c = rows[i - 2, j], rows[i - 1, j], rows[i, j]
+        suspects += min(min(a, b), c) - MARGIN < share * (abs(b - a) + abs(c - b))
+    if suspects > 0:
+        for j in range(first_margin, rows.shape[1]):
+            if dips(rows[i - 2, j] - MARGIN, rows[i - 1, j] - MARGIN, rows[i, j] - MARGIN, h1, h2):
+                return True
+    return False
+
+
 def turns_twice(here, there, mean):
     """Whether the cubic with these positive slopes at its ends, and this mean slope, falls in between: two folds."""
     bend = 3.0 * (here + there - 2.0 * mean)
@@ -228,9 +248,9 @@ def _compiled() -> Callable[..., Any]:
     sources.append(Path(__file__))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
-    return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(
-        copy_with(mark_segments, f"_{digest}", **inner)
-    )
+    fast = {"fastmath": {"reassoc", "contract", "nsz"}, **OPTIONS}
+    inner["one_dips"] = njit(**fast)(copy_with(one_dips, f"_{digest}", dips=inner["dips"]))
+    return njit(cache=True, **fast)(copy_with(mark_segments, f"_{digest}", **inner))
 
 
 def prepare() -> None:

@@ -70,7 +70,11 @@ def mark_segments(
         humps = steep[1:] & dips(sided * slopes[:-2], sided * slopes[1:-1], sided * slopes[2:], lengths)
         _mark_both(flags, humps, HUMP)
         if real:
-            _mark_both(flags, dips(smallest[:-2], smallest[1:-1], smallest[2:], lengths), SHALLOW)
+            shallow = dips(smallest[:-2], smallest[1:-1], smallest[2:], lengths)
+            # one of the margins, be others smaller or lost
+            for margin in rows.T[first_margin:] - MARGIN:
+                shallow |= dips(margin[:-2], margin[1:-1], margin[2:], lengths)
+            _mark_both(flags, shallow, SHALLOW)
         if kind in (MAP, FLOW) and first_margin > 0:
             _mark_both(flags, dips(damping[:-2], damping[1:-1], damping[2:], lengths), DAMPED)
 
