@@ -131,7 +131,7 @@ def bordered(
         sign = -1.0 if odd % 2 else 1.0
     else:
         sides[:], sign = _least(_equilibrated(work, border, units), sides), 0.0
-    if units is None:
+    if scales is None or units is None:
         np.negative(sides[:, 0], out=step)
         tangent[:] = sides[:, 1]
     else:
