@@ -177,7 +177,7 @@ class Watch(Examiner):
         found = set()
         for k in range(len(margins) - 2):
             three = margins[k : k + 3].T
-            found |= {j for j, values in enumerate(three) if dips(*values, lengths[k], lengths[k + 1])}
+            found |= {j for j, (a, b, c) in enumerate(three) if dips(a, b, c, lengths[k], lengths[k + 1])}
         return sorted(found)
 
     def _near_singular(self, chunk: Chunk) -> np.ndarray:
