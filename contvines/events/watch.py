@@ -176,8 +176,9 @@ class Watch(Examiner):
         lengths = [self.engine.norm(step) for step in np.diff(z, axis=0)]
         found = set()
         for k in range(len(margins) - 2):
-            three = margins[k : k + 3].T
-            found |= {j for j, (a, b, c) in enumerate(three) if dips(a, b, c, lengths[k], lengths[k + 1])}
+            for j, (left, middle, right) in enumerate(margins[k : k + 3].T):
+                if dips(left, middle, right, lengths[k], lengths[k + 1]):
+                    found.add(j)
         return sorted(found)
 
     def _near_singular(self, chunk: Chunk) -> np.ndarray:
