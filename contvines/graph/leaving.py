@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import copy
 from functools import partial
 from typing import Any
 
@@ -212,7 +212,8 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itrun."""
     at_start = point.index == 0
     outward = -point.tangent if at_start else point.tangent
-    leaving = replace(point, tangent=outward)
+    leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
+    leaving.tangent = outward
     if branch.real:
         seeds = _seeds(run, leaving)
         if not seeds:
