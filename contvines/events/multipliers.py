@@ -6,6 +6,8 @@ that cross at once are two events. A product of test functions would not change 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,21 +44,21 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
 
 def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:
     """The test function of the k-th multiplier of a sort at one point: positive past the circle."""
+    own: list[complex] = spectrum.tolist()
     if name == "pair":
-        part = spectrum[spectrum.imag > 0.0]
-        values = np.sort(np.abs(part) if kind == "map" else part.real)[::-1]
+        values = [abs(one) if kind == "map" else one.real for one in own if one.imag > 0.0]
     else:
-        values = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
+        values = [-one.real if name == "minus" else one.real for one in own if one.imag == 0.0]
     if len(values) < k:
-        if name == "pair" or len(values) == len(spectrum):
+        if name == "pair" or len(values) == len(own):
             return -LIMIT
         # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
         # as it does in conservative systems
         place = 0.0 if kind != "map" else (-1.0 if name == "minus" else 1.0)
-        return -min(float(np.abs(spectrum[spectrum.imag != 0.0] - place).min()), LIMIT)
-    value = float(values[k - 1])
+        return -min(*(abs(one - place) for one in own if one.imag != 0.0), LIMIT)
+    value = sorted(values, reverse=True)[k - 1]
     if kind == "map":
-        value = float(np.log(value)) if value > 0.0 else -LIMIT
+        value = (math.log(value) if value < math.inf else LIMIT) if value > 0.0 else -LIMIT
     return min(max(value, -LIMIT), LIMIT)
 
 
