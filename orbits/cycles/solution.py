@@ -96,7 +96,7 @@ class Solution(Claim, Cycle):
 
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
-        return replay_error(self, self._examined[2], self.multipliers)
+        return replay_error(self, lambda: (self._examined[2], self.multipliers))
 
 
 def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
