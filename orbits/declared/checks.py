@@ -55,7 +55,7 @@ def check_names(
     for contact in contacts:
         if not isinstance(contact, (Wall, DryFriction, Switch)):
             raise PageError(f"contacts has {contact!r}; it may have Wall, DryFriction and Switch")
-        what = _what(contact)
+        what = described(contact)
         if isinstance(contact, DryFriction) and len(tuple(contact.letters)) != 3:
             raise PageError(
                 f"{what}: letters = {contact.letters!r} must be three, for a turn, a stick and a slip"
@@ -90,7 +90,8 @@ def check_restitution(what: str, value: float) -> None:
         )
 
 
-def _what(contact: Any) -> str:
+def described(contact: Any) -> str:
+    """A contact as sentences name it."""
     if isinstance(contact, Wall):
         return f"wall {contact.letter!r}"
     return f"{'friction' if isinstance(contact, DryFriction) else 'switch'} {contact.name!r}"
@@ -127,7 +128,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     rates = e.motion_with(force)
     zero = {f"force_{e.contacts[j].name}": 0.0 for j in frictions}
     for j in frictions:
-        what = _what(e.contacts[j])
+        what = described(e.contacts[j])
         name = f"force_{e.contacts[j].name}"
         (effect,) = engine.derivatives([e.along(e.velocity[j], rates)], [force[j]])
         others = {n for n in zero if n != name}
@@ -148,7 +149,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     for j, contact in enumerate(e.contacts):
         if not isinstance(contact, Wall):
             continue
-        what = _what(contact)
+        what = described(contact)
         rate = e.along(e.gap[j], rates)
         if any(name in engine.variables_of(rate) for name in zero):
             raise PageError(
@@ -176,6 +177,24 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
             if flip != 0:
                 flips[j, k] = flip
     return flips
+
+
+def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
+    """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
+    e, draws = equations, Draws(equations, params)
+    force = {j: engine.variable(f"force_{e.contacts[j].name}") for j in e.velocity}
+    rates = e.motion_with(force)
+    found = set()
+    for j, surface in e.surface.items():
+        rate = e.along(surface, rates)
+        if any(name in engine.variables_of(rate) for f in force.values() for name in engine.variables_of(f)):
+            continue
+        for k, velocity in e.velocity.items():
+            table = draws.of([rate, velocity])
+            ratio = table[:, 0] / table[:, 1]
+            if np.all(np.isfinite(ratio)) and np.ptp(ratio) < SAME * np.abs(ratio).max():
+                found.add((j, k))
+    return frozenset(found)
 
 
 def _inside(rates: Sequence[Any], name: str) -> set[str]:
@@ -236,7 +255,7 @@ def check_mirror(
             )
 
     for j, contact in enumerate(e.contacts):
-        what, k = _what(contact), images[j]
+        what, k = described(contact), images[j]
         if isinstance(contact, Wall):
             here = draws.of([e.gap[j], e.restitution[j]])
             there = draws.of([e.gap[k], e.restitution[k]], states=-draws.states, clock=on)

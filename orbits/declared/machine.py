@@ -76,7 +76,8 @@ class Machine:
         images, turned = (
             (None, frozenset()) if mirror is None else checks.check_mirror(self.equations, params, mirror)
         )
-        self.alphabet = Alphabet(self.contacts, images, turned, flips)
+        rides = checks.riding(self.equations, params)
+        self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
         self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
 
     def __repr__(self) -> str:

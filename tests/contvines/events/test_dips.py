@@ -66,8 +66,12 @@ class TwoMargins(Line):
 
 
 @settings(max_examples=80, deadline=None)
-@example(-0.1875, 0.0078125, 0.015625)  # between the ends of two chunks, another margin is lost in the next segment
-@example(0.289122949011563, 0.00390625, 0.0078125)  # a margin that is nearly zero at a point, lost right behind it
+@example(
+    -0.1875, 0.0078125, 0.015625
+)  # between the ends of two chunks, another margin is lost in the next segment
+@example(
+    0.289122949011563, 0.00390625, 0.0078125
+)  # a margin that is nearly zero at a point, lost right behind it
 @given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.02), st.floats(1e-3, 0.02))
 def test_short_loss_of_a_margin_before_another_one_is_lost(centre, half, later):
     """The branch ends where the first of them is lost, though the next point lies beyond the other one."""
