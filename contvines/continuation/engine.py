@@ -119,7 +119,9 @@ class Engine:
     @staticmethod
     def join(u: np.ndarray, p: float) -> np.ndarray:
         """(u, p) as one vector."""
-        return np.append(u, p)
+        z = np.empty(len(u) + 1)
+        z[:-1], z[-1] = u, p
+        return z
 
     # ------------------------------------------------------------------ single points
     def solve(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
+FEW = 16  # numbers up to which Python is faster than numpy
 LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
 
 
@@ -22,6 +23,13 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     for ("real"), the first of these.
     """
     result = np.zeros((len(spectrum), 3), dtype=np.int64)
+    if spectrum.size <= FEW:
+        for i, row in enumerate(spectrum.tolist()):
+            for one in row:
+                place = _past(one, kind)
+                if place is not None:
+                    result[i, place] += 1
+        return result
     real = spectrum.imag == 0.0
     upper = spectrum.imag > 0.0
     if kind == "map":
@@ -40,6 +48,17 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
         for j in range(past.shape[1]):  # few columns, many rows
             result[:, place] += past[:, j]
     return result
+
+
+def _past(one: complex, kind: str) -> int | None:
+    """The column of `counts` to which a multiplier belongs."""
+    if one.imag == 0.0:
+        if one.real > (1.0 + PAST if kind == "map" else PAST):
+            return 0 if kind in ("map", "flow", "real") else None
+        return 1 if kind == "map" and one.real < -1.0 - PAST else None
+    if one.imag > 0.0 and ((kind == "map" and abs(one) > 1.0 + PAST) or (kind == "flow" and one.real > PAST)):
+        return 2
+    return None
 
 
 def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:
