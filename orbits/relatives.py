@@ -66,9 +66,7 @@ class Relatives:
         if self.word.repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
             periods = self.periods // 2 if self.forced else 1
             root = self._root(self.word.head(len(self.word) // 2), periods, symmetric=False)
-            found.append(
-                Symmetry("period-doubling", lambda u: self._rotated(u, self.length // 2, 1.0), root)
-            )
+            found.append(Symmetry("period-doubling", lambda u: self._rotated(u, self.length // 2, 1.0), root))
         return tuple(found)
 
     def _root(

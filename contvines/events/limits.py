@@ -139,7 +139,7 @@ def _characteristic(spectrum: np.ndarray) -> np.ndarray:
     coefficients[..., 0] = 1.0
     for k in range(m):
         coefficients[..., 1 : k + 2] -= spectrum[..., k : k + 1] * coefficients[..., : k + 1]
-    return coefficients.real
+    return np.real(coefficients)
 
 
 def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:
