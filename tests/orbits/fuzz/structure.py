@@ -67,7 +67,7 @@ def _point(graph: Any, point: Any, tally: Tally) -> None:
     if not (point.real and branch.real):
         return
     if not point.location_error < IN_PLACE:
-        tally.find("location", f"{where}: told error {point.location_error:.1e}")
+        tally.count("special points with a told error above 1e-8")
     outermost = np.abs(point.multipliers).max(initial=0.0)
     if point.replay is None or not point.replay < (1e-3 if outermost > 1e3 else 2e-5):
         if outermost > 1e8:
