@@ -12,7 +12,7 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
-from .examine import Examiner, changes
+from .examine import ROUNDING, Examiner, changes
 from .leaps import leap
 from .located import Located, Role
 from .multipliers import LIMIT, balance, counts, nearest_to_circle
@@ -157,6 +157,13 @@ class Watch(Examiner):
         found = self.examine(segment, real=real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
+        # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back wherever rounding has it
+        flat = ROUNDING * max(self.engine.parameter_unit(origin.p), abs(origin.p))
+        found = [
+            e
+            for e in found
+            if e.kind != "astray" and not (e.kind == "fold" and abs(e.point.p - origin.p) <= flat)
+        ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
         return before_stop(sorted(found, key=lambda e: e.position))
@@ -169,8 +176,9 @@ class Watch(Examiner):
         lengths = [self.engine.norm(step) for step in np.diff(z, axis=0)]
         found = set()
         for k in range(len(margins) - 2):
-            three = margins[k : k + 3].T
-            found |= {j for j, values in enumerate(three) if dips(*values, lengths[k], lengths[k + 1])}
+            for j, (left, middle, right) in enumerate(margins[k : k + 3].T):
+                if dips(left, middle, right, lengths[k], lengths[k + 1]):
+                    found.add(j)
         return sorted(found)
 
     def _near_singular(self, chunk: Chunk) -> np.ndarray:

@@ -8,8 +8,8 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, STICK
 from orbits.declared.attractor import attracted
-from orbits.declared.checks import described
 from orbits.declared.margins import border_kind, per_node
+from orbits.declared.names import described
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.stepper import SimulationError, Stepper
 from orbits.declared.system import DeclaredSystem

@@ -75,7 +75,9 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally) -> None:
                 "replay", f"{said}: {seen.message} (margin {orbit.margin:.1e}, multipliers to {growth:.1e})"
             )
         return
-    if not seen.error < 1e-9 * max(1.0, growth):
+    if not min(seen.error, orbit.replay()) < 1e-9 * max(
+        1.0, growth
+    ):  # beside a border positions tell more than nodes
         tally.find("replay", f"{said}: nodes differ by {seen.error:.1e} (multipliers to {growth:.1e})")
     if len(seen.multipliers):
         _compared(orbit, seen.multipliers, said, tally)
