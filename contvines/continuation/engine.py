@@ -119,7 +119,9 @@ class Engine:
     @staticmethod
     def join(u: np.ndarray, p: float) -> np.ndarray:
         """(u, p) as one vector."""
-        return np.append(u, p)
+        z = np.empty(len(u) + 1)
+        z[:-1], z[-1] = u, p
+        return z
 
     # ------------------------------------------------------------------ single points
     def solve(
@@ -270,6 +272,8 @@ class Engine:
         if rows.shape[-1] <= 2 * self.m:
             return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
+        if margins.ndim == 1:
+            return np.float64(min((value for value in margins.tolist() if value == value), default=np.inf))
         if margins.shape[-1] > 16:
             smallest = np.fmin.reduce(margins, axis=-1)
         else:  # few columns, many rows
