@@ -28,7 +28,6 @@ PATIENCE, LATE = (
 )  # how often, and for how many more periods, a motion that does not recur is looked at again
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
-ACROSS = 200  # starts across and up in a picture of basins, where no number is given
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
 
@@ -77,10 +76,8 @@ class Population:
         """The machine's name and settings."""
         return self.model.settings()
 
-    @property
-    def across(self) -> int:
-        """Starts across and up in a picture of basins that takes about a minute or less."""
-        return ACROSS
+    across = 200
+    """Starts across and up in a picture of basins where no number is given."""
 
     @property
     def brief(self) -> tuple[int, int]:

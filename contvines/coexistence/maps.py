@@ -18,7 +18,6 @@ NEAR = 1e-5  # a settled point lies so near to a solved cycle that it belongs to
 FAR = 1e4  # times the box: escaped
 GROWTH = 4000  # iterations for a Lyapunov exponent
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
-ACROSS = 200  # starts across and up in a picture of basins, where no number is given
 SIGMAS = 3.0
 EMBEDDED, EMBEDDED_IN = (
     6,
@@ -69,10 +68,8 @@ class MapPopulation:
         """The map's name."""
         return {"name": self.problem.name}
 
-    @property
-    def across(self) -> int:
-        """Starts across and up in a picture of basins that takes about a minute or less."""
-        return ACROSS
+    across = 200
+    """Starts across and up in a picture of basins where no number is given."""
 
     @property
     def brief(self) -> tuple[int, int]:

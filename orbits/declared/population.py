@@ -31,7 +31,6 @@ NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto 
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
 BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page are integrated one by one
-ACROSS = 60  # starts across and up in a picture of basins, where no number is given
 SIGMAS = 3.0  # an exponent so many standard errors above zero is chaos
 TOLD = 5  # looks after which a motion that does not recur is taken for the one that is known not to
 WANDERING = ("chaotic", "quasi-periodic", "slow")
@@ -68,10 +67,7 @@ class DeclaredPopulation:
         """The machine's page and settings."""
         return self.machine.settings()
 
-    @property
-    def across(self) -> int:
-        """Starts across and up in a picture of basins that takes about a minute or less."""
-        return ACROSS
+    across = 60  # starts each way in a picture of basins where no number is given
 
     @property
     def brief(self) -> tuple[int, int]:
