@@ -97,6 +97,9 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         return
     tally.count("multipliers at borders")
     sizes = [float(np.abs(m).max()) for _, m in seen]
+    if sizes[0] > UNBOUNDED / 100.0:
+        tally.count("borders of orbits too unstable to tell")
+        return
     if not np.all(np.abs(listed) < UNBOUNDED):
         if not sizes[-1] > 1.5 * sizes[-2]:
             tally.find("limit", f"{branch.label} at {point.label}: without bound, but {sizes[-3:]} beside it")

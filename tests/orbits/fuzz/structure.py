@@ -12,10 +12,9 @@ from orbits.starts.find import polish
 from tests.orbits.fuzz.motion import apart, shortest
 from tests.orbits.fuzz.tally import Tally
 
-ONE, VERY_NEAR = 1e-6, 1e-10  # motions this near are one; along a whole branch beside a border
+ONE = 1e-9  # motions this near are one
 CRITICAL = 1e-2  # multipliers as near to 1: beside a branch point two branches do share an orbit
 NOTHING = 1e-7  # extent of a branch, in parameter and unknowns
-BESIDE = 1e-6  # margins as small: a border, where two branches share an orbit
 ROUNDOFF = 1e-9
 IN_PLACE = 1e-8  # a special point's error
 
@@ -94,7 +93,6 @@ def _doubled(branches: list[Any], tally: Tally) -> None:
         if place is None:
             continue
         value, orbit = float(one.values[place]), one.orbit(place)
-        near = ONE if one.margin[place] > BESIDE else VERY_NEAR
         for other in branches[i + 1 :]:
             for q in np.flatnonzero((other.values[:-1] - value) * (other.values[1:] - value) <= 0.0):
                 step = other.values[q + 1] - other.values[q]
@@ -106,16 +104,15 @@ def _doubled(branches: list[Any], tally: Tally) -> None:
                 if solved is None:
                     continue
                 tally.count("pairs of branches compared")
-                if apart(orbit, solved) < near:
+                if apart(orbit, solved) < ONE:
                     tally.find("doubled", f"{one.label} and {other.label} have one motion at {value:.10g}")
 
 
 def _middle(branch: Any) -> int | None:
-    """The point furthest from the ends at which the orbit is no other branch's: not critical, and no border's."""
-    steps = np.minimum(np.arange(len(branch)), np.arange(len(branch))[::-1]).astype(float)
-    multipliers = branch.multipliers
-    if multipliers.shape[1]:
-        steps[np.abs(multipliers - 1.0).min(axis=1) < CRITICAL] = 0.0
-    steps[branch.margin < min(BESIDE, 0.5 * branch.margin.max())] = 0.0
-    place = int(np.argmax(steps))
-    return place if steps[place] > 0.0 else None
+    """The point of the largest margin: furthest from borders, and not critical, so that the orbit is no other branch's."""
+    margin = branch.margin.copy()
+    margin[[0, -1]] = 0.0
+    if branch.multipliers.shape[1]:
+        margin[np.abs(branch.multipliers - 1.0).min(axis=1) < CRITICAL] = 0.0
+    place = int(np.argmax(margin))
+    return place if margin[place] > 0.0 else None
