@@ -9,6 +9,7 @@ import contvines as cv
 from contvines.circles.averages import rotation_number
 from contvines.command.cli import app
 from orbits import Coupled
+from tests.contvines.loci.systems import R, generalized_henon, generalized_henon_at
 
 ANGLE, TWIST = 1.1, 0.4
 SHEAR = np.array([[1.3, 0.4], [-0.2, 0.8]])
@@ -191,15 +192,9 @@ def iterated(al, be, v, count):
 
 def test_circles_near_a_resonance_end_at_a_homoclinic_orbit_as_iteration_does():
     """Beside R1 of the generalized Henon map: fixed point x^2 (1 - R) + x (1 + be) = al, R1 at x = 2 / (R - 2)."""
-    R, x = -0.1, 2.0 / -2.1
-    al = x + (1 + R * x) * x + x * x - R * x * x + 0.03
+    al = generalized_henon_at(2.0)[2] + 0.03
     x = -1.0 + np.sqrt(1.0 + al)  # where be = 1 + R x, too
-    problem = cv.MapProblem(
-        lambda v, p: np.array([v[1], p.al - p.be * v[0] - v[1] ** 2 + R * v[0] * v[1]]),
-        [x, x],
-        {"al": al, "be": 1.0 + R * x - 3e-4},
-        parameter="be",
-    )
+    problem = generalized_henon([x, x], al, 1.0 + R * x - 3e-4)
     graph = cv.diagram(problem, over="be", within=(1.07, 1.09), depth=0)
     (point,) = graph.of_kind("neimark-sacker")
     assert point.value == pytest.approx(1.0 + R * x, abs=1e-12)
