@@ -10,6 +10,7 @@ import numpy as np
 from ..branches.special_point import SpecialPoint
 from ..hints import hinting
 from ..interrupts import listening
+from ..problems.registry import without_problem
 from .along import Reach, followed
 from .averages import rotation_number
 from .birth import Birth, born
@@ -52,7 +53,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
             f"{point.label} is a point of kind {point.kind}; invariant circles are born at Neimark-Sacker points"
         )
     if point.problem is None:
-        raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+        raise ValueError(without_problem(point.label))
     if count < 1:
         raise ValueError(f"count = {count} must be a whole number of at least 1")
     birth = born(point)

@@ -13,6 +13,7 @@ from .probing import pair_of
 from .problem import LocusProblem
 
 STEP = 1e-5  # of central differences of the conditions, relative to the unknowns
+ITERATIONS, HALVINGS = 16, 4  # of Newton's method
 CLOSE = 1e-9  # corrections below this no longer shrink: roundoff of the conditions
 
 
@@ -124,8 +125,8 @@ class Plane:
         """
         u, p, q = np.array(guess.u), guess.p, guess.q
         scale = self.locus.sizes_at(u, p, q)
-        last = np.inf
-        for _ in range(12):
+        last, change, halvings = np.inf, np.zeros(len(u) + 2), 0
+        for _ in range(ITERATIONS):
             if not self.at(Place(u, p, q)) < 1e300:
                 return None
             line, second = self.first, self.second
@@ -140,7 +141,13 @@ class Plane:
             values = np.array([f(self) for f in conditions])
             slopes = np.array([self._slope(conditions, here, d, scale) for d in directions])
             if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
-                return None
+                # beyond the end of what a condition can be asked for (a pair that has become real): half the way
+                halvings += 1
+                if halvings > HALVINGS or not change.any():
+                    return None
+                change = 0.5 * change
+                u, p, q = u - change[:-2], p - float(change[-2]), q - float(change[-1])
+                continue
             rows, right = [slopes[1:].T], [-values - slopes[0]]
             if not unfolded:
                 rows.append(np.array([[solved[1][1], solved[2][1], g]]))
@@ -154,6 +161,7 @@ class Plane:
             size = float((np.abs(change) / scale).max())
             if not size < 10.0 * max(reach, 1e-3):
                 return None
+            change[-2:] = dp, dq
             u, p, q = u + change[:-2], p + float(dp), q + float(dq)
             if size < 1e-14 or (size < close and size > 0.3 * last):
                 last = size
