@@ -76,7 +76,7 @@ def words():
             axes.annotate(event["event"], (turn, event["x"]), (side, (3 if wall else 6) * (1 if up else -1)), textcoords="offset points",
                           color="white" if wall else RED, weight="bold", ha="center", va="bottom" if up else "top")  # fmt: skip
         axes.set(
-            xlim=(time[0] - 0.05, time[-1] + 0.05), ylim=(-1.25, 1.25), xlabel="forcing periods", title=title
+            xlim=(time[0] - 0.12, time[-1] + 0.05), ylim=(-1.25, 1.25), xlabel="forcing periods", title=title
         )
         axes.grid(False)
         axes.set_ylabel("w" if i == 0 else "", rotation=0)
@@ -217,7 +217,7 @@ def grazing():
         axes.plot([0.5], [0.5], marker="v", color="black", ms=8, zorder=5)
         axes.annotate("VG", (0.5, 0.5), (4, -15), textcoords="offset points", weight="bold")
         axes.text(0.05, 0.22, "LR", color=BLUE, va="top")
-        axes.text(0.95, 0.6, "LR, virtual", color=BLUE, ha="right", va="top", fontsize=9)
+        axes.text(0.95, 0.54, "LR, virtual", color=BLUE, ha="right", va="top", fontsize=9)
         axes.text(
             other[0][1], 0.95, "LRs: with a stick", color=STICK, ha="right" if i == 0 else "left", va="bottom"
         )

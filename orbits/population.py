@@ -10,6 +10,7 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
+from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.attractors.recurrence import settle
@@ -19,6 +20,7 @@ from orbits.simulation.driver import SimulationError, machine, skip
 
 TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
 LONGEST = 24  # forcing periods of the longest recurrence looked for
+EMBEDDED = 6  # forcing periods of the longest unstable cycle looked for in a chaotic motion
 TOLERANCE = 1e-8  # difference of two states that counts as a return
 PATIENCE, LATE = (
     3,
@@ -132,6 +134,28 @@ class Population:
             workers=self.workers,
         )
         return _Sorting(self, params, p, states, result).sorted()
+
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Unstable cycles that the chaotic motion through a state passes near, each once, as problems with their unknowns.
+
+        Parameters
+        ----------
+        state : float array (S,)
+            `Motion.state` of a chaotic motion.
+        p : float
+        """
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        found: list[tuple[Any, np.ndarray]] = []
+        forms: list[tuple[Any, np.ndarray]] = []
+        for cycle in embedded_cycles(self.model, self.engine, params, state, EMBEDDED):
+            orbit = cycle.orbit.root()
+            problem = orbit.problem(self.parameter)
+            u = orbit.seed(problem)[0]
+            form = problem.canonical(u, p)
+            if not any(_alike(form, known) for known in forms):
+                forms.append(form)
+                found.append((problem, u))
+        return found
 
     def _shaking(self, params: np.ndarray) -> float:
         """Largest velocity of the cavity's centre that the excitation gives, as far as it is known beforehand."""
@@ -258,8 +282,7 @@ class _Sorting:
     def _same(self, motion: Motion, problem: Any, u: Any) -> bool:
         if motion.problem is None or problem is None:
             return motion.problem is problem
-        one, other = motion.problem.canonical(motion.u, self.p), problem.canonical(u, self.p)
-        return one[0] == other[0] and np.allclose(one[1], other[1], atol=1e-5)
+        return _alike(motion.problem.canonical(motion.u, self.p), problem.canonical(u, self.p))
 
     def _on(self, found: Attractor) -> tuple[np.ndarray, np.ndarray, bool]:
         """States of the attractor at whole forcing periods, of its mirror image, and whether its mean is free."""
@@ -309,6 +332,11 @@ class _Sorting:
         order = sorted((k for k in range(len(self.motions)) if first[k] < 1 << 60), key=first.__getitem__)
         place = {k: i for i, k in enumerate(order)}
         return [self.motions[k] for k in order], np.array([place[int(k)] for k in self.index]), self.mirrored
+
+
+def _alike(one: tuple[Any, np.ndarray], other: tuple[Any, np.ndarray]) -> bool:
+    """Whether two canonical forms are those of one motion."""
+    return one[0] == other[0] and np.allclose(one[1], other[1], atol=1e-5)
 
 
 def shares(index: np.ndarray, count: int) -> np.ndarray:

@@ -5,7 +5,8 @@ The same for every machine: closed form or declared, forced or self-excited.
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable
+from functools import cache, cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -64,24 +65,21 @@ class Relatives:
             found.append(self._mirrored_on(places))
         if self.word.repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
             periods = self.periods // 2 if self.forced else 1
-            root = self.sibling(self.word.head(len(self.word) // 2), periods, symmetric=False)
-            found.append(
-                Symmetry(
-                    "period-doubling",
-                    lambda u: self._rotated(u, self.length // 2, 1.0),
-                    lambda u: (root, root.reduce(self.expand(u))),
-                )
-            )
+            root = self._root(self.word.head(len(self.word) // 2), periods, symmetric=False)
+            found.append(Symmetry("period-doubling", lambda u: self._rotated(u, self.length // 2, 1.0), root))
         return tuple(found)
+
+    def _root(
+        self, word: CyclicWord, periods: int, symmetric: bool
+    ) -> Callable[[np.ndarray], tuple[Self, np.ndarray]]:
+        """Takes a solution that is its own image to the problem of a shorter word, made when it is first asked for, and there."""
+        made = cache(lambda: self.sibling(word, periods, symmetric))
+        return lambda u: (made(), made().reduce(self.expand(u)))
 
     def _mirrored_on(self, places: int) -> Symmetry:
         periods = 2 * self.periods * places // self.length if self.forced else 1
-        half = self.sibling(self.word.head(2 * places), periods, symmetric=True)
-        return Symmetry(
-            "symmetry-breaking",
-            lambda u: self._rotated(u, places, -1.0),
-            lambda u: (half, half.reduce(self.expand(u))),
-        )
+        root = self._root(self.word.head(2 * places), periods, symmetric=True)
+        return Symmetry("symmetry-breaking", lambda u: self._rotated(u, places, -1.0), root)
 
     def _mirror_places(self) -> list[int]:
         """Rotations that make the word its mirror image, an odd number of half forcing periods on, the least first.

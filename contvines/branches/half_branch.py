@@ -95,6 +95,17 @@ class HalfBranch:
         events = [(i + int(np.searchsorted(where, i, side="right")), e) for i, e in self.events]
         return HalfBranch(pieces + self._slice(here, len(self)), events, self.status)
 
+    def without(self, places: list[int]) -> HalfBranch:
+        """Without some points, and their events."""
+        gone = sorted(set(places))
+        pieces: list[Piece] = []
+        here = 0
+        for i in gone:
+            pieces += self._slice(here, i)
+            here = i + 1
+        events = [(i - int(np.searchsorted(gone, i)), e) for i, e in self.events if i not in gone]
+        return HalfBranch(pieces + self._slice(here, len(self)), events, self.status)
+
     def joined(self) -> Piece:
         """All points as one piece, in order."""
         if len(self.pieces) == 1 and not self.pieces[0].turned:

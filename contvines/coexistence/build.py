@@ -17,6 +17,7 @@ from ..interrupts import listening
 from .census import Counted, census
 from .places import scattered, unasked
 from .population import Population, population_of
+from .windows import Windows
 
 FEW = 16  # starts at each of the further values
 LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
@@ -42,8 +43,8 @@ def atlas(
     """One graph with every attractor that many simulated starts find, and all that hangs together with them.
 
     At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
-    exactly, or the root of a new one, which is traced with everything that leaves it. Then fewer starts are simulated at many
-    more values: in every stretch between two changes of what is known to be stable, and scattered evenly over the interval until
+    exactly, or the root of a new one, which is traced with everything that leaves it. Where motion is chaotic, unstable cycles near it
+    are traced, and kept where they lead to a stable one. Then fewer starts are simulated at many more values: in every stretch between two changes of what is known to be stable, and scattered evenly over the interval until
     `scan` values in a row have met nothing new.
 
     Parameters
@@ -61,8 +62,8 @@ def atlas(
     seed : int
         Of the starts and the further values; equal seeds give equal graphs.
     scan : int, optional
-        So many further values in a row must meet nothing new, with 16 starts each; 0 leaves them out. By default they
-        have as many starts as the given values together.
+        So many further values in a row must meet nothing new, with 16 starts each; 0 leaves them, and the unstable cycles, out. By
+        default they have as many starts as the given values together.
     depth, virtual, user_functions, journal, progress, settings
         As for :func:`contvines.diagram`.
 
@@ -106,6 +107,7 @@ def atlas(
     for p in where:
         looking.at(p, starts)
     if scan:
+        looking.beside_chaos()
         looking.between(scan)
         looking.everywhere(scan)
         looking.between(scan)
@@ -195,6 +197,10 @@ class _Looking:
         self.asked.append(p)
         self.found += counted
         return join(self.run, counted)
+
+    def beside_chaos(self) -> None:
+        """Follow unstable cycles out of the chaos that has been met, to where they are born with a stable one."""
+        Windows(self.run, self.population).beside(self.found)
 
     def between(self, most: int) -> None:
         """One value at least in each stretch between two changes, new changes included, up to `most` values."""

@@ -15,11 +15,12 @@ from .population import Population
 
 @dataclass
 class Counted:
-    """A motion that a census has met, ready to be joined to a graph."""
+    """A motion that a census has met, ready to be joined to a graph; `state` lies on it where it is chaotic."""
 
     attractor: Attractor
     problem: Any
     u: np.ndarray | None
+    state: np.ndarray | None = None
 
 
 def census(
@@ -38,8 +39,9 @@ def census(
     """
     key = f"census/{p!r}/{count}/{seed}"
     known = journal.recall(key)
-    if known is not None and all(entry is None or entry.get("factory") for entry in known["problems"]):
-        return _recalled(known, p)
+    recalled = None if known is None else _recalled(known, p)
+    if recalled is not None:
+        return recalled
     starts = population.starts(count, seed, p)
     if extra is not None:
         starts = np.concatenate([starts, extra])
@@ -59,7 +61,8 @@ def census(
             float(motion.exponent),
             float(motion.error),
         )
-        found.append(Counted(attractor, motion.problem, motion.u))
+        chaotic = motion.kind == "chaotic" and motion.state is not None
+        found.append(Counted(attractor, motion.problem, motion.u, motion.state if chaotic else None))
     journal.record(key, _recorded(found))
     return found
 
@@ -77,10 +80,13 @@ def _recorded(found: Sequence[Counted]) -> dict[str, Any]:
     for k, counted in enumerate(found):
         if counted.u is not None:
             record[f"u{k}"] = np.asarray(counted.u, dtype=float)
+        if counted.state is not None:
+            record[f"state{k}"] = np.asarray(counted.state, dtype=float)
     return record
 
 
-def _recalled(known: dict[str, Any], p: float) -> list[Counted]:
+def _recalled(known: dict[str, Any], p: float) -> list[Counted] | None:
+    """What was recorded; None where a problem takes functions of the user's that are not at hand."""
     found = []
     for k, description in enumerate(known["problems"]):
         attractor = Attractor(
@@ -88,5 +94,7 @@ def _recalled(known: dict[str, Any], p: float) -> list[Counted]:
             float(known["mirror_share"][k]), known["starts"][k], float(known["exponent"][k]), float(known["error"][k]),
         )  # fmt: skip
         problem = None if description is None else rebuild(description)
-        found.append(Counted(attractor, problem, known.get(f"u{k}")))
+        if description is not None and problem is None:
+            return None
+        found.append(Counted(attractor, problem, known.get(f"u{k}"), known.get(f"state{k}")))
     return found

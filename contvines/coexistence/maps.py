@@ -19,6 +19,12 @@ FAR = 1e4  # times the box: escaped
 GROWTH = 4000  # iterations for a Lyapunov exponent
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SIGMAS = 3.0
+EMBEDDED, EMBEDDED_IN = (
+    6,
+    4000,
+)  # longest unstable cycle looked for in a chaotic motion, and iterations of that
+NEAREST, APART = 400, 1e-3  # returns looked at for each length; they lie so far apart, relative to the box
+NEWTON, FROM_GUESS = 12, 0.05  # steps, and how far they may lead, relative to the box
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +38,7 @@ class Cycle:
     u: np.ndarray | None = field(default=None, repr=False)
     exponent: float = float("nan")
     error: float = float("nan")
+    state: np.ndarray | None = field(default=None, repr=False)
 
 
 class MapPopulation:
@@ -140,8 +147,53 @@ class MapPopulation:
             index[here & (index < 0)] = len(motions) - 1
         return motions, index, np.zeros(len(x), dtype=bool)
 
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Unstable cycles that the chaotic motion through a state passes near; see `contvines.coexistence.population`."""
+        step = _Iteration(self.problem, p, state[None])
+        run = np.empty((EMBEDDED_IN, self.problem.node))
+        run[0] = state
+        for k in range(1, EMBEDDED_IN):
+            run[k] = step.one(run[k - 1])
+        cycles: list[np.ndarray] = []
+        for period in range(1, EMBEDDED + 1):
+            gaps = np.abs(run[period:] - run[:-period]).max(axis=1)
+            free = np.ones(len(gaps), dtype=bool)
+            for i in np.argsort(gaps, kind="stable")[:NEAREST]:
+                if not free[i]:
+                    continue
+                free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > APART * self.size
+                points = self._solved(run[i : i + period], p)
+                if points is not None and not any(self._one(points, known) for known in cycles):
+                    cycles.append(points)
+        return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
+
+    def _solved(self, guess: np.ndarray, p: float) -> np.ndarray | None:
+        """The points, shape (n, d), of the cycle next to a guess, by Newton's method on the n-th image; None if there is none."""
+        x, n, functions = guess[0].copy(), len(guess), self.problem.functions
+        for _ in range(NEWTON):
+            points, image, matrix = [], x, np.eye(len(x))
+            for _ in range(n):
+                points.append(image)
+                matrix = functions.jacobian(image, p) @ matrix
+                image = functions.value(image, p)
+            if not np.all(np.isfinite(image)):
+                return None
+            step = np.linalg.lstsq(matrix - np.eye(len(x)), x - image, rcond=None)[0]
+            if np.abs(step).max() <= RETURN * self.size:
+                return np.array(points)
+            x = x + step
+            if np.abs(x - guess[0]).max() > FROM_GUESS * self.size:
+                return None
+        return None
+
+    def _one(self, points: np.ndarray, known: np.ndarray) -> bool:
+        """Whether a cycle is a known one, or that one several times round."""
+        gaps = np.abs(known - points[0]).max(axis=1)
+        return len(points) % len(known) == 0 and bool(gaps.min() < NEAR * self.size)
+
     def _wandering(self, x: np.ndarray, p: float) -> Cycle:
         """A motion that does not recur, told by the growth of a tangent vector; blocks give the error of the mean."""
+        state = x.copy()
         functions = self.problem.functions
         vector = np.ones(self.problem.node) / np.sqrt(self.problem.node)
         logs = np.empty(GROWTH)
@@ -159,7 +211,7 @@ class MapPopulation:
             kind = "quasi-periodic"
         else:
             kind = "slow"
-        return Cycle(kind, exponent=mean, error=error)
+        return Cycle(kind, exponent=mean, error=error, state=state)
 
 
 class _Iteration:

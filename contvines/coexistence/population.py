@@ -7,10 +7,14 @@ The contract, in words:
 2. ``population.settle(starts, p)`` returns ``(motions, index, mirrored)``: the motions reached, each once; which of them each
    start reaches; and whether it is the mirror image that it reaches. The result depends on the starts alone.
 3. A motion has ``kind``, ``word``, ``periods``, ``exponent`` and ``error`` (the largest Lyapunov exponent per period and its
-   standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None.
+   standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None;
+   a chaotic one has a ``state`` from which it goes on.
 4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
 5. ``population.brief`` is how many values and how many starts at each a brief look after a diagram takes: few, so that it costs a
    fraction of the diagram.
+6. ``population.embedded(motion.state, p)`` returns ``(problem, u)`` of unstable cycles that a chaotic motion passes near, each once.
+   Windows of periodic motion are born in pairs of which the unstable one lives on in the chaos beside them: traced back, it
+   leads into windows that are too narrow for starts to meet.
 """
 
 from __future__ import annotations
@@ -40,6 +44,8 @@ class Motion(Protocol):
     def exponent(self) -> float: ...
     @property
     def error(self) -> float: ...
+    @property
+    def state(self) -> np.ndarray | None: ...
 
 
 class Population(Protocol):
@@ -60,6 +66,8 @@ class Population(Protocol):
     def starts(self, count: int, seed: int, p: float) -> np.ndarray: ...
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[Sequence[Motion], np.ndarray, np.ndarray]: ...
+
+    def embedded(self, state: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
 
 
 def population_of(thing: Any, over: str | None = None, **parameters: float) -> Population:

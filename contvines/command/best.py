@@ -60,7 +60,14 @@ def choose(
     import dataclasses
 
     from contvines.command.compose import say
-    from contvines.command.survey_study import family_of, outcomes_of, plan_and_machine, units_of
+    from contvines.command.survey_study import (
+        family_of,
+        options_of,
+        outcomes_of,
+        plan_and_machine,
+        units_of,
+        ways_of,
+    )
     from contvines.command.surveying import surveyed
     from contvines.survey.work import Job, work
     from orbits.design import best
@@ -86,8 +93,7 @@ def choose(
             f"--best {text!r}: the survey has no outcome {outcome}; it has {', '.join(found.columns) or 'none'}."
         )
     job = Job(
-        family_of(study, model), study.parameter, study.within, tuple(outcomes_of(study)), study.survey.gaps, study.survey.values,
-        study.survey.starts, {"depth": study.depth, "virtual": study.virtual, "settings": study.settings},
+        family_of(study, model), study.parameter, study.within, tuple(outcomes_of(study)), options=options_of(study), **ways_of(study),
     )  # fmt: skip
 
     def evaluate(values: dict[str, float]) -> dict[str, float]:

@@ -13,6 +13,7 @@ import typer
 
 from contvines.command import (
     basins,
+    calibrate,
     chart,
     circle,
     design,
@@ -28,6 +29,7 @@ from contvines.command import (
     show,
     survey,
     sweep,
+    transient,
 )
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
@@ -81,6 +83,8 @@ app.command()(export.export)
 app.command()(report.report)
 app.command()(sweep.sweep)
 app.command()(survey.survey)
+app.command()(calibrate.calibrate)
+app.command()(transient.transient)
 app.command()(design.design)
 app.command()(editor_schema.schema)
 

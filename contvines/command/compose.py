@@ -80,8 +80,10 @@ def first_orbit(study: "Study") -> Any:
     if study.machine is None:
         compile_ahead(study.name, "contvines.events.scan:prepare")
     try:
-        if study.word is None:
+        if study.word is None and study.machine is not None:
             return machine(study).attractor(study.state, **loose(study)).found
+        if study.word is None:
+            return _settled(study)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", StartWarning)
@@ -91,6 +93,23 @@ def first_orbit(study: "Study") -> Any:
         return orbit
     except ValueError as error:
         raise ValueError(f"{study.path}: [start] {error}") from error
+
+
+def _settled(study: "Study") -> Any:
+    """The motion that settles from rest, where the study begins or elsewhere in its interval; told on stderr."""
+    from orbits.design import Family
+
+    model = machine(study)
+    orbit = Family(model, loose=loose(study), over=study.parameter, within=study.within)({})
+    amount = orbit.model.amount(study.parameter, orbit.params)
+    unit = model.units.get(study.parameter, "")
+    print(
+        f"contvines: {study.path}: [start] has no word; begun with the motion that settles from rest at {study.parameter} = "
+        + f"{amount:g} {unit}".rstrip()
+        + f": {orbit.word.text if len(orbit.word) else 'the absorber does not move in its cavity'}.",
+        file=sys.stderr,
+    )
+    return orbit
 
 
 def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":

@@ -64,11 +64,11 @@ LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
 
 
 class StartSection(Section):
-    """`[start]`: the first orbit; further keys are parameters and override the model's."""
+    """`[start]`: the first orbit (without a word the motion that settles from rest); further keys override the model's parameters."""
 
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
 
-    word: Annotated[str, Field(max_length=LONGEST)]
+    word: Annotated[str, Field(max_length=LONGEST)] | None = None
     periods: Annotated[int, Field(ge=1, le=4096)] = 1
     guess: list[list[float]] | None = None
 
@@ -124,6 +124,7 @@ class SurveySection(Section):
     gaps: Annotated[int, Field(ge=0, le=1000)] = 5
     values: Annotated[int, Field(ge=0, le=1000)] = 0
     starts: Annotated[int, Field(ge=1, le=1000)] = 1
+    atlas: bool = False
 
 
 class StudySections(Section):

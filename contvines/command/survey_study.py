@@ -86,6 +86,11 @@ def outcomes_of(study: Study) -> list[Any]:
     for said in study.survey.outcomes:
         file, _, function = said.rpartition(":")
         try:
+            if said.startswith("share:") and not (study.survey.atlas or study.survey.values):
+                raise ValueError(
+                    f"[survey] outcomes: {said!r} is a share of simulated starts, and there are none: with atlas = true an atlas of each "
+                    "machine is made, with values = 9 and starts = 16 each is simulated at nine values"
+                )
             if file.endswith(".py"):
                 found.append(UserOutcome.of(study.path.parent / file, function))
             elif study.machine is not None and said in OWN:
@@ -98,6 +103,24 @@ def outcomes_of(study: Study) -> list[Any]:
         except ValueError as error:
             raise ValueError(f"{study.path}: {error}.") from None
     return found
+
+
+def asked_of(study: Study) -> dict[str, Any]:
+    """What decides the rows of a study's survey beside its plan, ready for JSON."""
+    survey = study.survey.model_dump(exclude={"vary", "atlas"})
+    atlas = {"atlas": study.atlas.model_dump()} if study.survey.atlas else {}
+    return {"study": study.describe(), "survey": survey, **atlas}
+
+
+def ways_of(study: Study) -> dict[str, Any]:
+    """How each machine of a study's survey is looked at: where it is simulated, and whether an atlas is made of it."""
+    said = {key: getattr(study.survey, key) for key in ("gaps", "values", "starts")}
+    return {**said, "atlas": study.atlas.model_dump() if study.survey.atlas else None}
+
+
+def options_of(study: Study) -> dict[str, Any]:
+    """Options of each machine's diagram or atlas."""
+    return {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
 
 
 def units_of(study: Study, model: Any) -> dict[str, str]:

@@ -13,16 +13,22 @@ if TYPE_CHECKING:
 def surveyed(study: "Study", target: Path, workers: int | None, cluster: str | None, quiet: bool) -> "Survey":
     """The survey of a study, from its file if that is finished."""
     from contvines.command.compose import Interrupted, say
-    from contvines.command.survey_study import family_of, outcomes_of, plan_and_machine, units_of
+    from contvines.command.survey_study import (
+        asked_of,
+        family_of,
+        options_of,
+        outcomes_of,
+        plan_and_machine,
+        units_of,
+        ways_of,
+    )
     from contvines.survey import load_survey
     from contvines.survey.survey import digest_of
     from contvines.survey.survey import survey as run
     from orbits.precompile import compile_ahead
 
     plan, model = plan_and_machine(study)
-    asked = {"study": study.describe(), "survey": study.survey.model_dump(exclude={"vary"})}
-    options = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
-    simulated = {key: getattr(study.survey, key) for key in ("gaps", "values", "starts")}
+    asked = asked_of(study)
     if target.exists():
         kept = load_survey(target)
         if kept.about.get("digest") == digest_of(plan, study.parameter, study.within, asked):
@@ -36,7 +42,7 @@ def surveyed(study: "Study", target: Path, workers: int | None, cluster: str | N
         try:
             found = run(
                 family, plan, over=study.parameter, within=study.within, outcomes=outcomes, workers=workers, cluster=cluster,
-                journal=journal, units=units_of(study, model), about=asked, progress=tell, **simulated, **options,
+                journal=journal, units=units_of(study, model), about=asked, progress=tell, **ways_of(study), **options_of(study),
             )  # fmt: skip
         except KeyboardInterrupt:
             raise Interrupted(

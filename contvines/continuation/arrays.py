@@ -10,11 +10,15 @@ import math
 
 import numpy as np
 
+from .lengths import Metric
 
-def correction_size(step: np.ndarray, u: np.ndarray, p: float, scale: np.ndarray) -> float:
+
+def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -> float:
     """Largest entry of a correction, relative to scale + abs(unknown); infinity where it is not finite."""
-    part = step[:-1] / (scale[:-1] + np.abs(u))
-    size = max(float(np.maximum.reduce(np.abs(part))), abs(float(step[-1])) / (float(scale[-1]) + abs(p)))
+    part = step[:-1] / (metric.scale[:-1] + np.abs(u))
+    size = max(
+        float(np.maximum.reduce(np.abs(part))), abs(float(step[-1])) / (float(metric.scale[-1]) + abs(p))
+    )
     return size if size - size == 0.0 else math.inf
 
 
@@ -38,13 +42,11 @@ def plane(
     tangent: np.ndarray,
     u: np.ndarray,
     p: float,
-    weights: np.ndarray,
-    metric_u: float,
-    metric_p: float,
+    metric: Metric,
     border: np.ndarray,
 ) -> float:
     """See lengths."""
-    np.multiply(weights, tangent, out=border)
+    np.multiply(metric.weights, tangent, out=border)
     return float(border[:-1] @ u) + border[-1] * p
 
 
@@ -55,15 +57,13 @@ def compare(
     guess_u: np.ndarray,
     p: float,
     guess: float,
-    weights: np.ndarray,
-    metric_u: float,
-    metric_p: float,
+    metric: Metric,
 ) -> tuple[float, float, float]:
     """See lengths."""
-    weighted = weights * tangent
+    weighted = metric.weights * tangent
     norm = math.sqrt(float(weighted @ tangent))
     gap = u - guess_u
-    error = math.sqrt(float((weights[:-1] * gap) @ gap) + metric_p * (p - guess) ** 2)
+    error = math.sqrt(float((metric.weights[:-1] * gap) @ gap) + metric.of_parameter * (p - guess) ** 2)
     return norm, float(weighted @ before) / norm, error
 
 
@@ -71,12 +71,10 @@ def orient(
     tangent: np.ndarray,
     along: np.ndarray,
     border: np.ndarray,
-    weights: np.ndarray,
-    metric_u: float,
-    metric_p: float,
+    metric: Metric,
 ) -> tuple[float, float, float]:
     """See lengths."""
-    weighted = weights * tangent
+    weighted = metric.weights * tangent
     norm = math.sqrt(float(weighted @ tangent)) if np.isfinite(tangent).all() else math.inf
     return norm, float(weighted @ along), float(border @ tangent)
 
@@ -90,12 +88,10 @@ def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> fl
     return float(guess[-1])
 
 
-def distance(
-    u: np.ndarray, p: float, guess: np.ndarray, weights: np.ndarray, metric_u: float, metric_p: float
-) -> float:
+def distance(u: np.ndarray, p: float, guess: np.ndarray, metric: Metric) -> float:
     """See lengths."""
     gap = u - guess[:-1]
-    return math.sqrt(float((weights[:-1] * gap) @ gap) + metric_p * (p - guess[-1]) ** 2)
+    return math.sqrt(float((metric.weights[:-1] * gap) @ gap) + metric.of_parameter * (p - guess[-1]) ** 2)
 
 
 def put(to: np.ndarray, source: np.ndarray, divisor: float) -> None:
@@ -112,9 +108,7 @@ def extrapolate(
     tangents: np.ndarray,
     i: int,
     h: float,
-    weights: np.ndarray,
-    metric_u: float,
-    metric_p: float,
+    metric: Metric,
     u: np.ndarray,
 ) -> float:
     """See lengths."""
@@ -123,8 +117,10 @@ def extrapolate(
         there = tangents[i - 2]
         chord, bend = points[i - 1] - points[i - 2], here - there
         change = value - values[i - 2]
-        turn = float((weights * bend) @ bend)
-        d = math.sqrt(float((weights[:-1] * chord) @ chord) + metric_p * change**2) * (1.0 + turn / 24.0)
+        turn = float((metric.weights * bend) @ bend)
+        d = math.sqrt(float((metric.weights[:-1] * chord) @ chord) + metric.of_parameter * change**2) * (
+            1.0 + turn / 24.0
+        )
         if d > 0.0 and turn < 1.0 and h < 4.0 * d:
             share = h / d
             a = h * (1.0 + 2.0 * share + share * share)

@@ -19,12 +19,13 @@ from .step_rule import BY_ANGLE, StepRule, by_angle
 
 
 class Bound(NamedTuple):
-    """``march``, ``solve``, ``point`` and ``chord_point`` with the kernels of a problem inside."""
+    """``march`` and ``point`` with the kernels of a problem inside.
+
+    There are two, as each is compiled together with all that it calls.
+    """
 
     march: Callable[..., Any]
-    solve: Callable[..., Any]
     point: Callable[..., Any]
-    chord_point: Callable[..., Any]
 
 
 # Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
@@ -74,9 +75,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         improve = copy_with(corrector.improve, **sums)
         correct = copy_with(corrector.correct, improve=improve, **sums, **functions)
         march = copy_with(loop.march, correct=correct, judge=rule.judge, **sums, **functions)
-        solve = copy_with(corrector.solve, improve=improve, **sums, **functions)
-        point = copy_with(corrector.point, solve=solve, **sums)
-        return Bound(march, solve, point, copy_with(corrector.chord_point, point=point, **sums))
+        return Bound(march, copy_with(corrector.point, improve=improve, **sums, **functions))
     from numba import njit
 
     from ..problems.kernels import kernels_digest
@@ -93,9 +92,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
     kept = njit(cache=not own, **OPTIONS)
     march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
-    solve = compile_(copy_with(corrector.solve, suffix, improve=improve, **sums, **functions))
-    point = compile_(copy_with(corrector.point, suffix, solve=solve, **sums))
-    return Bound(march, solve, point, compile_(copy_with(corrector.chord_point, suffix, point=point, **sums)))
+    return Bound(march, compile_(copy_with(corrector.point, suffix, improve=improve, **sums, **functions)))
 
 
 def compiled_rule(rule: StepRule) -> Any:

@@ -14,7 +14,8 @@ from .status import Status
 class Chunk:
     """Consecutive points of a branch; the first one is the last point of the chunk before.
 
-    The loop writes the rows of the next chunk to the same place: copy what is needed later.
+    The loop writes the rows of the next chunk to the same place: copy what is needed later. ``before`` is the point before the
+    first one, where there is one.
     """
 
     points: np.ndarray
@@ -24,6 +25,7 @@ class Chunk:
     signs: np.ndarray
     corrections: np.ndarray
     status: Status
+    before: Solved | None = None
 
     def __len__(self) -> int:
         return len(self.values)
@@ -37,6 +39,22 @@ class Chunk:
             self.rows[:n],
             self.signs[:n],
             self.corrections[:n],
+            self.status,
+            self.before,
+        )
+
+    def widened(self) -> Chunk:
+        """The chunk with the point before its first one, where there is one."""
+        first = self.before
+        if first is None:
+            return self
+        return Chunk(
+            np.vstack([first.u, self.points]),
+            np.append(first.p, self.values),
+            np.vstack([first.tangent, self.tangents]),
+            np.vstack([first.row, self.rows]),
+            np.append(first.sign, self.signs),
+            np.append(first.correction, self.corrections),
             self.status,
         )
 

@@ -3,9 +3,13 @@
 Runs compiled and interpreted: see :mod:`contvines.continuation.march`.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+
 from .lengths import add, correction_size, distance, hermite, orient, put, remainder
 
-# what `solve` does
+# what `point` does
 LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
 
 TIGHT = 1e-12  # tolerance of single points
@@ -14,6 +18,16 @@ ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative t
 STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
 STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
 HUGE = 1e6  # larger corrections are a divergence
+
+
+class Scratch(NamedTuple):
+    """Work space of the loop: unknowns (N,), then a row of the bordered system, its solutions and a guess (N + 1,)."""
+
+    u: np.ndarray
+    border: np.ndarray
+    step: np.ndarray
+    tangent: np.ndarray
+    guess: np.ndarray
 
 
 def linearise(data, u, p, work):
@@ -31,7 +45,7 @@ def inspect(data, u, p, work, row):
     raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
-def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
+def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
     """Add a Newton correction to u and p, unless Newton's method diverges.
 
     Parameters
@@ -45,8 +59,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
     before : float
         Size of the correction before this one.
     tolerance : float
-    scale : ndarray, shape (N + 1,)
-        Typical sizes of unknowns and parameter.
+    metric : Metric
     noise : float
         Accuracy to which corrections can be had at all, because the equations are not smooth below it; 0 for roundoff.
 
@@ -58,7 +71,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
     verdict : int
         1 when converged, -1 when diverged, else 0.
     """
-    size = correction_size(step, u, p, scale)
+    size = correction_size(step, u, p, metric)
     if not size < HUGE:
         return p, size, -1
     if sweep > 1 and size > 2.0 * before and size > max(STALLED, 10.0 * noise):
@@ -79,7 +92,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, scale, noise):
     return p, size, 0
 
 
-def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, scale, noise):
+def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, metric, noise):
     """Newton's method for F(u, p) = 0, border.(u, p) = target; u is updated in place.
 
     Each sweep is one linearisation and one elimination, which gives the correction and the tangent.
@@ -102,149 +115,86 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
             return p, -2, sign, size
         gap = remainder(border, u, p, target)
         sign = bordered(data, work, border, gap, step, tangent)
-        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, scale, noise)
+        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, metric, noise)
         if verdict != 0:
             return p, sweep + 1 if verdict > 0 else -1, sign, size
     return p, -1, sign, size
 
 
-def solve(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, row, what, scale, noise):
-    """A single solution, and everything about it.
+def point(data, work, what, chord, place, border, along, max_sweeps, u, tangent, row, metric, scratch, noise):
+    """A single solution, and everything about it, or a part of that: one function, as each is compiled with all that it calls.
 
-    EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method (none: the point is good as it is), then linearisation,
-    elimination and multipliers once more at the solution. LINEARISE: the residual only. ELIMINATE: with the linearisation at hand.
+    EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method from a place on a chord (none: it is good as it is), then
+    linearisation, elimination and multipliers once more at the solution; `tangent` is a unit vector with <along, tangent> >= 0.
+    LINEARISE: the residual only. ELIMINATE: with the linearisation at hand.
+
+    Parameters
+    ----------
+    data, work
+        Of the problem.
+    what : int
+    chord : ndarray, shape (4, N + 1)
+        Of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its tangent likewise.
+    place : (float, float, float)
+        s, start and length: border.(u, p) is to be start + s length. With length 0 the first end is a guess, and no more.
+    border, along : ndarray, shape (N + 1,)
+    max_sweeps : int
+    u, tangent, row : ndarray
+        Filled.
+    metric : Metric
+    scratch : Scratch
+    noise : float
 
     Returns
     -------
     p : float
     sweeps : int
-        As of ``correct``.
+        Number of sweeps; -1: no convergence; -2: not evaluable; -3: the tangent is not finite; -4: the point found belongs to another branch.
     residual : float
         0 if there was no linearisation.
     sign : float
-        Of the bordered determinant; 0 if there was no elimination.
+        Of the bordered determinant, for the tangent; 0 if there was no elimination.
     size : float
         Of the last correction.
     """
+    s, start, length = place
+    step = scratch.step
+    p = hermite(chord, s, u, scratch.guess)
     residual = 0.0
     sign = 0.0
     size = 0.0
     settled = max_sweeps == 0
-    for sweep in range(max_sweeps + 1):
-        gap = target
+    sweep = 0
+    while True:
+        gap = start + s * length
         if what != ELIMINATE:
             residual = linearise(data, u, p, work)
             if what == LINEARISE:
                 return p, sweep, residual, sign, size
             if not residual < 1e300:
                 return p, -2, residual, sign, size
-            gap = remainder(border, u, p, target)
+            gap = remainder(border, u, p, gap)
         sign = bordered(data, work, border, gap, step, tangent)
         if settled:
-            if what == EVERYTHING:
-                inspect(data, u, p, work, row)
-            return p, sweep, residual, sign, size
-        if sweep < max_sweeps:
-            p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, scale, noise)
-            if verdict < 0:
-                break
-            settled = verdict > 0
-    return p, -1, residual, sign, size
-
-
-def point(
-    data,
-    work,
-    u,
-    p,
-    border,
-    target,
-    along,
-    max_sweeps,
-    step,
-    tangent,
-    row,
-    scale,
-    weights,
-    metric_u,
-    metric_p,
-    noise,
-):
-    """`solve` for everything, to roundoff; then `tangent` is a unit vector with <along, tangent> >= 0.
-
-    Returns
-    -------
-    p, sweeps, residual, sign, size
-        As `solve` does; `sign` belongs to the tangent. sweeps = -3: the tangent is not finite.
-    """
-    p, sweeps, residual, sign, size = solve(
-        data, work, u, p, border, target, TIGHT, max_sweeps, step, tangent, row, EVERYTHING, scale, noise
-    )
-    if sweeps >= 0:
-        norm, same, across = orient(tangent, along, border, weights, metric_u, metric_p)
-        if not norm < 1e300:
-            return p, -3, residual, sign, size
-        if same < 0.0:
-            norm, across = -norm, -across
-        put(tangent, tangent, norm)
-        if across < 0.0:
-            sign = -sign
-    return p, sweeps, residual, sign, size
-
-
-def chord_point(
-    data,
-    work,
-    chord,
-    s,
-    start,
-    length,
-    border,
-    along,
-    u,
-    step,
-    tangent,
-    guess,
-    row,
-    scale,
-    weights,
-    metric_u,
-    metric_p,
-    noise,
-):
-    """The point of a branch whose distance along a chord is `s` times its length, to roundoff; see `point`.
-
-    Parameters
-    ----------
-    chord : ndarray, shape (4, N + 1)
-        Of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its tangent likewise.
-    s, start, length : float
-        border.(u, p) is to be start + s length.
-
-    Returns
-    -------
-    p, sweeps, residual, sign, size
-        sweeps = -4: the point found belongs to another branch.
-    """
-    p = hermite(chord, s, u, guess)
-    p, sweeps, residual, sign, size = point(
-        data,
-        work,
-        u,
-        p,
-        border,
-        start + s * length,
-        along,
-        40,
-        step,
-        tangent,
-        row,
-        scale,
-        weights,
-        metric_u,
-        metric_p,
-        noise,
-    )
-    if sweeps >= 0 and distance(u, p, guess, weights, metric_u, metric_p) > STRAY * length:
-        sweeps = -4
-    return p, sweeps, residual, sign, size
+            break
+        if sweep == max_sweeps:
+            return p, -1, residual, sign, size
+        p, size, verdict = improve(u, p, step, sweep, residual, size, TIGHT, metric, noise)
+        if verdict < 0:
+            return p, -1, residual, sign, size
+        settled = verdict > 0
+        sweep += 1
+    if what == ELIMINATE:
+        return p, sweep, residual, sign, size
+    inspect(data, u, p, work, row)
+    norm, same, across = orient(tangent, along, border, metric)
+    if not norm < 1e300:
+        return p, -3, residual, sign, size
+    if same < 0.0:
+        norm, across = -norm, -across
+    put(tangent, tangent, norm)
+    if across < 0.0:
+        sign = -sign
+    if length > 0.0 and distance(u, p, scratch.guess, metric) > STRAY * length:
+        sweep = -4
+    return p, sweep, residual, sign, size

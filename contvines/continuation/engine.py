@@ -15,6 +15,7 @@ from . import corrector
 from . import march as source
 from .approach import approach
 from .binding import bind
+from .lengths import Metric
 from .settings import Settings
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
@@ -73,11 +74,9 @@ class Engine:
         self.row_sizes = np.ones(n) if scales is None else scales.rows
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
-        self.metric_u, self.metric_p = 1.0 / n, float(self.weights[n])
-        self.step, self.tangent, self.border = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
-        self.u = np.zeros(n)
+        self.metric = Metric(self.weights, self.scale, 1.0 / n, float(self.weights[n]))
+        self.scratch = corrector.Scratch(np.zeros(n), *np.zeros((4, n + 1)))
         control = np.zeros(source.CONTROL_SIZE)
-        control[source.METRIC_U], control[source.METRIC_P] = self.metric_u, self.metric_p
         control[source.ANGLE] = settings.angle
         control[source.MIN_STEP], control[source.MAX_STEP] = settings.min_step, settings.max_step
         # a tolerance below what the noise of the equations allows is none
@@ -88,6 +87,7 @@ class Engine:
         control[source.NOISE] = self.noise
         self.control = control
         self._rows = np.zeros((0, self.row_size))
+        self.guess = np.zeros((4, n + 1))  # a chord of which the first end alone is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
 
@@ -119,7 +119,9 @@ class Engine:
     @staticmethod
     def join(u: np.ndarray, p: float) -> np.ndarray:
         """(u, p) as one vector."""
-        return np.append(u, p)
+        z = np.empty(len(u) + 1)
+        z[:-1], z[-1] = u, p
+        return z
 
     # ------------------------------------------------------------------ single points
     def solve(
@@ -154,53 +156,39 @@ class Engine:
         sweeps: int,
         along: np.ndarray | None,
     ) -> Solved | None:
-        here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
-        here[:] = u
-        with self.section:
-            p, sweeps, residual, sign, size = self.bound.point(
-                self.data,
-                self.work,
-                here,
-                p,
-                border,
-                target,
-                self.nothing if along is None else along,
-                sweeps,
-                self.step,
-                tangent,
-                row,
-                self.scale,
-                self.weights,
-                self.metric_u,
-                self.metric_p,
-                self.noise,
-            )
-        return Solved(here, p, tangent, row, sign, residual, size) if sweeps >= 0 else None
+        self.guess[0, : self.n], self.guess[0, self.n] = u, p
+        return self._point(self.guess, (0.0, target, 0.0), border, along, sweeps)
 
     def on_chord(
         self, chord: np.ndarray, s: float, start: float, length: float, border: np.ndarray, along: np.ndarray
     ) -> Solved | None:
-        """The point of a branch at a distance along a chord; see :func:`contvines.continuation.corrector.chord_point`."""
+        """The point of a branch at a distance along a chord; see :func:`contvines.continuation.corrector.point`."""
+        return self._point(chord, (s, start, length), border, along, 40)
+
+    def _point(
+        self,
+        chord: np.ndarray,
+        place: tuple[float, float, float],
+        border: np.ndarray,
+        along: np.ndarray | None,
+        sweeps: int,
+    ) -> Solved | None:
         here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
         with self.section:
-            p, sweeps, residual, sign, size = self.bound.chord_point(
+            p, sweeps, residual, sign, size = self.bound.point(
                 self.data,
                 self.work,
+                corrector.EVERYTHING,
                 chord,
-                s,
-                start,
-                length,
+                place,
                 border,
-                along,
+                self.nothing if along is None else along,
+                sweeps,
                 here,
-                self.step,
                 tangent,
-                self.border,
                 row,
-                self.scale,
-                self.weights,
-                self.metric_u,
-                self.metric_p,
+                self.metric,
+                self.scratch,
                 self.noise,
             )
         return Solved(here, p, tangent, row, sign, residual, size) if sweeps >= 0 else None
@@ -235,47 +223,32 @@ class Engine:
 
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual."""
-        here, what = np.empty(self.n), corrector.LINEARISE
-        here[:] = u
-        _, _, found, _, _ = self.bound.solve(
-            self.data,
-            self.work,
-            here,
-            float(p),
-            self.border,
-            0.0,
-            corrector.TIGHT,
-            0,
-            self.step,
-            self.tangent,
-            NO_ROW,
-            what,
-            self.scale,
-            self.noise,
-        )
-        return float(found)
+        self.guess[0, : self.n], self.guess[0, self.n] = u, p
+        return float(self._part(corrector.LINEARISE, self.nothing, 0.0)[2])
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
         self.work[0].reshape(-1)[:] = -side[: self.n]
-        target, what = float(side[self.n]), corrector.ELIMINATE
-        self.bound.solve(
+        self._part(corrector.ELIMINATE, border, float(side[self.n]))
+        return self.scratch.step.copy()
+
+    def _part(self, what: int, border: np.ndarray, target: float) -> tuple[float, int, float, float, float]:
+        return self.bound.point(
             self.data,
             self.work,
-            self.u,
-            0.0,
-            border,
-            target,
-            corrector.TIGHT,
-            0,
-            self.step,
-            self.tangent,
-            NO_ROW,
             what,
-            self.scale,
+            self.guess,
+            (0.0, target, 0.0),
+            border,
+            self.nothing,
+            0,
+            self.scratch.u,
+            self.scratch.tangent,
+            NO_ROW,
+            self.metric,
+            self.scratch,
             self.noise,
         )
-        return self.step.copy()
 
     # ------------------------------------------------------------------ rows
     def rows(self, count: int) -> np.ndarray:
@@ -299,6 +272,8 @@ class Engine:
         if rows.shape[-1] <= 2 * self.m:
             return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
+        if margins.ndim == 1:
+            return np.float64(min((value for value in margins.tolist() if value == value), default=np.inf))
         if margins.shape[-1] > 16:
             smallest = np.fmin.reduce(margins, axis=-1)
         else:  # few columns, many rows

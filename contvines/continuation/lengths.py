@@ -1,13 +1,29 @@
 """Sums over the unknowns: corrections, planes, angles. As loops, which are compiled with the continuation loop.
 
 :mod:`contvines.continuation.arrays` has the same functions for problems made of Python callables, whose unknowns have scales of
-their own; here all unknowns have scale 1 and weight ``metric_u``, so ``scale`` and ``weights`` are not read.
+their own; here all unknowns have scale 1 and one weight, so ``metric.scale`` and ``metric.weights`` are not read.
 """
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 
-def correction_size(step, u, p, scale):
+class Metric(NamedTuple):
+    """How lengths are measured: <a, b> = sum of weights_j a_j b_j over unknowns and parameter.
+
+    ``weights`` and ``scale`` (typical sizes) have shape (N + 1,); ``of_unknowns`` and ``of_parameter`` are the weights of
+    unknowns whose scale is 1, and of the parameter.
+    """
+
+    weights: np.ndarray
+    scale: np.ndarray
+    of_unknowns: float
+    of_parameter: float
+
+
+def correction_size(step, u, p, metric):
     """Largest entry of a correction, relative to 1 + abs(unknown); infinity where it is not finite."""
     n = u.shape[0]
     size = abs(step[n]) / (1.0 + abs(p))
@@ -42,23 +58,23 @@ def fix_parameter(border):
     border[n] = 1.0
 
 
-def plane(tangent, u, p, weights, metric_u, metric_p, border):
+def plane(tangent, u, p, metric, border):
     """Fill `border` with the plane through (u, p) across a tangent; returns border.(u, p)."""
     n = u.shape[0]
     target = 0.0
     for j in range(n):
-        border[j] = metric_u * tangent[j]
+        border[j] = metric.of_unknowns * tangent[j]
         target += border[j] * u[j]
-    border[n] = metric_p * tangent[n]
+    border[n] = metric.of_parameter * tangent[n]
     return target + border[n] * p
 
 
-def compare(tangent, before, u, guess_u, p, guess, weights, metric_u, metric_p):
+def compare(tangent, before, u, guess_u, p, guess, metric):
     """Length of a tangent, cosine of its angle with the unit tangent before, distance of a point from its guess."""
     n = u.shape[0]
-    norm = metric_p * tangent[n] * tangent[n]
-    cosine = metric_p * tangent[n] * before[n]
-    error = metric_p * (p - guess) ** 2
+    norm = metric.of_parameter * tangent[n] * tangent[n]
+    cosine = metric.of_parameter * tangent[n] * before[n]
+    error = metric.of_parameter * (p - guess) ** 2
     part_norm = 0.0
     part_cosine = 0.0
     part_error = 0.0
@@ -66,12 +82,12 @@ def compare(tangent, before, u, guess_u, p, guess, weights, metric_u, metric_p):
         part_norm += tangent[j] * tangent[j]
         part_cosine += tangent[j] * before[j]
         part_error += (u[j] - guess_u[j]) ** 2
-    norm = math.sqrt(norm + metric_u * part_norm)
-    cosine = (cosine + metric_u * part_cosine) / norm
-    return norm, cosine, math.sqrt(error + metric_u * part_error)
+    norm = math.sqrt(norm + metric.of_unknowns * part_norm)
+    cosine = (cosine + metric.of_unknowns * part_cosine) / norm
+    return norm, cosine, math.sqrt(error + metric.of_unknowns * part_error)
 
 
-def orient(tangent, along, border, weights, metric_u, metric_p):
+def orient(tangent, along, border, metric):
     """Length of a tangent, its inner product with another vector, and border.tangent; the length is infinite where one is not finite."""
     n = tangent.shape[0] - 1
     finite = tangent[n] - tangent[n]
@@ -82,8 +98,8 @@ def orient(tangent, along, border, weights, metric_u, metric_p):
         part_norm += tangent[j] * tangent[j]
         part_same += tangent[j] * along[j]
         across += border[j] * tangent[j]
-    norm = math.sqrt(metric_u * part_norm + metric_p * tangent[n] * tangent[n])
-    same = metric_u * part_same + metric_p * tangent[n] * along[n]
+    norm = math.sqrt(metric.of_unknowns * part_norm + metric.of_parameter * tangent[n] * tangent[n])
+    same = metric.of_unknowns * part_same + metric.of_parameter * tangent[n] * along[n]
     return norm if finite == 0.0 else math.inf, same, across
 
 
@@ -101,13 +117,13 @@ def hermite(chord, s, u, guess):
     return guess[n]
 
 
-def distance(u, p, guess, weights, metric_u, metric_p):
+def distance(u, p, guess, metric):
     """Distance of (u, p) from a guess."""
     n = u.shape[0]
     square = 0.0
     for j in range(n):
         square += (u[j] - guess[j]) ** 2
-    return math.sqrt(metric_u * square + metric_p * (p - guess[n]) ** 2)
+    return math.sqrt(metric.of_unknowns * square + metric.of_parameter * (p - guess[n]) ** 2)
 
 
 def put(to, source, divisor):
@@ -116,7 +132,7 @@ def put(to, source, divisor):
         to[j] = source[j] / divisor
 
 
-def extrapolate(points, values, tangents, i, h, weights, metric_u, metric_p, u):
+def extrapolate(points, values, tangents, i, h, metric, u):
     """Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p.
 
     The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order).
@@ -126,8 +142,8 @@ def extrapolate(points, values, tangents, i, h, weights, metric_u, metric_p, u):
         for j in range(n):
             u[j] = points[i - 1, j] + h * tangents[i - 1, j]
         return values[i - 1] + h * tangents[i - 1, n]
-    square = metric_p * (values[i - 1] - values[i - 2]) ** 2
-    turn = metric_p * (tangents[i - 1, n] - tangents[i - 2, n]) ** 2
+    square = metric.of_parameter * (values[i - 1] - values[i - 2]) ** 2
+    turn = metric.of_parameter * (tangents[i - 1, n] - tangents[i - 2, n]) ** 2
     chord = 0.0
     bend = 0.0
     for j in range(n):
@@ -135,8 +151,8 @@ def extrapolate(points, values, tangents, i, h, weights, metric_u, metric_p, u):
         chord += change * change
         change = tangents[i - 1, j] - tangents[i - 2, j]
         bend += change * change
-    square += metric_u * chord
-    turn += metric_u * bend
+    square += metric.of_unknowns * chord
+    turn += metric.of_unknowns * bend
     d = math.sqrt(square) * (1.0 + turn / 24.0)
     if not (d > 0.0 and turn < 1.0 and h < 4.0 * d):
         for j in range(n):

@@ -4,12 +4,15 @@ This source runs compiled and interpreted: :mod:`contvines.continuation.binding`
 ``linearise``, ``bordered`` and ``inspect`` are the kernels of a problem and ``judge`` is the step rule of a run. For compiled problems the copies are compiled as
 well. Nothing is allocated here, and nothing is known of events.
 
-Metric: <a, b> = metric_u a_u.b_u + metric_p a_p b_p with metric_u = 1/N and metric_p = 1/(hi - lo)^2, so that step lengths
+Metric: <a, b> = a_u.b_u / N + a_p b_p / (hi - lo)^2, so that step lengths
 depend neither on the number of repetitions of an orbit nor on the unit of the parameter. Unknowns of Python problems have
 scales s: then a_u.b_u is the sum of a_j b_j / s_j^2 (the array ``weights``).
 """
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from .corrector import correct, inspect
 from .lengths import compare, extrapolate, fix_parameter, plane, put
@@ -17,8 +20,6 @@ from .step_rule import by_angle as judge
 
 # entries of the control vector
 (
-    METRIC_U,
-    METRIC_P,
     ANGLE,
     MIN_STEP,
     MAX_STEP,
@@ -29,8 +30,8 @@ from .step_rule import by_angle as judge
     SWEEPS,
     ROW_MARGINS,
     NOISE,
-) = range(12)
-CONTROL_SIZE = 12
+) = range(10)
+CONTROL_SIZE = 10
 
 # status codes (contvines.continuation.status)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
@@ -38,25 +39,18 @@ RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
 MARGIN = -1e-12  # margins below this are negative; above it they may be zeros all along a branch
 
 
-def march(
-    data,
-    work,
-    points,
-    values,
-    tangents,
-    rows,
-    signs,
-    corrections,
-    first,
-    h,
-    control,
-    weights,
-    scale,
-    u,
-    border,
-    step,
-    tangent,
-):
+class Points(NamedTuple):
+    """Arrays of a chunk of M points: shapes (M, N), (M,), (M, N + 1), (M, row), (M,), (M,)."""
+
+    points: np.ndarray
+    values: np.ndarray
+    tangents: np.ndarray
+    rows: np.ndarray
+    signs: np.ndarray
+    corrections: np.ndarray
+
+
+def march(data, work, chunk, first, h, control, metric, scratch):
     """Fill rows first, first + 1, ... of the chunk arrays with points of the branch.
 
     In one piece: every part of a step reads and changes the same score of local numbers.
@@ -70,18 +64,16 @@ def march(
     ----------
     data, work
         Of the problem.
-    points, values, tangents, rows, signs, corrections : ndarray
-        Chunk arrays of shapes (M, N), (M,), (M, N + 1), (M, row), (M,), (M,).
+    chunk : Points
+        Filled.
     first : int
         At least 1.
     h : float
         Step to try first.
     control : ndarray
         Settings; see the names at the top.
-    weights, scale : ndarray, shape (N + 1,)
-        Diagonal of the metric; typical sizes of unknowns and parameter.
-    u, border, step, tangent : ndarray
-        Scratch of sizes N, N + 1, N + 1, N + 1.
+    metric : Metric
+    scratch : Scratch
 
     Returns
     -------
@@ -91,9 +83,10 @@ def march(
         Step to go on with.
     status : int
     """
+    points, values, tangents = chunk.points, chunk.values, chunk.tangents
+    rows, signs, corrections = chunk.rows, chunk.signs, chunk.corrections
+    u, border, step, tangent = scratch.u, scratch.border, scratch.step, scratch.tangent
     n = points.shape[1]
-    metric_u = control[METRIC_U]
-    metric_p = control[METRIC_P]
     angle = control[ANGLE]
     lower = control[LOWER]
     upper = control[UPPER]
@@ -107,7 +100,7 @@ def march(
         if h < control[MIN_STEP]:
             return i, h, NOT_EVALUABLE if trouble == -2 else STEP_TOO_SMALL
         start = values[i - 1]
-        p = extrapolate(points, values, tangents, i, h, weights, metric_u, metric_p, u)
+        p = extrapolate(points, values, tangents, i, h, metric, u)
         fixed = p > upper or p < lower
         length = h
         if fixed:
@@ -117,12 +110,12 @@ def march(
             for _ in range(3):
                 if p != start:
                     length *= min(max((bound - start) / (p - start), 0.0), 1.5)
-                p = extrapolate(points, values, tangents, i, length, weights, metric_u, metric_p, u)
+                p = extrapolate(points, values, tangents, i, length, metric, u)
             p = bound
             fix_parameter(border)
             target = bound
         else:
-            target = plane(tangents[i - 1], u, p, weights, metric_u, metric_p, border)
+            target = plane(tangents[i - 1], u, p, metric, border)
         put(points[i], u, 1.0)
         guess = p
         p, sweeps, sign, size = correct(
@@ -136,7 +129,7 @@ def march(
             sweeps_allowed,
             step,
             tangent,
-            scale,
+            metric,
             noise,
         )
         if sweeps < 0:
@@ -144,9 +137,7 @@ def march(
             h *= 0.5
             continue
         trouble = 0
-        norm, cosine, error = compare(
-            tangent, tangents[i - 1], u, points[i], p, guess, weights, metric_u, metric_p
-        )
+        norm, cosine, error = compare(tangent, tangents[i - 1], u, points[i], p, guess, metric)
         if fixed:
             p = bound
             if cosine < 0.0:

@@ -22,7 +22,6 @@ from .status import Status
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 FEWEST = 8  # points in a chunk, however many unknowns there are
 AGAIN = 32  # points that are traced again with shorter steps
-ARRAYS = ("points", "values", "tangents", "rows", "signs", "corrections")
 
 
 class Retrace(NamedTuple):
@@ -80,7 +79,10 @@ def chunks(
         name = f"{key}/{number}"
         known = journal.recall(name) if journal is not None else None
         if known is not None:
-            chunk = Chunk(*(np.asarray(known[part]) for part in ARRAYS), status=Status(int(known["status"])))
+            chunk = Chunk(
+                *(np.asarray(known[part]) for part in source.Points._fields),
+                status=Status(int(known["status"])),
+            )
             h = float(known["h"])
             reach.escapes(chunk)
         else:
@@ -105,9 +107,10 @@ def chunks(
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
             if journal is not None and not isinstance(journal, NullJournal):
-                values: dict[str, Any] = {part: getattr(chunk, part) for part in ARRAYS}
+                values: dict[str, Any] = {part: getattr(chunk, part) for part in source.Points._fields}
                 values["rows"] = chunk.rows.copy()
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})
+        chunk.before = history[-2] if len(history) > 1 else None
         retrace = yield chunk
         if retrace is not None:
             chunk = chunk.cut(retrace.count)
@@ -124,48 +127,28 @@ def _march(
 ) -> tuple[Chunk, float]:
     first, n = len(history), engine.n
     size = first + capacity
-    points, values, tangents = np.empty((size, n)), np.empty(size), np.empty((size, n + 1))
-    rows, signs, corrections = engine.rows(size), np.zeros(size), np.zeros(size)
+    arrays = source.Points(
+        np.empty((size, n)),
+        np.empty(size),
+        np.empty((size, n + 1)),
+        engine.rows(size),
+        np.zeros(size),
+        np.zeros(size),
+    )
     for i, point in enumerate(history):
-        points[i], values[i], tangents[i] = point.u, point.p, point.tangent
-        rows[i], signs[i], corrections[i] = point.row, point.sign, point.correction
+        for array, known in zip(
+            arrays, (point.u, point.p, point.tangent, point.row, point.sign, point.correction)
+        ):
+            array[i] = known
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     engine.control[source.MAX_STEP] = longest
     # an interpreted loop is faster with Python's own numbers
     control: Any = engine.control if engine.problem.kernels.compiled else engine.control.tolist()
     with engine.section:
         filled, h, status = engine.bound.march(
-            engine.data,
-            engine.work,
-            points,
-            values,
-            tangents,
-            rows,
-            signs,
-            corrections,
-            first,
-            float(h),
-            control,
-            engine.weights,
-            engine.scale,
-            engine.u,
-            engine.border,
-            engine.step,
-            engine.tangent,
+            engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch
         )
-    part = slice(first - 1, filled)
-    return (
-        Chunk(
-            points[part],
-            values[part],
-            tangents[part],
-            rows[part],
-            signs[part],
-            corrections[part],
-            Status(status),
-        ),
-        float(h),
-    )
+    return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
 
 
 def _pack(solved: list[Solved], status: Status) -> Chunk:

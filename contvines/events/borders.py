@@ -58,10 +58,11 @@ def find_border(segment: Segment, real: bool) -> Border | None:
 
 
 def _located(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
-    engine = segment.engine
+    columns = (2 * segment.engine.m + chosen).tolist()
 
-    def margin(point: Solved) -> float:
-        return min(float(engine.margins(point.row)[chosen].min()), 1.0)
+    def margin(point: Solved) -> float:  # the smallest; NaN counts as not applicable
+        row = point.row.tolist()
+        return min(1.0, min(row[j] if row[j] == row[j] else 1.0 for j in columns))
 
     root = locate(segment, margin, fallback_zero=real)
     if root is None or root.position > 0.0 or not margin(root.point) < 0.0:

@@ -8,6 +8,8 @@ at a wall that is touched without speed, the coefficients times the distance are
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +21,7 @@ BESIDE = 1e-3  # part of a segment before the border by which the tangent is tol
 SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
-PLACES = np.arange(1.0, 5.0)
+PLACES = (1.0, 2.0, 3.0, 4.0)
 CONVERGED = (
     1e-4,
     1e-2,
@@ -30,6 +32,7 @@ STRAIGHT = 3e-5  # from its beginning, up to which a short segment's branch is l
 STRAYING = 0.5  # part of that distance by which it may be missed
 AGREEING = 1e-7  # relative difference of coefficients: those computed at the border are not rounding
 POLES = 2  # multipliers that grow without bound, at most
+EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # of values times powers of the place
 UNBOUNDED = 1e15  # stands for a multiplier that does
 
 
@@ -76,7 +79,7 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
         values = _polynomials(segment, position, spacing)
         if values is None:
             continue
-        here = [CUBIC @ (values * (spacing * PLACES[:, None]) ** k) for k in range(POLES + 1)]
+        here = [spacing**k * limit for k, limit in enumerate(EXTRAPOLATION @ values)]
         if _apart(here[0], computed) < AGREEING:
             return None
         if wider is not None:
@@ -95,21 +98,23 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
 
 def _apart(one: np.ndarray, other: np.ndarray) -> float:
     """Largest difference of two polynomials, as a part of their largest coefficient."""
-    if not (np.isfinite(one).all() and np.isfinite(other).all()):
-        return np.inf
-    gap = float(np.abs(one - other).max())
-    return gap / float(max(np.abs(one).max(), np.abs(other).max())) if gap > 0.0 else 0.0
+    pairs = list(zip(one.tolist(), other.tolist()))
+    if not all(math.isfinite(a) and math.isfinite(b) for a, b in pairs):
+        return math.inf
+    gap = max(abs(a - b) for a, b in pairs)
+    return gap / max(max(abs(a), abs(b)) for a, b in pairs) if gap > 0.0 else 0.0
 
 
 def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
     """Characteristic polynomials of the multipliers at four points before the border, shape (4, m + 1)."""
-    engine, values = segment.engine, []
+    rows = []
     for place in PLACES:
         point = _before(segment, position - place * spacing / segment.length)
         if point is None:
             return None
-        values.append(_characteristic(engine.spectrum(point.row)))
-    return np.array(values) if np.isfinite(values).all() else None
+        rows.append(point.row)
+    values = _characteristic(segment.engine.spectrum(np.array(rows)))
+    return values if np.isfinite(values).all() else None
 
 
 def _before(segment: Segment, s: float) -> Solved | None:
@@ -128,13 +133,12 @@ def _before(segment: Segment, s: float) -> Solved | None:
 
 
 def _characteristic(spectrum: np.ndarray) -> np.ndarray:
-    """Coefficients of the polynomial with these zeros, highest power first; `numpy.poly` without its generality."""
-    coefficients = [1.0 + 0.0j]
-    for zero in spectrum.tolist():
-        longer = [*coefficients, 0.0j]
-        for k, c in enumerate(coefficients):
-            longer[k + 1] -= zero * c
-        coefficients = longer
+    """Coefficients of the polynomials with these zeros (..., m), highest power first, shape (..., m + 1)."""
+    m = spectrum.shape[-1]
+    coefficients = np.zeros((*spectrum.shape[:-1], m + 1), dtype=complex)
+    coefficients[..., 0] = 1.0
+    for k in range(m):
+        coefficients[..., 1 : k + 2] -= spectrum[..., k : k + 1] * coefficients[..., : k + 1]
     return np.real(coefficients)
 
 

@@ -6,10 +6,13 @@ that cross at once are two events. A product of test functions would not change 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
+FEW = 16  # numbers up to which Python is faster than numpy
 LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
 
 
@@ -20,6 +23,13 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     for ("real"), the first of these.
     """
     result = np.zeros((len(spectrum), 3), dtype=np.int64)
+    if spectrum.size <= FEW:
+        for i, row in enumerate(spectrum.tolist()):
+            for one in row:
+                place = _past(one, kind)
+                if place is not None:
+                    result[i, place] += 1
+        return result
     real = spectrum.imag == 0.0
     upper = spectrum.imag > 0.0
     if kind == "map":
@@ -40,23 +50,34 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     return result
 
 
+def _past(one: complex, kind: str) -> int | None:
+    """The column of `counts` to which a multiplier belongs."""
+    if one.imag == 0.0:
+        if one.real > (1.0 + PAST if kind == "map" else PAST):
+            return 0 if kind in ("map", "flow", "real") else None
+        return 1 if kind == "map" and one.real < -1.0 - PAST else None
+    if one.imag > 0.0 and ((kind == "map" and abs(one) > 1.0 + PAST) or (kind == "flow" and one.real > PAST)):
+        return 2
+    return None
+
+
 def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:
     """The test function of the k-th multiplier of a sort at one point: positive past the circle."""
+    own: list[complex] = spectrum.tolist()
     if name == "pair":
-        part = spectrum[spectrum.imag > 0.0]
-        values = np.sort(np.abs(part) if kind == "map" else part.real)[::-1]
+        values = [abs(one) if kind == "map" else one.real for one in own if one.imag > 0.0]
     else:
-        values = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
+        values = [-one.real if name == "minus" else one.real for one in own if one.imag == 0.0]
     if len(values) < k:
-        if name == "pair" or len(values) == len(spectrum):
+        if name == "pair" or len(values) == len(own):
             return -LIMIT
         # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
         # as it does in conservative systems
         place = 0.0 if kind != "map" else (-1.0 if name == "minus" else 1.0)
-        return -min(float(np.abs(spectrum[spectrum.imag != 0.0] - place).min()), LIMIT)
-    value = float(values[k - 1])
+        return -min(*(abs(one - place) for one in own if one.imag != 0.0), LIMIT)
+    value = sorted(values, reverse=True)[k - 1]
     if kind == "map":
-        value = float(np.log(value)) if value > 0.0 else -LIMIT
+        value = (math.log(value) if value < math.inf else LIMIT) if value > 0.0 else -LIMIT
     return min(max(value, -LIMIT), LIMIT)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..continuation import march
 from ..continuation.engine import Engine
+from ..continuation.lengths import Metric
 from ..continuation.march import MARGIN
 from . import bits, multipliers
 from .bits import (
@@ -33,6 +34,8 @@ from .bits import (
     REAL,
     SHALLOW,
     SINGULAR,
+    Scanned,
+    Symmetries,
 )
 from .multipliers import PAST
 from .scan_arrays import mark_segments as with_arrays
@@ -42,34 +45,14 @@ FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertic
 COLUMNS = 16  # a cycle is known from any of its nodes: a few unknowns tell whether it is its own image
 
 
-def mark_segments(
-    points,
-    values,
-    slopes,
-    rows,
-    signs,
-    first_margin,
-    kind,
-    real,
-    flat,
-    metric_u,
-    metric_p,
-    orders,
-    images,
-    constants,
-    shift,
-    gaps,
-    flags,
-    smallest,
-):
+def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, flags, smallest):
     """Fill `flags` (n - 1,), bits per segment, and `smallest` (n,), the smallest margin (infinity without margins).
 
     In one piece: one pass over the chunk, in which each segment's tests share the differences of rows.
 
     Parameters
     ----------
-    points, values, slopes, rows, signs : ndarray
-        Of the chunk; `slopes` is the parameter's component of the tangents.
+    chunk : Scanned
     first_margin : int
         Columns of `rows` before this one are multipliers as (re, im) pairs.
     kind : int
@@ -78,14 +61,12 @@ def mark_segments(
         Whether the branch has positive margins.
     flat : float
         Slopes below this are zero.
-    metric_u, metric_p : float
-    orders, images, constants : ndarray, shape (symmetries, columns)
-        u - T(u) of column j is u[j] - (images[j] u[orders[j]] + constants[j]).
-    shift : ndarray, shape (columns,)
-        Zero, or what shifts by one period add.
-    gaps : ndarray, shape (2, symmetries, columns)
-        Scratch.
+    metric : Metric
+    symmetries : Symmetries
     """
+    points, values, slopes, rows, signs = chunk.points, chunk.values, chunk.slopes, chunk.rows, chunk.signs
+    orders, images, constants = symmetries.orders, symmetries.images, symmetries.constants
+    shift, gaps = symmetries.shift, symmetries.gaps
     count, size = points.shape
     width = rows.shape[1]
     columns = shift.shape[0]
@@ -175,7 +156,7 @@ def mark_segments(
             change = points[i, j] - points[i - 1, j]
             square += change * change
         change = values[i] - values[i - 1]
-        length = math.sqrt(metric_u * square + metric_p * change * change)
+        length = math.sqrt(metric.of_unknowns * square + metric.of_parameter * change * change)
         here, there = slopes[i - 1], slopes[i]
         if here * there > 0.0 and abs(here) > flat and abs(there) > flat and length > 0.0:
             side = 1.0 if here > 0.0 else -1.0
@@ -185,7 +166,10 @@ def mark_segments(
                 flags[i - 2] |= HUMP
                 flags[i - 1] |= HUMP
         if i > 1:
-            if real and dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length):
+            if real and (
+                dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length)
+                or one_dips(rows, i, first_margin, short, length)
+            ):
                 flags[i - 2] |= SHALLOW
                 flags[i - 1] |= SHALLOW
             if kind in (MAP, FLOW) and first_margin > 0 and dips(before_that, before, damping, short, length):
@@ -209,6 +193,23 @@ def dips(left, middle, right, h1, h2):
     return -h1 < vertex < h2 and middle - 0.25 * slope * slope / bend < 0.0
 
 
+def one_dips(rows, i, first_margin, h1, h2):
+    """Whether one of the margins dips before point i, be others smaller or lost: by the parabola through the last three points."""
+    if not (h1 > 0.0 and h2 > 0.0):
+        return False
+    # a parabola through the three falls below the lowest of them by at most this part of the changes between them
+    share = 0.25 * max(h1 / h2, h2 / h1) ** 2
+    suspects = 0
+    for j in range(first_margin, rows.shape[1]):
+        a, b, c = rows[i - 2, j], rows[i - 1, j], rows[i, j]
+        suspects += min(min(a, b), c) - MARGIN < share * (abs(b - a) + abs(c - b))
+    if suspects > 0:
+        for j in range(first_margin, rows.shape[1]):
+            if dips(rows[i - 2, j] - MARGIN, rows[i - 1, j] - MARGIN, rows[i, j] - MARGIN, h1, h2):
+                return True
+    return False
+
+
 def turns_twice(here, there, mean):
     """Whether the cubic with these positive slopes at its ends, and this mean slope, falls in between: two folds."""
     bend = 3.0 * (here + there - 2.0 * mean)
@@ -228,18 +229,18 @@ def _compiled() -> Callable[..., Any]:
     sources.append(Path(__file__))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
-    return njit(cache=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)(
-        copy_with(mark_segments, f"_{digest}", **inner)
-    )
+    fast = {"fastmath": {"reassoc", "contract", "nsz"}, **OPTIONS}
+    inner["one_dips"] = njit(**fast)(copy_with(one_dips, f"_{digest}", dips=inner["dips"]))
+    return njit(cache=True, **fast)(copy_with(mark_segments, f"_{digest}", **inner))
 
 
 def prepare() -> None:
     """Compile, or take from the cache on disk, what scans compiled problems."""
-    table, line, places = np.zeros((1, 2)), np.zeros(1), np.zeros((0, 1), np.int64)
-    parts = np.zeros((0, 1))
-    numbers = (2, MAP, True, 0.0, 1.0, 1.0)
-    symmetry = (places, parts, parts, line, np.zeros((2, 0, 1)))
-    _compiled()(table, line, line, table, line, *numbers, *symmetry, np.zeros(0, np.int64), np.zeros(1))
+    table, line, parts = np.zeros((1, 2)), np.zeros(1), np.zeros((0, 1))
+    chunk = Scanned(table, line, line, table, line)
+    symmetries = Symmetries(np.zeros((0, 1), np.int64), parts, parts, line, np.zeros((2, 0, 1)))
+    metric = Metric(line, line, 1.0, 1.0)
+    _compiled()(chunk, 2, MAP, True, 0.0, metric, symmetries, np.zeros(0, np.int64), np.zeros(1))
 
 
 class Scan(NamedTuple):
@@ -268,12 +269,14 @@ class Scanner:
         affine = [test.affine for test in symmetries if test.affine is not None and plain]
         self.left_out = [test for test in symmetries if test.affine is None or not plain]
         shape = (len(affine), columns)
-        self.orders = np.array([order[:columns] for order, _, _ in affine], np.int64).reshape(shape)
-        self.images = np.array([signs[:columns] for _, signs, _ in affine], float).reshape(shape)
-        self.constants = np.array([constant[:columns] for _, _, constant in affine], float).reshape(shape)
         shift = symmetries[0].shift if symmetries else None
-        self.shift = np.zeros(columns) if shift is None else np.array(shift[:columns], float)
-        self.gaps = np.zeros((2, *shape))
+        self.symmetries = Symmetries(
+            np.array([order[:columns] for order, _, _ in affine], np.int64).reshape(shape),
+            np.array([signs[:columns] for _, signs, _ in affine], float).reshape(shape),
+            np.array([constant[:columns] for _, _, constant in affine], float).reshape(shape),
+            np.zeros(columns) if shift is None else np.array(shift[:columns], float),
+            np.zeros((2, *shape)),
+        )
 
     def __call__(
         self,
@@ -288,22 +291,19 @@ class Scanner:
         engine, n = self.engine, len(values)
         flags, smallest = np.zeros(max(n - 1, 0), np.int64), np.empty(n)
         self.mark(
-            points if self.plain else points / engine.scale[:-1],
-            values,
-            np.ascontiguousarray(tangents[:, -1]),
-            rows,
-            signs,
+            Scanned(
+                points if self.plain else points / engine.scale[:-1],
+                values,
+                np.ascontiguousarray(tangents[:, -1]),
+                rows,
+                signs,
+            ),
             2 * engine.m,
             self.kind,
             bool(real),
             FLAT * engine.parameter_unit(float(values[0])),
-            1.0 / engine.n,
-            float(engine.weights[-1]),
-            self.orders,
-            self.images,
-            self.constants,
-            self.shift,
-            self.gaps,
+            engine.metric,
+            self.symmetries,
             flags,
             smallest,
         )

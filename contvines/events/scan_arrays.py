@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..continuation.lengths import Metric
 from ..continuation.march import MARGIN
 from .bits import (
     APART,
@@ -21,31 +22,26 @@ from .bits import (
     REAL,
     SHALLOW,
     SINGULAR,
+    Scanned,
+    Symmetries,
 )
 from .multipliers import PAST
 
 
 def mark_segments(
-    points: np.ndarray,
-    values: np.ndarray,
-    slopes: np.ndarray,
-    rows: np.ndarray,
-    signs: np.ndarray,
+    chunk: Scanned,
     first_margin: int,
     kind: int,
     real: bool,
     flat: float,
-    metric_u: float,
-    metric_p: float,
-    orders: np.ndarray,
-    images: np.ndarray,
-    constants: np.ndarray,
-    shift: np.ndarray,
-    gaps: np.ndarray,
+    metric: Metric,
+    symmetries: Symmetries,
     flags: np.ndarray,
     smallest: np.ndarray,
 ) -> None:
     """Fill `flags` (n - 1,) and `smallest` (n,); see :func:`contvines.events.scan.mark_segments`."""
+    points, values, slopes, rows, signs = chunk
+    orders, images, constants, shift, _ = symmetries
     with np.errstate(all="ignore"):
         smallest[:] = np.fmin.reduce(rows[:, first_margin:], axis=1, initial=np.inf)
         if len(values) < 2:
@@ -60,7 +56,9 @@ def mark_segments(
         if len(orders):
             flags |= np.where(_meet(points, orders, images, constants, shift), MEETING, 0)
         steps, changes = np.diff(points, axis=0), np.diff(values)
-        lengths = np.sqrt(metric_u * np.einsum("ij,ij->i", steps, steps) + metric_p * changes**2)
+        lengths = np.sqrt(
+            metric.of_unknowns * np.einsum("ij,ij->i", steps, steps) + metric.of_parameter * changes**2
+        )
         here, there = slopes[:-1], slopes[1:]
         steep = (here * there > 0.0) & above[1:] & above[:-1] & (lengths > 0.0)
         side = np.where(here > 0.0, 1.0, -1.0)
@@ -70,7 +68,11 @@ def mark_segments(
         humps = steep[1:] & dips(sided * slopes[:-2], sided * slopes[1:-1], sided * slopes[2:], lengths)
         _mark_both(flags, humps, HUMP)
         if real:
-            _mark_both(flags, dips(smallest[:-2], smallest[1:-1], smallest[2:], lengths), SHALLOW)
+            shallow = dips(smallest[:-2], smallest[1:-1], smallest[2:], lengths)
+            # one of the margins, be others smaller or lost
+            for margin in rows.T[first_margin:] - MARGIN:
+                shallow |= dips(margin[:-2], margin[1:-1], margin[2:], lengths)
+            _mark_both(flags, shallow, SHALLOW)
         if kind in (MAP, FLOW) and first_margin > 0:
             _mark_both(flags, dips(damping[:-2], damping[1:-1], damping[2:], lengths), DAMPED)
 

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+
+
+@lru_cache(maxsize=64)
+def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Twice n numbers without a pattern, multiples of irrational numbers, and the order of the first ones."""
+    probe, check = (0.1 + 0.8 * np.modf(np.sqrt(a) * np.arange(1.0, n + 1.0))[0] for a in (2.0, 3.0))
+    return probe, check, np.argsort(probe, kind="stable")
 
 
 class SymmetryTest:
@@ -21,14 +29,13 @@ class SymmetryTest:
         self.shift = (
             None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
         )
-        # numbers without a pattern: multiples of irrational numbers
-        probe, check = (0.1 + 0.8 * np.modf(np.sqrt(a) * np.arange(1.0, n + 1.0))[0] for a in (2.0, 3.0))
+        probe, check, places = _patternless(n)
         self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         try:
             constant = np.asarray(symmetry.apply(np.zeros(n)), dtype=float)
             image = np.asarray(symmetry.apply(probe), dtype=float) - constant
             order = np.empty(n, dtype=int)
-            order[np.argsort(np.abs(image), kind="stable")] = np.argsort(probe, kind="stable")
+            order[np.argsort(np.abs(image), kind="stable")] = places
             signs = np.sign(image)
             wrong = np.abs(signs * check[order] + constant - symmetry.apply(check)).max()
             if np.abs(signs * probe[order] - image).max() < 1e-9 and wrong < 1e-9:

@@ -12,7 +12,7 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
-from .examine import Examiner, changes
+from .examine import ROUNDING, Examiner, changes
 from .leaps import leap
 from .located import Located, Role
 from .multipliers import LIMIT, balance, counts, nearest_to_circle
@@ -54,9 +54,12 @@ class Watch(Examiner):
 
     def scan(self, chunk: Chunk, real: bool = True) -> Scan:
         """Marks segments of a chunk that may hold something, and finds the smallest margins; see :meth:`look`."""
-        return self.scanner(
-            chunk.points, chunk.values, chunk.tangents, chunk.rows, without_zeros(chunk.signs), real
+        wide = _wide(chunk)
+        scan = self.scanner(
+            wide.points, wide.values, wide.tangents, wide.rows, without_zeros(wide.signs), real
         )
+        own = len(wide) - len(chunk)
+        return Scan(scan.flags[own:], scan.smallest[own:])
 
     def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
         """All special points on a chunk, in order; what lies behind a border, a meeting or a leap is left out.
@@ -81,15 +84,17 @@ class Watch(Examiner):
             far = (size[:-1] > APART) & (size[1:] > APART)
             flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
         close: set[int] = set()
+        wide = _wide(chunk)
+        own = len(wide) - len(chunk)
         if self.many:
-            close = set(self._near_singular(chunk).tolist())
+            close = {i - own for i in self._near_singular(wide).tolist() if i >= own}
             flags[list(close)] |= SINGULAR
         elif self.exchanges:
             sums = balance(self.engine.spectrum(chunk.rows), self.kind)
             flags[changes(np.nan_to_num(sums))] |= MULTIPLIER
-            flags[self._twice(chunk)] |= TWICE
+            flags[self._twice(wide)[own:]] |= TWICE
         if self.engine.m > 2 and self.kind in ("map", "flow"):
-            flags[self._pairs(chunk)] |= PAIRS
+            flags[self._pairs(wide)[own:]] |= PAIRS
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             flags[changes(values)] |= USER
@@ -100,7 +105,9 @@ class Watch(Examiner):
             segment = Segment(
                 self.engine, chunk.solved(i, float(signs[i])), chunk.solved(i + 1, float(signs[i + 1]))
             )
-            split = self._split(segment, bits)
+            if bits & BORDER:
+                bits &= ~SHALLOW  # what is lost before a border is looked for when that is known
+            split = self._split(segment, bits, self._suspects(wide, i + own) if bits & SHALLOW else [])
             if i in close:
                 found = self._closely(segment, real)
             elif split is not None:
@@ -150,9 +157,29 @@ class Watch(Examiner):
         found = self.examine(segment, real=real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
+        # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back wherever rounding has it
+        flat = ROUNDING * max(self.engine.parameter_unit(origin.p), abs(origin.p))
+        found = [
+            e
+            for e in found
+            if e.kind != "astray" and not (e.kind == "fold" and abs(e.point.p - origin.p) <= flat)
+        ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
         return before_stop(sorted(found, key=lambda e: e.position))
+
+    def _suspects(self, chunk: Chunk, i: int) -> list[int]:
+        """The margins that may pass zero and come back in a segment: the parabola through three of their values does."""
+        first = max(i - 1, 0)
+        margins = self.engine.margins(chunk.rows[first : i + 3]) - MARGIN
+        z = np.column_stack([chunk.points[first : i + 3], chunk.values[first : i + 3]])
+        lengths = [self.engine.norm(step) for step in np.diff(z, axis=0)]
+        found = set()
+        for k in range(len(margins) - 2):
+            for j, (left, middle, right) in enumerate(margins[k : k + 3].T):
+                if dips(left, middle, right, lengths[k], lengths[k + 1]):
+                    found.add(j)
+        return sorted(found)
 
     def _near_singular(self, chunk: Chunk) -> np.ndarray:
         """Segments, of a problem with many unknowns, in which an even number of branch points may lie: where the signs at the ends are
@@ -237,9 +264,11 @@ class Watch(Examiner):
         here, there = self._outermost_pair(self.engine.spectrum(np.array([point.row, other.row])))
         return float(min(here, 1.0) * np.sign(there)) if np.isfinite(there) else 1.0
 
-    def _split(self, segment: Segment, bits: int) -> tuple[float, Solved] | None:
-        """A point of the segment where the smallest margin is negative, the parameter turns back, or stability is lost, though
-        not at its ends."""
+    def _split(self, segment: Segment, bits: int, suspects: list[int]) -> tuple[float, Solved] | None:
+        """A point of the segment where the smallest margin, or one of those suspected, is negative, the parameter turns back, or
+
+        stability is lost, though not at its ends.
+        """
         if bits & MEETING:
             bits &= ~DAMPED  # a branch that comes back to a symmetry is marginal there: no point to cut it at
         side = np.sign(segment.a.tangent[-1]) / self.engine.parameter_unit(segment.a.p)
@@ -250,11 +279,12 @@ class Watch(Examiner):
             TWICE: lambda point: self._side(point, segment.a),
             PAIRS: lambda point: self._pair(point, segment.a),
         }
-        for bit, test in tests.items():
-            if bits & bit:
-                found = below_zero(segment, test)
-                if found is not None:
-                    return found
+        wanted = [test for bit, test in tests.items() if bits & bit]
+        wanted += [lambda point, j=j: float(self.engine.margins(point.row)[j]) for j in suspects]
+        for test in wanted:
+            found = below_zero(segment, test)
+            if found is not None:
+                return found
         return None
 
     def _side(self, point: Solved, other: Solved) -> float:
@@ -275,6 +305,11 @@ class Watch(Examiner):
     def _apart(self, event: Located, stop: Located) -> bool:
         engine, a, b = self.engine, event.point, stop.point
         return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > AT_BORDER
+
+
+def _wide(chunk: Chunk) -> Chunk:
+    """The chunk, with the point before it where its own are too few for a parabola."""
+    return chunk.widened() if len(chunk) == 2 else chunk
 
 
 def before_stop(events: list[Located]) -> list[Located]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..branches.assembly import filled, make_branch
+from ..branches.beginning import from_border
 from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
@@ -17,7 +18,7 @@ from ..continuation.march import MARGIN
 from ..continuation.starts import solve_start, told_start
 from ..continuation.status import Status
 from ..events.kinds import BORDERS
-from ..events.watch import AT_BORDER, Watch
+from ..events.watch import Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .leaving import leave
@@ -300,14 +301,7 @@ def both_ways(
         return Ending(reason, pending.p, pending.point, pending.source)
 
     if pending.kind is Origin.REST:
-        ahead = go(first, "ahead")
-        # where a stick or flight vanishes p is stationary, or another solution crosses: that is the border itself
-        ahead.events = [
-            (i, e)
-            for i, e in ahead.events
-            if e.kind not in ("fold", "branch-point")
-            or engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) > AT_BORDER
-        ]
+        ahead = from_border(engine, go(first, "ahead"), first)
         return ahead, (beginning(Reason.GOES_ON), ending(ahead)), False
     if pending.kind is Origin.SWITCH:
         assert pending.origin is not None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import copy
 from functools import partial
 from typing import Any
 
@@ -15,6 +15,7 @@ from ..events.kinds import BORDERS
 from ..events.located import Role
 from ..forms.criticality import cubic_form
 from ..interrupts import OPEN
+from ..journal import NullJournal
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
@@ -212,7 +213,8 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itrun."""
     at_start = point.index == 0
     outward = -point.tangent if at_start else point.tangent
-    leaving = replace(point, tangent=outward)
+    leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
+    leaving.tangent = outward
     if branch.real:
         seeds = _seeds(run, leaving)
         if not seeds:
@@ -289,18 +291,8 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
         ]
     with OPEN:
         seeds = list(point.problem.beyond(point))
-    record: dict[str, Any] = {
-        "problems": [dict(seed.problem.describe()) for seed in seeds],
-        "p": [float(seed.p) for seed in seeds],
-        "note": [str(seed.note) for seed in seeds],
-        "persistence": [bool(seed.persistence) for seed in seeds],
-    }
-    for i, seed in enumerate(seeds):
-        record[f"u{i}"] = np.asarray(seed.u, dtype=float)
-        if seed.tangent is not None:
-            record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
-    if known is None:
-        run.journal.record(key, record)
+    if known is None and not isinstance(run.journal, NullJournal):
+        run.journal.record(key, _recorded(seeds))
     return [
         {
             "problem": seed.problem,
@@ -312,6 +304,21 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
         }
         for seed in seeds
     ]
+
+
+def _recorded(seeds: list[Any]) -> dict[str, Any]:
+    """Seeds as a journal keeps them."""
+    record: dict[str, Any] = {
+        "problems": [dict(seed.problem.describe()) for seed in seeds],
+        "p": [float(seed.p) for seed in seeds],
+        "note": [str(seed.note) for seed in seeds],
+        "persistence": [bool(seed.persistence) for seed in seeds],
+    }
+    for i, seed in enumerate(seeds):
+        record[f"u{i}"] = np.asarray(seed.u, dtype=float)
+        if seed.tangent is not None:
+            record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
+    return record
 
 
 def _rebuilt(record: Any) -> list[Any] | None:

@@ -223,8 +223,13 @@ def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
 def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
     """Whether a branch has come to a border that is known by this label."""
     known, point = run.graph.special[label], event.point
-    near = abs(known.value - point.p) <= BACK_AT_BORDER * run.unit(point.p)
-    return near and may_be_one(problem, point.u, point.p, known)
+    if abs(known.value - point.p) > BACK_AT_BORDER * run.unit(point.p):
+        return False
+    # of a branch that begins at a border it is asked twice: whether to keep it, and how to mark its end
+    key = id(point.u), id(known)
+    if key not in run.compared:
+        run.compared[key] = (point, known, may_be_one(problem, point.u, point.p, known))
+    return run.compared[key][2]
 
 
 def may_be_one(problem: Problem, u: np.ndarray, p: float, point: SpecialPoint) -> bool:

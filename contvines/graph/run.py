@@ -11,7 +11,7 @@ import numpy as np
 
 from ..branches.ending import Ending, Reason
 from ..branches.special_point import SpecialPoint
-from ..continuation.engine import Engine, parameter_unit
+from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
 from ..events.located import Located
 from ..events.watch import Watch
@@ -73,6 +73,7 @@ class Run:
         self.events: dict[str, Located] = {}
         self.engines: dict[int, tuple[Any, Engine, Watch]] = {}
         self.forms: dict[str, tuple[SpecialPoint, Any]] = {}
+        self.compared: dict[tuple[int, int], tuple[Solved, SpecialPoint, bool]] = {}
         self.serial = 0
         self.points = 0
 

@@ -85,9 +85,9 @@ def plot_atlas(
         if own and not small and figure.get_size_inches()[0] < NARROW:
             place_legend(lower, [*picture.key.handles(), *handles], legend, own, remarks=picture.key.remarks)
         else:
+            place_legend(lower, handles, legend, own, usual="beside")  # first: it narrows both panels
             if not small:
                 draw_legend(upper, picture.key, legend, own, picture.obstacles())
-            place_legend(lower, handles, legend, own, usual="beside")
         settle(figure)
         if own:
             thin_ticks(upper, lower)

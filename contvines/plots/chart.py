@@ -9,7 +9,7 @@ import numpy as np
 
 from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled, thin_ticks
-from .labels import Label, grouped, place_labels
+from .labels import Box, Label, grouped, place_labels
 from .legends import hold_legend, place_legend
 from .style import MARKS, PLAIN, axis_label
 
@@ -38,6 +38,7 @@ BORDER_COLOR = "#6b6b6b"  # of any other border
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
 HATCH_LENGTH = 0.012  # of the axes
 FITS = 0.9  # share of a name that must lie within its region
+AWAY = 5.0  # pixels between a name that was moved and the edges of its region
 LOW = 2.6  # inches: lower axes have the symbol of a parameter alone at their side
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
 
@@ -110,22 +111,13 @@ def plot_chart(
         if own:
             thin_ticks(axes)
             freeze(figure)
-        boxes = [*hold_legend(axes), *(_name(axes, chart) if names else [])]
         if inside and handles:
-            boxes.append(_legend_inside(axes, list(handles.values()), boxes))
+            place_legend(axes, list(handles.values()), True, False)
+        boxes = hold_legend(axes)
+        boxes += _name(axes, chart, boxes) if names else []
         if labels:
             _label(axes, chart, boxes)
     return figure
-
-
-def _legend_inside(axes: Any, handles: list[Any], names: list[Any]) -> tuple[float, float, float, float]:
-    """Inside the axes, where it hides no name of a region, if there is such a corner; its box on the page."""
-    box: Any = None
-    for place in ("best", "lower right", "lower left", "upper right", "upper left", "best"):
-        box = axes.legend(handles=handles, loc=place, fontsize="small").get_window_extent()
-        if not any(box.x0 < x1 and x0 < box.x1 and box.y0 < y1 and y0 < box.y1 for x0, y0, x1, y1 in names):
-            break
-    return box.x0, box.y0, box.x1, box.y1
 
 
 def _look(locus: Locus) -> dict[str, Any]:
@@ -224,8 +216,11 @@ def _tint(axes: Any, chart: Chart) -> None:
         )
 
 
-def _name(axes: Any, chart: Chart) -> list[tuple[float, float, float, float]]:
-    """Write into regions what is stable there, where the text has room; the boxes of the texts on the page."""
+def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
+    """Write into regions what is stable there, where the text has room; the boxes of the texts on the page.
+
+    A name that would stand under the legend stands elsewhere in its region.
+    """
     boxes = []
     for region in chart.regions:
         if region.share < LEAST_SHARE or not region.words:
@@ -233,26 +228,38 @@ def _name(axes: Any, chart: Chart) -> list[tuple[float, float, float, float]]:
         for count in (4, 2, 1):  # fewer words where there is little room
             names = [word if len(word) <= 16 else f"{word[:13]}..." for word in region.words[:count]]
             more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
-            text = axes.text(
-                region.at[1],
-                region.at[0],
-                "\n".join([*names, *more]),
-                ha="center",
-                va="center",
-                fontsize="x-small",
-                color="0.25",
-                zorder=4,
-            )
-            box = text.get_window_extent()
-            if _has_room(axes, chart, region, box):
-                boxes.append((box.x0, box.y0, box.x1, box.y1))
+            look = {"ha": "center", "va": "center", "fontsize": "x-small", "color": "0.25", "zorder": 4}
+            text = axes.text(region.at[1], region.at[0], "\n".join([*names, *more]), **look)
+            if (box := _room_for(axes, chart, region, text, taken)) is not None:
+                boxes.append(box)
                 break
             text.remove()
     return boxes
 
 
-def _has_room(axes: Any, chart: Chart, region: Any, box: Any) -> bool:
-    """Whether a box on the page lies within a region, but for its corners."""
+def _room_for(axes: Any, chart: Chart, region: Any, text: Any, taken: list[Box]) -> Box | None:
+    """Leave or move a text to where it lies within its region and on nothing else; its box on the page, or None."""
+    (plo, phi), (qlo, qhi) = chart.within
+    places = [(region.at[0], region.at[1], 0.0)]
+    if region.cells.size:  # and near it in the region, well away from its edges, where that place is taken
+        rows, columns = region.cells.shape
+        inner = np.argwhere(region.cells)[:: max(1, int(region.cells.sum()) // 200)] + 0.5
+        p, q = plo + inner[:, 0] * (phi - plo) / rows, qlo + inner[:, 1] * (qhi - qlo) / columns
+        away = np.hypot((p - region.at[0]) / (phi - plo), (q - region.at[1]) / (qhi - qlo))
+        places += [(float(p[k]), float(q[k]), AWAY) for k in np.argsort(away)]
+    for p, q, pad in places:
+        text.set_position((q, p))
+        box = text.get_window_extent().padded(pad)
+        free = not any(
+            box.x0 < x1 and x0 < box.x1 and box.y0 < y1 and y0 < box.y1 for x0, y0, x1, y1 in taken
+        )
+        if free and _has_room(axes, chart, region, box, FITS if pad == 0.0 else 1.0):
+            return box.x0, box.y0, box.x1, box.y1
+    return None
+
+
+def _has_room(axes: Any, chart: Chart, region: Any, box: Any, share: float) -> bool:
+    """Whether a box on the page lies within a region, at least this share of it (its corners may be out)."""
     if not region.cells.size:
         return True
     xs, ys = np.linspace(box.x0, box.x1, 9), np.linspace(box.y0, box.y1, 5)
@@ -262,4 +269,4 @@ def _has_room(axes: Any, chart: Chart, region: Any, box: Any) -> bool:
     i = np.floor((places[:, 1] - plo) / (phi - plo) * rows).astype(int)
     j = np.floor((places[:, 0] - qlo) / (qhi - qlo) * columns).astype(int)
     inside = (i >= 0) & (i < rows) & (j >= 0) & (j < columns)
-    return bool(np.all(inside) and region.cells[i, j].mean() > FITS)
+    return bool(np.all(inside) and region.cells[i, j].mean() >= share)

@@ -111,15 +111,18 @@ def _panels(axes: Any, figsize: tuple[float, float] | None) -> tuple[Figure, lis
 
 def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
     """The circles once per period, later ones lighter; repelling ones dashed."""
-    from matplotlib import colormaps
-
-    colors = colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
     phases = np.linspace(0.0, 2.0 * np.pi, 361)
-    for circle, color in zip(circles.circles, colors):
+    for circle, color in zip(circles.circles, _colors(circles)):
         x = circle.at(phases)[:, pair]
         axes.plot(*x.T, color=color, linewidth=0.9, linestyle="--" if circle.stable is False else "-")
     axes.plot(*(circles.centre[k] for k in pair), "k+", markersize=7)
     axes.set(xlabel=axis_label(circles.names[pair[0]]), ylabel=axis_label(circles.names[pair[1]]))
+
+
+def _colors(circles: Circles) -> Any:
+    from matplotlib import colormaps
+
+    return colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
 
 
 def _sizes(radius: Axes, rotation: Axes, circles: Circles, legend: bool | str) -> None:
@@ -128,6 +131,8 @@ def _sizes(radius: Axes, rotation: Axes, circles: Circles, legend: bool | str) -
     predicted = np.append(0.0, [circle.predicted for circle in circles.circles])
     look = {"marker": ".", "markersize": 4}
     radius.plot(values, np.append(0.0, circles.radius), color="#0b3c6f", label="circle", **look)
+    for value, size, color in zip(circles.values, circles.radius, _colors(circles)):
+        radius.plot([value], [size], "o", color=color, markersize=4.5, zorder=4)  # the key to the section
     radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
     radius.set_ylabel("radius")
     place_legend(radius, radius.get_legend_handles_labels()[0], legend, False)

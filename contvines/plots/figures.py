@@ -33,11 +33,9 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     from matplotlib.style import context
 
     default = mpl.rcParamsDefault
-    own = {
-        name: value
-        for name, value in mpl.rcParams.items()
-        if not name.startswith("backend") and name in default and value != default[name]
-    }
+    # reading the backend would choose one, which imports pyplot
+    names = [name for name in mpl.rcParams if not name.startswith("backend") and name in default]
+    own = {name: mpl.rcParams[name] for name in names if mpl.rcParams[name] != default[name]}
     chosen: list[Any] = ["default", HOUSE, own]
     if style is not None:
         chosen.append(dict(style) if isinstance(style, Mapping) else style)

@@ -161,6 +161,17 @@ def add_inset(axes: Axes, region: Region, room: Box, size: float) -> tuple[Axes,
     return inset, [frame, *lines]
 
 
+def outlines(axes: Axes, frame: list[Any]) -> list[np.ndarray]:
+    """The lines of :func:`add_inset` in data coordinates of the axes, shape (n, 2) each: no label may stand on them."""
+    box, *lines = frame
+    (x0, y0), (x1, y1) = box.get_bbox().get_points()
+    found = [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)])]
+    for line in lines:
+        corner = axes.transData.inverted().transform(line.axesA.transAxes.transform(line.xy1))
+        found.append(np.array([corner, line.xy2]))
+    return found
+
+
 def _sides(inner: np.ndarray, outer: np.ndarray) -> list[tuple[int, int]]:
     """The two corners, one beside the other, whose lines stay outside both rectangles."""
     dx, dy = outer.mean(axis=0) - inner.mean(axis=0)

@@ -17,6 +17,13 @@ LEADER = 14  # from this radius on a thin line leads from the text to its anchor
 DIRECTIONS = [(np.cos(a), np.sin(a)) for a in np.pi * (0.25 + np.arange(16) / 8)]
 CELL = 2.0  # pixels of the raster in which curves are drawn for the search
 IMPOSSIBLE = 1e6
+WORST = (
+    60.0,
+    24.0,
+)  # cost above which a label is left out: of a point, and of what stands near its place or nowhere
+ALONG = 16.0  # half cells of a leader on a curve that count as much as crossing it
+EDGE = 1.5  # points between a text and the frame
+CROWD = 9  # with more than so many further names at one place none of them says anything
 
 
 @dataclass(frozen=True)
@@ -73,7 +80,7 @@ def place_labels(
     anchors = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
     ground = Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
     boxes, leaders, written, left_out = list(taken or ()), [], [], 0
-    widths = _widths({label.text for label in labels}, size)
+    widths = text_widths({label.text for label in labels}, size)
     marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors]
     for i in sorted(range(len(labels)), key=lambda i: (not labels[i].kept, labels[i].near, labels[i].rank)):
         label, (ax, ay) = labels[i], anchors[i]
@@ -99,7 +106,7 @@ def place_labels(
                 break
         assert best is not None
         cost, cx, cy, box, radius = best
-        if cost > 60 and not label.kept:
+        if cost > WORST[label.near] and not label.kept:
             left_out += not label.near
             continue
         boxes.append(box)
@@ -111,7 +118,10 @@ def place_labels(
 
 
 def grouped(axes: Axes, labels: list[Label], near: float = 9.0, named: int = 3) -> list[Label]:
-    """One label for those that lie within `near` points of one another on the page; above `named`, "+n" stands for n more."""
+    """One label for those that lie within `near` points of one another on the page.
+
+    Above `named` names, "+n" stands for n more; where very many lie together, their number stands for all.
+    """
     figure = axes.get_figure(root=True)
     assert figure is not None
     spots = np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2)
@@ -130,18 +140,22 @@ def grouped(axes: Axes, labels: list[Label], near: float = 9.0, named: int = 3) 
         first = labels[ranked[0]]
         names = list(dict.fromkeys(labels[i].text for i in ranked))
         shown = names if len(names) <= named else [*names[: named - 1]]
-        text = ", ".join(shown) + (f" +{len(names) - len(shown)}" if shown != names else "")
+        more = len(names) - len(shown)
+        text = f"{len(names)} points" if more > CROWD else ", ".join(shown) + (f" +{more}" if more else "")
         found.append(Label(text, first.x, first.y, first.color, first.rank, first.kept, first.near))
     return found
 
 
-def _widths(texts: set[str], size: float) -> dict[str, float]:
+def text_widths(texts: set[str], size: float) -> dict[str, float]:
     """How wide texts are, in points, in the font in which they will be written."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextToPath
 
     font, measure = FontProperties(size=size), TextToPath()
-    return {text: float(measure.get_text_width_height_descent(text, font, False)[0]) for text in texts}
+    return {
+        text: float(measure.get_text_width_height_descent(text, font, text.count("$") > 1)[0])
+        for text in texts
+    }
 
 
 class Ground:
@@ -166,6 +180,19 @@ class Ground:
         r0, r1 = (int(min(max((y - self.y0) / CELL, 0), rows - 1)) for y in (box[1], box[3] + CELL))
         s = self.sums
         return float(s[r1, c1] - s[r0, c1] - s[r1, c0] + s[r0, c0])
+
+    def crossed(self, line: Box) -> float:
+        """How many curves a straight line crosses, but for those at its first end; more where it runs along one."""
+        rows, columns = self.sums.shape
+        count = max(int(np.hypot(line[2] - line[0], line[3] - line[1]) / CELL), 1)
+        along = np.linspace(0.0, 1.0, 2 * count)[:, None]
+        x, y = (line[:2] + along * np.subtract(line[2:], line[:2])).T
+        c = np.clip((x - self.x0) / CELL, 0, columns - 2).astype(int)
+        r = np.clip((y - self.y0) / CELL, 0, rows - 2).astype(int)
+        s = self.sums
+        met = s[r + 1, c + 1] - s[r, c + 1] - s[r + 1, c] + s[r, c] > 0.0
+        away = met & (np.cumsum(~met) > 2)  # the anchor lies on a curve of its own
+        return float(np.sum(away[1:] & ~away[:-1])) + float(np.sum(away)) / ALONG
 
     def free(self, boxes: np.ndarray) -> np.ndarray:
         """Which boxes, shape (n, 4), have no curve in them."""
@@ -192,18 +219,20 @@ def _cost(
     marks: list[Box],
     unit: float,
 ) -> float:
-    out = max(frame.x0 - box[0], box[2] - frame.x1, frame.y0 - box[1], box[3] - frame.y1, 0.0)
-    if out > 0.5 * unit or any(_overlap(box, other) for other in boxes):
+    out = max(frame.x0 - box[0], box[2] - frame.x1, frame.y0 - box[1], box[3] - frame.y1) + EDGE * unit
+    if out > EDGE * unit or any(_overlap(box, other) for other in boxes):
         return IMPOSSIBLE
     cost = (
-        10 * out / unit + 6 * min(ground.covered(box), 40) + 25 * sum(_overlap(box, mark) for mark in marks)
+        10 * max(out, 0.0) / unit
+        + 6 * min(ground.covered(box), 40)
+        + 25 * sum(_overlap(box, mark) for mark in marks)
     )
     if any(_crosses(other, box) for other in leaders):
         return IMPOSSIBLE
     if line is not None:
         if any(_crosses(line, other) for other in boxes) or any(_meet(line, other) for other in leaders):
             return IMPOSSIBLE
-        cost += 8 * sum(_crosses(line, mark) for mark in marks)
+        cost += 8 * sum(_crosses(line, mark) for mark in marks) + 12 * ground.crossed(line)
     return cost
 
 

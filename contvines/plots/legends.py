@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .figures import settle
+from .labels import text_widths
 from .style import LINES, PROVED, STATES, WIDTHS, Mark
 
 if TYPE_CHECKING:
@@ -160,7 +161,8 @@ def _below(figure: Figure, axes: Axes, handles: list[Any], own: bool, remarks: S
     if not handles:
         return
     size = 0.92 * FontProperties(size=mpl.rcParams["legend.fontsize"]).get_size_in_points()
-    wide = size * (0.54 * max(len(str(entry.get_label())) for entry in handles) + 4.0)
+    texts = {str(entry.get_label()) for entry in handles}
+    wide = max(text_widths(texts, size).values()) + 3.4 * size  # with the sample and the gaps beside it
     room = figure.get_size_inches()[0] * 72.0 if own else axes.get_window_extent().width / figure.dpi * 72.0
     look: dict[str, Any] = {
         "handles": handles,
@@ -176,11 +178,15 @@ def _below(figure: Figure, axes: Axes, handles: list[Any], own: bool, remarks: S
     if own:
         figure.legend(loc="outside lower center", **look)  # type: ignore[arg-type]
     else:
-        settle(figure)
-        box = axes.xaxis.get_tightbbox()
-        low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
-        gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, gap), borderaxespad=0.0, **look)
+        legend = axes.legend(loc="upper center", borderaxespad=0.0, **look)
+        for _ in range(
+            3
+        ):  # a layout may make room for the legend: the axes are lower then, and the gap another share
+            settle(figure)
+            box = axes.xaxis.get_tightbbox()
+            low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
+            gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
+            legend.set_bbox_to_anchor((0.5, gap), transform=axes.transAxes)
     settle(figure)
 
 

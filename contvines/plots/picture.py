@@ -14,7 +14,7 @@ from ..graph.proving import stretches
 from ..graph.shortening import short_word
 from .curves import Curve
 from .figures import scale
-from .insets import Region, add_inset, crowded_region, find_room
+from .insets import Region, add_inset, crowded_region, find_room, outlines
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
 from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATES, WIDTHS
@@ -149,10 +149,16 @@ class Picture:
 
     def obstacles(self) -> np.ndarray:
         """Points close together along all curves on these axes, so that a label cannot slip between two of them."""
+        lines = [
+            np.asarray(line.get_xydata(), dtype=float)
+            for line in self.axes.lines
+            if line.get_transform().contains_branch(self.axes.transData)
+        ]
+        if self.inset is not None:
+            lines += outlines(self.axes, self.frame)
         found = [np.empty((0, 2))]
-        for line in self.axes.lines:
-            xy = np.asarray(line.get_xydata(), dtype=float)
-            if len(xy) > 1 and line.get_transform().contains_branch(self.axes.transData):
+        for xy in lines:
+            if len(xy) > 1:
                 page = self.axes.transData.transform(xy)
                 steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T))
                 total = np.concatenate([[0.0], np.cumsum(steps)])

@@ -36,6 +36,8 @@ SYMBOLS = {
     "B_mean": "mean velocity at impacts $B$",
     "w": "position $w$",
     "w_rate": "velocity $w'$",
+    "v": "$v$",
+    "v_rate": "$v'$",
     "max_abs_w": r"largest $|w|$",
     "max_abs_q1": r"largest $|q_1|$ in units of $b$",
     "phase": r"forcing phase at the first event",

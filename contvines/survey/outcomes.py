@@ -205,8 +205,30 @@ def _compared(graph: Any) -> tuple[np.ndarray, np.ndarray]:
     return grid, np.array(rows).reshape(len(rows), GRID)
 
 
+def coexisting(found: Findings) -> dict[str, float]:
+    """The largest number of stable responses at one value, and the share of the interval in which there is more than one."""
+    count = np.isfinite(_compared(found.graph)[1]).sum(axis=0)
+    return {
+        "coexisting": float(count.max(initial=0)),
+        "ambiguous": float(np.mean(count > 1)) if count.size else np.nan,
+    }
+
+
 def share(found: Findings, word: str) -> dict[str, float]:
-    """Share of the simulated starts that settle on the motion with this word."""
+    """Share of the simulated starts that settle on the motion with this word.
+
+    Of an atlas: the mean over the values with the most starts, and the least of them. Else of all motions that were simulated.
+    """
+    met = found.graph.attractors
+    if met:
+        most = max(attractor.starts for attractor in met)
+        by_value: dict[float, float] = {}
+        for attractor in met:
+            if attractor.starts == most:
+                own = attractor.share if attractor.word == word else 0.0
+                by_value[attractor.value] = by_value.get(attractor.value, 0.0) + own
+        shares = list(by_value.values())
+        return {f"share_{word}": float(np.mean(shares)), f"share_{word}_least": min(shares)}
     words = [name for _, _, name in found.simulated]
     return {f"share_{word}": words.count(word) / len(words) if words else np.nan}
 
@@ -216,6 +238,7 @@ PLAIN: dict[str, Outcome] = {
     "lower_peak": lower_peak,
     "covered": covered,
     "activation": activation,
+    "coexisting": coexisting,
 }
 """Outcomes by name."""
 MADE: dict[str, Callable[..., Mapping[str, float]]] = {
@@ -224,3 +247,5 @@ MADE: dict[str, Callable[..., Mapping[str, float]]] = {
     "share": share,
 }
 """Outcomes of a word or kind, written ``stable:LR``, ``first:period-doubling``."""
+ARGUMENTS = {"stable": "word", "first": "kind", "share": "word"}
+"""What follows the colon, as the functions call it."""

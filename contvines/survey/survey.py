@@ -12,7 +12,7 @@ from typing import Any
 from ..hints import hinting
 from . import pools
 from .journal import Rows
-from .outcomes import MADE, PLAIN, Outcome
+from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
 from .plan import Plan, PlanError, planned
 from .results import Survey
 from .work import Job, Row
@@ -31,7 +31,7 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
         return known[said]
     kind, _, argument = said.partition(":")
     if kind in MADE and argument:
-        return partial(MADE[kind], **{"word" if kind == "stable" else "kind": argument})
+        return partial(MADE[kind], **{ARGUMENTS[kind]: argument})
     forms = [f"{name}:..." for name in MADE]
     raise PlanError(f"[survey] outcomes: {said!r} is unknown; choose of {', '.join([*known, *forms])}")
 
@@ -47,6 +47,7 @@ def survey(
     gaps: int = 5,
     values: int = 0,
     starts: int = 1,
+    atlas: Mapping[str, Any] | None = None,
     workers: int | None = None,
     cluster: Any = None,
     journal: str | Path | None = None,
@@ -70,6 +71,8 @@ def survey(
         Names (`contvines.survey.outcomes`), or functions ``(found: Findings) -> {column: number}``.
     gaps, values, starts : int
         Where the systems are simulated besides; see `contvines.survey.work.Job`.
+    atlas : mapping, optional
+        ``values``, ``starts``, ``seed``, ``scan`` of `contvines.atlas`: an atlas of each system in place of a diagram.
     workers : int, optional
         Processes of this machine; all cores by default, 1 for none beside this one.
     cluster : str or distributed.Client, optional
@@ -96,7 +99,9 @@ def survey(
     """
     plan = vary if isinstance(vary, Plan) else planned(vary)
     functions = tuple(outcome_named(o) if isinstance(o, str) else o for o in outcomes)
-    job = Job(family, over, (float(within[0]), float(within[1])), functions, gaps, values, starts, options)
+    job = Job(
+        family, over, (float(within[0]), float(within[1])), functions, gaps, values, starts, options, atlas
+    )
     systems = plan.systems()
     told = _told(plan, over, job.within, about)
     digest = digest_of(plan, over, job.within, about)

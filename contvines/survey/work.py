@@ -34,6 +34,8 @@ class Job:
         At how many values of the interval it is simulated besides, and from how many starts each.
     options : dict
         Of `contvines.diagram`.
+    atlas : mapping, optional
+        Of `contvines.atlas`: with it an atlas of each system is made, so that motions count that hang together with nothing else.
     """
 
     family: Callable[[Mapping[str, float], Any], Any]
@@ -44,6 +46,7 @@ class Job:
     values: int = 0
     starts: int = 1
     options: dict[str, Any] = field(default_factory=dict)
+    atlas: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -66,13 +69,11 @@ class Row:
 
 def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) -> Row:
     """The outcomes of one system; a system that fails is a row with its sentence."""
-    from ..graph.automatic import diagram
-
     columns: dict[str, float] = {}
     try:
         with np.errstate(all="ignore"):
             seed = job.family(values, near)
-            graph = diagram(seed, over=job.over, within=job.within, **job.options)
+            graph = _graph(job, seed)
             found = Findings(graph, seed, _simulated(job, values, graph))
             for outcome in job.outcomes:
                 columns |= {name: float(value) for name, value in outcome(found).items()}
@@ -80,6 +81,16 @@ def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) ->
         sentence = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
         return Row(index, {}, sentence or f"{type(error).__name__} without a word of why")
     return Row(index, columns)
+
+
+def _graph(job: Job, seed: Any) -> Any:
+    """The diagram of a system, or its atlas."""
+    from ..coexistence.build import atlas
+    from ..graph.automatic import diagram
+
+    if job.atlas is None:
+        return diagram(seed, over=job.over, within=job.within, **job.options)
+    return atlas(seed, over=job.over, within=job.within, **job.options, **job.atlas)
 
 
 def _simulated(job: Job, values: Mapping[str, float], graph: Any) -> list[Any]:

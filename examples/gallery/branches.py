@@ -35,8 +35,7 @@ def main():
     engaged = slow["C2"] > 1.1 * fold
     slow = {name: values[engaged] for name, values in slow.items()}
 
-    figure = paper.figure(9.6, 4.4)
-    one, two = figure.subplots(1, 2, sharey=True)
+    figure, ((one, two),) = paper.panels(9.6, 4.4, 1, 2, sharey=True)
     for axes in (one, two):
         for name, color in COLORS.items():
             axes.plot(right[name][:, 0], right["C2"], color=color, label=NAMES[name])
@@ -49,10 +48,15 @@ def main():
         two.plot(slow["B" if name == "mean" else name], slow["C2"], ".", color=color, ms=4)
     for level in (fold, breaking):
         one.axhline(level, color=paper.GREY, lw=0.8, ls=paper.DASHED)
-    one.legend(loc="lower right")
+    paper.legend(two, loc="lower right")
     one.set(xlabel="speed of the absorber", ylabel="$C^2$", ylim=(0, 0.9), xlim=(0, 1.7))
-    two.set(xlabel="speed of the absorber", xlim=(0, 1.7), title="dots: free motion, coupled machine")
-    one.set(title="dotted: beyond a border, no such motion")
+    two.set(
+        xlabel="speed of the absorber",
+        xlim=(0, 1.7),
+        ylabel="" if not paper.narrow() else "$C^2$",
+        title="dots: free motion, coupled machine",
+    )
+    one.set(title="dashed: unstable; dotted: beyond a border")
 
     lowest = {name: float(right[name][0, 0]) for name in COLORS}
     level = float(two_impacts.friction_number(0.1, 0.422, paper.MASS_RATIO))

@@ -37,8 +37,7 @@ def exact(state, eps: float, flow) -> tuple[float, float]:
 
 def main():
     sigma = -2.58
-    figure = paper.figure(9.4, 4.2)
-    left, right = figure.subplots(1, 2)
+    figure, ((left, right),) = paper.panels(9.4, 4.2, 1, 2)
     numbers = {}
     eps = np.array(MASS_RATIOS)
     for closure, color, style in (("exact", paper.BLUE, "-"), ("paper", paper.RED, paper.DASHED)):
@@ -58,8 +57,8 @@ def main():
             round(float(x), 7) for x in limit - [state.velocity, state.amplitude**2]
         )
     left.loglog(eps, eps, color=paper.GREY, lw=0.8, label="slope 1")
-    left.set(xlabel=r"mass ratio $\varepsilon$", ylabel="distance to the exact orbit")
-    left.legend(fontsize=8)
+    left.set(xlabel=r"mass ratio $\varepsilon$", ylabel="distance", title="distance to the exact orbit")
+    paper.legend(left)
 
     good, rough = ms.SlowFlow(), ms.SlowFlow(closure="paper")
     detunings = np.concatenate([np.linspace(-4.8, -2.4, 60), np.linspace(0.66, 4.3, 90)])
@@ -84,7 +83,7 @@ def main():
             label="$C^2$" if side[0] else None,
         )
     right.set(xlabel=r"detuning $\sigma$", title="paper's closure minus exact one, stable response")
-    right.legend()
+    paper.legend(right)
     for k, name in ((1, "B"), (2, "C^2")):
         worst = int(np.argmax(np.abs(table[:, k])))
         numbers[f"largest difference of the closures in {name}, and at which sigma"] = (

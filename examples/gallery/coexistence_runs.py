@@ -27,12 +27,16 @@ def envelope(run):
     return seen.v**2 + (seen.v_rate / omega) ** 2, np.angle(np.exp(1j * gamma))
 
 
+def unbroken(angle):
+    """An angle with gaps where it is counted anew from -pi."""
+    return np.where(np.abs(np.diff(angle, prepend=angle[0])) > np.pi, np.nan, angle)
+
+
 def main():
     machine = paper.coupled(2.47, detuning=-2.58)
     flow = ms.SlowFlow()
     states = [s for s in ms.equilibria(flow, -2.58) if s.seen]
-    figure = paper.figure(11.6, 6.6)
-    panels = figure.subplots(2, 4)
+    figure, panels = paper.panels(11.6, 6.6, 2, 4)
     numbers = {}
     b = np.linspace(0, 1.25, 400)
     for row, start, kind in zip(panels, ({}, {"q1": 1.0, "q2": 1.0}), ("sliding", "impacting")):
@@ -51,7 +55,7 @@ def main():
             row[2].plot(np.zeros_like(squared), squared, color=paper.GREEN, lw=0.8, marker=".", ms=2)
         for s in states:
             row[2].plot(s.velocity, s.amplitude**2, "o", color=paper.RED)
-        row[3].plot(gamma, squared, color=paper.GREEN, lw=0.9, label="simulated")
+        row[3].plot(unbroken(gamma), squared, color=paper.GREEN, lw=0.9, label="simulated")
         first = 20
         follow = ms.integrate(flow, -2.58, float(np.sqrt(squared[first])), float(gamma[first]), 12.0, kind) \
             if kind == "sliding" and squared[first] > flow.sliding_bounds[0] ** 2 else None  # fmt: skip
@@ -71,7 +75,10 @@ def main():
         row[3].plot(state.phase, state.amplitude**2, "o", color=paper.RED)
         row[2].set(xlabel="$B$", ylabel="$C^2$", ylim=(0, 1.1))
         row[3].set(xlabel=r"$\gamma$", ylabel="$C^2$")
-        row[3].legend(loc="best", fontsize=7.5)
+        paper.legend(row[3], loc="best")
+        if kind == "sliding":
+            paper.legend(row[0], loc="upper right")
+            row[0].set(ylim=(-1.1, 1.65))
         c = found.nodes[0, 2] ** 2 + (found.nodes[0, 3] / machine.frequency) ** 2
         numbers[f"{kind}: word"] = found.text
         numbers[f"{kind}: C^2 simulated, slow flow"] = (round(float(c), 6), round(state.amplitude**2, 6))

@@ -59,7 +59,7 @@ def main():
     axes.plot([], [], "o", color=paper.RED, ms=8, label="steady state, seen")
     axes.plot([], [], "o", color=paper.RED, mfc="w", ms=8, label="steady state, not seen")
     axes.set(xlabel="$B$", ylabel="$C^2$", ylim=(0, 1.1), xlim=(-0.05, 1.25))
-    axes.legend(loc="upper center")
+    paper.legend(axes, loc="upper center")
     return figure, numbers
 
 

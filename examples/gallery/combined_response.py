@@ -69,10 +69,10 @@ def main():
         axes.axhline(1e3 * level, color=paper.RED, lw=0.8, ls=style)
     axes.text(8.58, 1e3 * machine.upper_bound + 0.2, "$q_{1,\\max}$", ha="right")
     axes.text(8.58, 1e3 * machine.activation_threshold + 0.2, "$q_{1,\\min}$", ha="right")
-    axes.text(8.58, 1e3 * high + 0.2, "sliding ends", ha="right", fontsize=8)
-    axes.text(8.58, 1e3 * low - 0.2, "sliding begins", ha="right", va="top", fontsize=8)
+    axes.text(8.58, 1e3 * high + 0.2, "sliding ends", ha="right", fontsize="small")
+    axes.text(8.58, 1e3 * low - 0.2, "sliding begins", ha="right", va="top", fontsize="small")
     axes.set(xlabel="$f$ [Hz]", ylabel="$|q_1|_{\\max}$ [mm]", ylim=(0, 29), xlim=(6.8, 8.6))
-    axes.legend(loc="upper left", fontsize=8)
+    paper.legend(axes, loc="upper left")
     numbers = {
         "q1_min, q1_max in mm": (
             round(1e3 * float(machine.activation_threshold), 4), round(1e3 * float(machine.upper_bound), 4)),

@@ -20,11 +20,11 @@ PRINTED = (1.039, 1.007, 1.022, 0.973)
 
 def main():
     flow = ms.SlowFlow(forcing=1.65, gravity=0.105)
-    figure = paper.figure(8.6, 6.6)
+    figure, panels = paper.panels(8.6, 6.6, 2, 2, sharex=True, sharey=True)
     numbers = {}
     b = np.linspace(0.0, 1.6, 1200)
     manifold, k1, k2 = flow.harmonics(b)
-    for axes, sigma, label in zip(figure.subplots(2, 2, sharex=True, sharey=True).flat, DETUNINGS, PRINTED):
+    for axes, sigma, label in zip(panels.flat, DETUNINGS, PRINTED):
         stiff = flow.damping**2 + 4 * sigma**2
         middle = (2 * flow.damping * k1 + 4 * sigma * k2 + flow.forcing**2) / (2 * stiff)
         with np.errstate(invalid="ignore"):
@@ -46,7 +46,10 @@ def main():
         axes.set(ylim=(0, 1.2), title=rf"$\sigma={sigma}$, $\Omega={omega:.4f}$")
         axes.set(xlabel="$B$" if axes.get_subplotspec().is_last_row() else "")
         axes.set(ylabel="$C^2$" if axes.get_subplotspec().is_first_col() else "")
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    axes.plot([], [], "o", color=paper.RED, ms=7, label="steady state, seen")
+    axes.plot([], [], "o", color=paper.RED, mfc="w", ms=7, label="not seen")
+    columns = 2 if paper.narrow() else 4
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=columns)
     return figure, numbers
 
 

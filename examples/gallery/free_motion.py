@@ -36,15 +36,14 @@ def main():
     half = 0.6 * start
     passed = float(np.interp(-(half**2), -slow["C2"][engaged], slow["time"][engaged]))
 
-    figure = paper.figure(9.6, 4.2)
-    left, right = figure.subplots(1, 2)
+    figure, ((left, right),) = paper.panels(9.6, 4.2, 1, 2)
     seen = run.sample(per_period=300)
     turns = (seen.phase - seen.phase[0]) / (2 * np.pi)
     left.plot(turns, seen.w - seen.v, color=paper.BLUE, label=r"$\Phi=w-v$")
     left.plot(turns, seen.w, color=paper.PALE, lw=1, label="$w$")
     left.plot(turns, seen.v, color=paper.GREY, lw=1, ls=paper.DASHED, label="$v$")
     left.set(xlabel=r"$\tau/2\pi$", title=r"$\mu=0.5$, $\tilde g=0.211$", xlim=(0, 6), ylim=(-1.8, 2.2))
-    left.legend(loc="upper right", ncols=3)
+    paper.legend(left, loc="upper right", ncols=3)
     b = np.linspace(0, 1.3, 400)
     right.plot(b, ms.squared_amplitude(b, flow.loss, flow.level), color="k", label="manifold")
     right.plot(
@@ -57,11 +56,13 @@ def main():
     right.plot(slow["B"], slow["C2"], ".", color=paper.RED, ms=3, label="simulated impacts")
     edge = np.maximum(b - flow.level, 0.0) ** 2
     right.fill_between(b, 0, edge, color="#dbe6f1", lw=0, label=r"$C<B-h$")
-    right.plot(*[low.velocity, low.amplitude**2], "o", color=paper.BLUE)
+    right.plot(
+        *[low.velocity, low.amplitude**2], "o", color=paper.BLUE, label="where it lets go: $B_{\\min}$"
+    )
     right.set(
         xlabel="$B$", ylabel="$C^2$", ylim=(0, 1.0), xlim=(0, 1.3), title=r"$\mu=0.3$, $\tilde g=0.355$"
     )
-    right.legend(loc="upper center")
+    paper.legend(right, loc="upper center")
 
     rough = ms.SlowFlow(restitution=0.5, friction=1.0, gravity=0.15)
     ends = [ms.reversal_bound(p.amplitude, p.velocity, flow.level) for p in (low, flow.symmetry_limit)]

@@ -21,15 +21,14 @@ from orbits.simulation import simulate
 
 def main():
     rubbing, smooth = ms.SlowFlow(), ms.SlowFlow(friction=0.0)
-    figure = paper.figure(10.2, 4.4)
-    left, right = figure.subplots(1, 2)
+    figure, ((left, right),) = paper.panels(10.2, 4.4, 1, 2)
     numbers = {}
     ranges = {}
     for flow, color, name in ((rubbing, paper.BLUE, "mu = 0.5"), (smooth, paper.RED, "mu = 0")):
         for curve in ms.frequency_response(flow, points=3000):
             left.plot(curve.detuning, curve.amplitude, color=color, lw=0.9, alpha=0.45)
             left.plot(curve.detuning, np.where(curve.seen, curve.amplitude, np.nan), color=color, lw=2.2,
-                      ls="-" if flow is rubbing else paper.DASHED, label=name.replace("mu", r"$\mu$"))  # fmt: skip
+                      ls="-" if flow is rubbing else paper.DASHED, label=rf"${name}$".replace("mu", r"\mu"))  # fmt: skip
             seen = curve.detuning[curve.seen]
             ranges[name] = (seen[seen < 0].min(), seen[seen > 0].max())
             numbers[f"{name}: seen from sigma to sigma"] = tuple(round(float(x), 4) for x in ranges[name])
@@ -38,8 +37,8 @@ def main():
         numbers[f"{name}: alpha_c, beta_c, offset"] = tuple(
             round(float(x), 5) for x in (lambda c: (c.alpha_c, c.beta_c, c.offset_c))(ms.coefficients(flow))
         )
-    left.set(xlabel=r"detuning $\sigma$", ylabel="$C$", ylim=(0, 1.5), xlim=(-7, 7))
-    left.legend(loc="upper left")
+    left.set(xlabel=r"detuning $\sigma$ (pale: not seen)", ylabel="$C$", ylim=(0, 1.5), xlim=(-7, 7))
+    paper.legend(left, loc="upper left")
     for sigma in (-4.0, -3.0, 2.0, 3.0):
         pair = []
         for flow in (rubbing, smooth):
@@ -60,10 +59,16 @@ def main():
         right.plot(turns, height, color=color, ls="-" if mu else paper.DASHED, label=name)
         flow = ms.SlowFlow(forcing=0.0, friction=mu)
         right.plot(
-            turns, ms.decay_amplitude(flow, start, 2 * np.pi * paper.MASS_RATIO * turns), color="k", lw=0.8
+            turns,
+            ms.decay_amplitude(flow, start, 2 * np.pi * paper.MASS_RATIO * turns),
+            color="k",
+            lw=0.8,
+            label=None if mu else "slow flow",
         )
         bound = ms.decay_bound(flow, start, 2 * np.pi * paper.MASS_RATIO * turns)
-        right.plot(turns, bound, color=color, lw=0.8, ls=paper.DOTTED)
+        right.plot(
+            turns, bound, color=color, lw=0.8, ls=paper.DOTTED, label=None if mu else "exponential bound"
+        )
         for mark in (40, 125):
             numbers[f"mu = {mu}: simulated C after {mark} periods"] = float(np.interp(mark, turns, height))
         numbers[f"mu = {mu}: periods to release, slow flow"] = float(
@@ -73,11 +78,11 @@ def main():
     right.plot(turns, start * np.exp(-0.5 * paper.MASS_RATIO * paper.DAMPING * 2 * np.pi * turns), color=paper.GREY,
                ls=paper.DOTTED, label="oscillator alone")  # fmt: skip
     right.set(
-        xlabel="periods (black: slow flow, dotted: its exponential bound)",
+        xlabel="periods",
         ylabel="$C$ of the free motion",
         ylim=(0, 0.75),
     )
-    right.legend(loc="upper right")
+    paper.legend(right, loc="upper right")
     return figure, numbers
 
 

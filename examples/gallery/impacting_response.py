@@ -45,9 +45,8 @@ def main():
         for point in ms.special_points(curve):
             s = point.state
             if point.kind in ("fold", "hopf"):
-                axes.plot(
-                    s.detuning, s.amplitude, "s" if point.kind == "fold" else "h", color=paper.RED, ms=6
-                )
+                mark, name = ("s", "fold") if point.kind == "fold" else ("h", "Hopf")
+                axes.plot(s.detuning, s.amplitude, mark, color=paper.PURPLE, ms=6, label=f"averaged: {name}")
                 side = "attracting" if s.attracting else "repelling"
                 numbers[f"{point.kind} on the {side} part (sigma, B, C^2)"] = (
                     round(s.detuning, 5), round(s.velocity, 5), round(s.amplitude**2, 5))  # fmt: skip
@@ -71,10 +70,12 @@ def main():
         axes.plot(value, c, "o", color=paper.RED, ms=4)
         worst = max(worst, abs(c - state.amplitude) / state.amplitude)
     axes.plot([], [], "o", color=paper.RED, ms=4, label="simulated, two symmetric impacts")
-    axes.axhline(float(flow.activation.amplitude), color="k", lw=0.7)
-    axes.axhline(float(flow.symmetry_limit.amplitude), color="k", lw=0.7)
+    for level, name in ((flow.activation.amplitude, r"\min"), (flow.symmetry_limit.amplitude, r"\max")):
+        axes.axhline(float(level), color="k", lw=0.7)
+        axes.text(6.9, float(level) + 0.015, f"$C_{{{name}}}$", ha="right")
     axes.set(xlabel=r"detuning $\sigma$", ylabel="$C$", ylim=(0, 1.6), xlim=(-7, 7))
-    axes.legend(loc="upper left", fontsize=7.5)
+    handles = {str(h.get_label()): h for h in axes.get_legend_handles_labels()[0]}
+    paper.legend(axes, loc="upper left", handles=list(handles.values()))
     b = 1.0
     at = ms.backbone(flow, [b])
     numbers |= {

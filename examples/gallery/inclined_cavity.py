@@ -60,11 +60,15 @@ def detached(slope: float):
 def main():
     figure = paper.figure(7.2, 4.8)
     axes = figure.subplots()
+    near = axes.inset_axes((0.48, 0.34, 0.5, 0.33))  # where the pitchfork comes apart
+    near.set(xlim=(0.67, 0.82), ylim=(0.99, 1.2))
+    near.tick_params(labelsize="small")
+    near.locator_params(nbins=4)
     straight, level = curves(machine(0.0).orbit("LR", amplitude=0.55))
     for k, (amplitude, speed, _) in enumerate(straight):
-        axes.plot(
-            amplitude, speed, color=paper.GREY, lw=0.9, ls=paper.DOTTED, label="level" if k == 0 else None
-        )
+        for place in (axes, near):
+            name = "level" if k == 0 else None
+            place.plot(amplitude, speed, color=paper.GREY, lw=0.9, ls=paper.DOTTED, label=name)
     breaking = next(s.value for s in level.special.values() if s.kind == "symmetry-breaking")
     folds = []
     for slope in SLOPES:
@@ -78,14 +82,28 @@ def main():
                 continue
             for amplitude, speed, stable in drawn:
                 for part, style in ((stable, "-"), (~stable, paper.DASHED)):
-                    axes.plot(amplitude, np.where(part, speed, np.nan), color=paper.BLUE, ls=style)
+                    for place in (axes, near):
+                        place.plot(amplitude, np.where(part, speed, np.nan), color=paper.BLUE, ls=style)
         folds.append(min(nearest))
     axes.plot([], [], color=paper.BLUE, label=f"slope {SLOPES[-1]:g}, stable")
     axes.plot([], [], color=paper.BLUE, ls=paper.DASHED, label="unstable")
-    axes.axvline(breaking, color=paper.GREY, lw=0.7)
-    axes.axvline(folds[-1], color=paper.BLUE, lw=0.7)
+    for value, color, name, side in (
+        (breaking, paper.GREY, "symmetry\nbreaking", "right"),
+        (folds[-1], paper.BLUE, "fold", "left"),
+    ):
+        near.axvline(value, color=color, lw=0.7)
+        near.text(
+            value + (0.002 if side == "left" else -0.002),
+            1.19,
+            name,
+            color=color,
+            ha=side,
+            va="top",
+            fontsize="small",
+        )
+    axes.indicate_inset_zoom(near, edgecolor="0.45")
     axes.set(xlabel="amplitude $C$", ylabel="mean speed $B$ at the left wall", xlim=(LEAST, LARGEST))
-    axes.legend(loc="upper left")
+    paper.legend(axes, loc="upper left")
     gaps = np.array(folds) - breaking
     powers = np.log(gaps[1:] / gaps[:-1]) / math.log(2.0)
     return figure, {

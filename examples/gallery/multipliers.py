@@ -26,6 +26,12 @@ def printed_multipliers(b: float, R: float, h: float) -> np.ndarray:
     return np.linalg.eigvals([[a**2 - beta * c, beta * (a - d)], [c * (d - a), d**2 - beta * c]])
 
 
+def discriminant(orbit) -> float:
+    """Positive where both multipliers are real, negative where they are a pair."""
+    first, second = orbit.multipliers
+    return float(np.real((first - second) ** 2))
+
+
 def main():
     machine = Absorber(**paper.STRONG)
     fold, breaking = two_impacts.limits(machine)
@@ -34,8 +40,8 @@ def main():
     bent = two_impacts.asymmetric(machine, 1.0)
     border = two_impacts.at(bent, lambda o: o.margin).params[0] ** 2
 
-    figure = paper.figure(7.4, 5.6)
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    straight, bent = (two_impacts.refined(orbits, discriminant) for orbits in (straight, bent))
+    figure, ((upper,), (lower,)) = paper.panels(7.4, 5.6, 2, 1, sharex=True)
     for orbits, name in ((straight, "symmetric"), (bent, "asymmetric")):
         c2 = np.array([o.params[0] ** 2 for o in orbits])
         values = np.array([np.sort_complex(o.multipliers) for o in orbits])
@@ -54,17 +60,17 @@ def main():
                         label="only in the maps" if k == 0 else None,
                     )
     for axes in (upper, lower):
-        axes.axvline(border, color=paper.GREY, lw=0.8)
+        axes.axvline(border, color=paper.GREY, lw=0.8, label="border")
     upper.axhline(1, color="k", lw=0.7)
     upper.axhline(-1, color="k", lw=0.7)
     upper.set(ylabel="real part", ylim=(-1.3, 1.3))
-    lower.set(ylabel="imaginary part", xlabel="$C^2$")
-    upper.legend(loc="lower left", ncols=3)
+    lower.set(ylabel="imaginary part", xlabel="$C^2$", ylim=(-1.1, 0.65))
+    paper.legend(lower, loc="lower left", ncols=2)
 
     R = float(two_impacts.restitution_ratio(machine.restitution))
     h = float(two_impacts.friction_number(machine.friction, machine.gravity, machine.mass_ratio))
     gap = 0.0
-    for orbit in straight[1:]:
+    for orbit in two_impacts.symmetric(machine, squares)[1:]:
         mean = float(orbit.nodes[0, 1]) - h
         ours = np.sort_complex(orbit.multipliers)
         gap = max(gap, float(np.max(np.abs(ours - np.sort_complex(printed_multipliers(mean, R, h))))))

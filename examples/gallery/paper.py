@@ -16,12 +16,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib.style
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-import orbits
+from contvines.plots.figures import new_figure, settle, styled
+from contvines.plots.legends import place_legend
 
 MASS_RATIO = 0.006
 DAMPING = 0.9
@@ -33,14 +33,54 @@ MIDDLE = {"restitution": 0.76, "friction": 0.3, "gravity": 0.355, "mass_ratio": 
 
 BLUE, RED, GREEN, PURPLE, GREY, PALE = "#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#5e5e5e", "#9db8d2"
 DASHED, DOTTED = (0, (5, 2.2)), (0, (1, 1.8))
-STYLE = Path(orbits.__file__).parent / "plots" / "house.mplstyle"
+COLUMN = 5.0  # inches: in a narrower picture panels stand one above another and legends below
+width: float | None = None  # of the picture that is being drawn, inches; None: as wide as the script has it
+_legends: list[Any] = []  # axes of the picture that is being drawn
 
 
-def figure(*shape: float) -> Figure:
-    """A figure without a window, `shape` in inches."""
-    made = Figure(figsize=shape or (7.2, 4.6))
-    FigureCanvasAgg(made)
-    return made
+def narrow() -> bool:
+    """Whether the picture is to fit a journal's column."""
+    return width is not None and width < COLUMN
+
+
+def figure(wide: float = 7.2, high: float = 4.6) -> Figure:
+    """A figure without a window, in inches; all of it smaller where `width` asks for that."""
+    return new_figure((wide, high) if width is None else (width, width * max(high / wide, 0.706)))
+
+
+def panels(wide: float, high: float, rows: int, columns: int, **sharing: Any) -> tuple[Figure, Any]:
+    """A figure of `wide` x `high` inches and its panels, shape (rows, columns); at most two beside one another in a column."""
+    if not narrow():
+        made = figure(wide, high)
+        return made, made.subplots(rows, columns, squeeze=False, **sharing)
+    assert width is not None
+    count = rows * columns
+    across = 1 if count < 4 else 2
+    made = new_figure((width, width * (0.62 if across == 1 else 0.45) * count / across))
+    if across != columns:
+        sharing = {}
+    return made, made.subplots(count // across, across, squeeze=False, **sharing).reshape(rows, columns)
+
+
+def legend(axes: Any, **options: Any) -> None:
+    """A legend inside the axes; where the picture is narrow, below them."""
+    _legends.append(axes)
+    if not narrow():
+        axes.legend(**options)
+
+
+def _fit(picture: Figure) -> None:
+    """Smaller marks and legends below, where the picture is narrow."""
+    for line in picture.findobj(Line2D) if narrow() else []:
+        line.set_markersize(min(line.get_markersize(), 4.3))  # type: ignore[attr-defined]
+    settle(picture)
+    for axes in (
+        2 * _legends if narrow() else []
+    ):  # twice: a second legend moves what the first stands beneath
+        handles = axes.get_legend_handles_labels()[0]
+        unlike = list({str(h.get_label()): h for h in handles}.values())
+        place_legend(axes, unlike, "below", own=len(picture.axes) == 1)
+    _legends.clear()
 
 
 def coupled(forcing: float, *, detuning: float | None = None, frequency: float | None = None, **changes: Any):
@@ -101,11 +141,18 @@ def peak(attractor: Any) -> float:
     return simulate(attractor.model, attractor.state, periods=max(1, attractor.periods or 64)).peak_cavity()
 
 
+def sampled(run: Any, per_period: int) -> Any:
+    """A simulated motion at even instants, and just before and after its events: an impact is a step at a wall."""
+    events = run.rows[:, 0] + 2 * np.pi * run.rows[:, 1]
+    span = run.sample(per_period=per_period).phase
+    return run.sample(np.unique(np.concatenate([span, events - 1e-9, events]).clip(span[0], span[-1])))
+
+
 def portrait(panels: Any, machine: Any, state: Any, periods: int, *, color: str = BLUE) -> None:
     """Displacement of the absorber over time and its phase portrait, on two axes."""
     from orbits.simulation import simulate
 
-    seen = simulate(machine, state, periods=periods).sample(per_period=600)
+    seen = sampled(simulate(machine, state, periods=periods), 600)
     turns = (seen.phase - seen.phase[0]) / (2 * np.pi)
     history, plane = panels
     history.plot(turns, seen.w, color=color, label="absorber in its cavity $w$")
@@ -116,6 +163,7 @@ def portrait(panels: Any, machine: Any, state: Any, periods: int, *, color: str 
         plane.axvline(wall, color="k", lw=0.7)
     plane.plot(seen.w, seen.w_rate, color=color)
     plane.set(xlabel="$w$", ylabel="$w'$")
+    plane.set_xticks((-1, 0, 1))
     plane.invert_xaxis()  # the left wall, w = +1, on the left
 
 
@@ -133,14 +181,20 @@ def run(
     folder : Path, optional
         Where the picture goes; from the command line if not given, else the folder ``pictures``.
     """
+    global width
+    wanted = width
     if folder is None:
         parser = argparse.ArgumentParser(description=f"Draws {name}.png and prints what it shows.")
         parser.add_argument("folder", nargs="?", type=Path, default=Path("pictures"), help="output folder")
-        folder = parser.parse_args().folder
+        parser.add_argument("--width", type=float, help="inches, such as 3.4 for a column of a journal")
+        given = parser.parse_args()
+        folder, wanted = given.folder, given.width
     folder.mkdir(parents=True, exist_ok=True)
-    with matplotlib.style.context(["default", str(STYLE)]):
+    with styled():
+        width = wanted
         picture, numbers = main()
-        picture.savefig(folder / f"{name}.png", dpi=130)
+        _fit(picture)
+        picture.savefig(folder / f"{name}.png", dpi=130 if not narrow() else 200)
     print(f"{name}: {folder / f'{name}.png'}")
     for what, value in numbers.items():
         shown = f"{value:.6g}" if isinstance(value, float) else value

@@ -31,12 +31,11 @@ def main():
     printed = quad(lambda z: rough(z) * np.cos(z), 0, 2 * np.pi)[0] / np.pi
 
     z = np.linspace(-np.pi, 3 * np.pi, 1601)
-    figure = paper.figure(7.2, 6.0)
-    left, right = figure.subplots(2, 1, sharex=True)
+    figure, ((left,), (right,)) = paper.panels(7.2, 6.0, 2, 1, sharex=True)
     left.plot(z, triangle(z), color=paper.BLUE, label=r"$\Pi(z)=\arcsin(\sin z)$")
     left.plot(z, square(z), color=paper.RED, ls=paper.DASHED, label=r"$M(z)=\Pi'(z)$")
     left.plot(z, -ripple(z) * np.pi, color=paper.GREY, ls=paper.DOTTED, label=r"$(\Pi^2-\pi^2/4)\,M$")
-    left.legend(loc="upper right", ncols=3)
+    paper.legend(left, loc="upper right", ncols=3)
     left.set(ylim=(-3, 4))
     right.plot(z, ripple(z), color=paper.BLUE, label="ripple, in units of $h$")
     right.plot(
@@ -47,7 +46,7 @@ def main():
         label=rf"first harmonic $8/\pi^2$ = {exact:.4f}",
     )
     right.plot(z, printed * np.cos(z), color=paper.RED, ls=paper.DOTTED, label=f"as printed, {printed:.4f}")
-    right.legend(loc="upper right", ncols=3)
+    paper.legend(right, loc="upper right", ncols=3)
     right.set(xlabel="$z$", ylim=(-0.9, 1.2))
     return figure, {
         "kappa by quadrature": exact,

@@ -75,7 +75,7 @@ def main():
     axes.plot([], [], "o", color=paper.RED, label="simulated, sliding")
     axes.plot([], [], "s", color=paper.RED, mfc="w", label="simulated, stick-slip")
     axes.set(xlabel=r"detuning $\sigma$", ylabel="$|q_1|_{\\max}/b$", ylim=(0, 1.3))
-    axes.legend(loc="upper left", fontsize=7.5)
+    paper.legend(axes, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
     shaking = [
         (word, c * (1 + paper.MASS_RATIO * x) ** 2 / (1 + paper.MASS_RATIO)) for x, (word, c) in words.items()
     ]

@@ -43,14 +43,14 @@ def main():
         )
     for orbit, marker, name in (
         (border, "v", "border: velocity touches 0"),
-        (doubling, "^", "multiplier -1 of the maps"),
+        (doubling, "^", "multiplier −1 of the maps"),
     ):
         speed = two_impacts.speeds([orbit])
         axes.plot(speed["mean"][0], np.repeat(speed["C2"], 2), marker, color=paper.RED, label=name)
     start = two_impacts.speeds(two_impacts.symmetric(machine, np.array([fold + 1e-12, breaking])))
     axes.plot(start["mean"][0, 0], fold, "s", color=paper.BLUE, label="fold")
     axes.plot(start["mean"][1, 0], breaking, "D", color=paper.BLUE, label="symmetry breaking")
-    axes.legend(loc="upper center")
+    paper.legend(axes, loc="upper center")
     axes.set(xlabel="mean speed $B$", ylabel="$C^2$", ylim=(0, 1.0), xlim=(0, 1.45))
 
     both = two_impacts.symmetric(machine, np.array([fold + 1e-9, breaking]))

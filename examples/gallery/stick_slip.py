@@ -17,14 +17,12 @@ from orbits.attractors import find_attractor
 def main():
     machine = paper.coupled(2.47, detuning=-9.04)
     found = find_attractor(machine, transient=1500)
-    figure = paper.figure(9.2, 3.8)
-    panels = figure.subplots(1, 2)
+    figure, (panels,) = paper.panels(9.2, 3.8, 1, 2)
     paper.portrait(panels, machine, found.state, 3)
-    panels[0].legend(loc="upper right", ncols=2)
+    paper.legend(panels[0], loc="upper right", ncols=2)
     reach = 1.3 * float(np.max(np.abs(found.nodes[:, 1])))
     panels[0].set(ylim=(-0.2, 0.25))
-    panels[1].set(xlim=(-reach, reach))
-    panels[1].locator_params(axis="x", nbins=5)
+    panels[1].set(xlim=(reach, -reach), xticks=(0.01, 0.0, -0.01))
     level = float(ms.friction_level(0.5, 0.211))
     c = float(np.hypot(found.nodes[0, 2], found.nodes[0, 3] / machine.frequency))
     return figure, {

@@ -34,9 +34,15 @@ def main():
     axes.plot(f, 1e3 * alone, color=paper.GREY, label="oscillator alone")
     axes.plot(f, 1e3 * limit, color=paper.BLUE, label=r"$q_{1,\mathrm{cr}}=\mu g/\omega^2$")
     axes.plot(f, np.where(held, 1e3 * stuck, np.nan), color="k", ls=paper.DASHED, label="absorber stuck")
-    axes.plot([low, high], [1e3 * machine.sticking_limit(x) for x in (low, high)], "o", color=paper.RED)
+    axes.plot(
+        [low, high],
+        [1e3 * machine.sticking_limit(x) for x in (low, high)],
+        "o",
+        color=paper.RED,
+        label="it begins to move",
+    )
     axes.set(xlabel="$f$ [Hz]", ylabel="$|q_1|_{\\max}$ [mm]", ylim=(0, 12))
-    axes.legend(loc="upper left")
+    paper.legend(axes, loc="upper left")
 
     numbers = {
         "base amplitude E in mm": 1e3 * base,

@@ -25,8 +25,9 @@ STYLES = {"sliding": ("o", "k", "sliding, stick-slip"), "stuck": ("x", paper.GRE
 def main():
     flow = ms.SlowFlow()
     frequencies = np.linspace(0.94, 1.045, 106)
-    figure = paper.figure(11.0, 8.4)
-    grid = figure.add_gridspec(3, 6, height_ratios=(1.5, 1.5, 1))
+    figure = paper.figure(11.0, 8.4 if not paper.narrow() else 24.0)
+    across = 3 if paper.narrow() else 6
+    grid = figure.add_gridspec(2 + 6 // across, across, height_ratios=(1.5, 1.5, *[1] * (6 // across)))
     numbers = {}
     chosen = []
     for place, values, name in ((0, frequencies, "up"), (1, frequencies[::-1], "down")):
@@ -53,11 +54,11 @@ def main():
                 row.measures["max_abs_q1"],
                 marker,
                 color=color,
-                ms=4,
+                ms=2.5 if paper.narrow() else 4,
                 label=None if known else label,
             )
         axes.set(ylim=(0, 2.4), ylabel="$|q_1|_{\\max}/b$", title=f"sweep {name}")
-        axes.legend(loc="upper left", fontsize=8)
+        paper.legend(axes, loc="upper left")
         kinds = Counter(
             "LR symmetric" if r.word == "LR" and r.detail.symmetric else r.word if r.periods else r.attractor
             for r in rows
@@ -81,14 +82,18 @@ def main():
     seen = []
     for name, row in chosen:
         if row.word not in seen and len(seen) < 6 and row.periods <= 3:
-            panel = figure.add_subplot(grid[2, len(seen)])
+            panel = figure.add_subplot(grid[2 + len(seen) // across, len(seen) % across])
             seen.append(row.word)
             machine = paper.coupled(2.47, frequency=row.value)
             settled = simulate(machine, row.detail.state, periods=1500).end
-            motion = simulate(machine, settled, periods=row.periods).sample(per_period=800)
+            motion = paper.sampled(simulate(machine, settled, periods=row.periods), 800)
             panel.plot(motion.w, motion.w_rate, color=paper.RED, lw=1)
             panel.set(xlabel="$w$", xlim=(1.05, -1.05))  # the left wall, w = +1, on the left
-            panel.set_title(f"{row.word[:12]}, {row.value:.3f}, {name}", fontsize=8)
+            panel.set(ylabel="$w'$" if len(seen) % across == 1 else "")
+            panel.set_title(
+                f"{row.word[:12]}, {row.value:.3f}" + ("" if paper.narrow() else f", {name}"),
+                fontsize="small",
+            )
     numbers["portraits"] = seen
     return figure, numbers
 

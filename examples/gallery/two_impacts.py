@@ -3,6 +3,8 @@ Newton's method."""
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from orbits import Absorber, Orbit
@@ -69,6 +71,22 @@ def at(branch: list[Orbit], function, level: float = 0.0) -> Orbit:
         else:
             high = middle
     return high
+
+
+def refined(branch: list[Orbit], function, times: int = 14) -> list[Orbit]:
+    """A branch with more orbits where `function`(orbit) changes its sign: curves have corners or level off there."""
+    found = branch[:1]
+    for low, high in itertools.pairwise(branch):
+        sign, between, left, right = np.sign(function(low)), [], low, high
+        for _ in range(times if sign * function(high) < 0 else 0):
+            params = 0.5 * (left.params + right.params)
+            middle = polish(Orbit(low.model, low.word, 1, 0.5 * (left.nodes + right.nodes), params))
+            if middle is None:
+                break
+            between.append(middle)
+            left, right = (middle, right) if function(middle) * sign > 0 else (left, middle)
+        found += [*sorted(between, key=lambda o: o.params[0]), high]
+    return found
 
 
 def speeds(branch: list[Orbit]) -> dict[str, np.ndarray]:

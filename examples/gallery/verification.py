@@ -60,8 +60,7 @@ def frozen(machine, state, flights: int):
 
 
 def main():
-    figure = paper.figure(9.2, 9.6)
-    panels = figure.subplots(4, 2)
+    figure, panels = paper.panels(9.2, 9.6, 4, 2)
     numbers = {}
     start = {"q1": 1.0, "q2": 1.0}
     machine = None
@@ -85,15 +84,15 @@ def main():
     panels[3, 0].set(
         xlabel="forcing periods",
         ylabel="$w$",
-        title=r"$\Omega=0.986$, friction's sign frozen in flight: no machine",
+        title=r"$\Omega=0.986$, "
+        + ("frozen" if paper.narrow() else "friction's sign frozen in flight: no machine"),
     )
     panels[3, 1].plot(path[:, 1], path[:, 2], color=paper.RED)
     panels[3, 1].set(xlabel="$w$", ylabel="$w'$", xlim=(1.1, -1.1), xticks=(1, 0, -1))
     numbers["Omega = 0.986, friction's sign frozen: periods until it repeats (0: not found)"] = repeat
     numbers["Omega = 0.986, friction's sign frozen: least s w' in flight"] = float(np.min(pattern[:, 5]))
-    panels[0, 0].legend(
-        loc="lower right", bbox_to_anchor=(1.02, 1.0), ncols=2, fontsize=7.5
-    )  # beside the title
+    beside_title = {"loc": "lower right", "bbox_to_anchor": (1.02, 1.0), "ncols": 2}
+    paper.legend(panels[0, 0], **beside_title, fontsize=7.5)
     return figure, numbers
 
 

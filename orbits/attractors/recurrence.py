@@ -10,7 +10,7 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import lasting
 from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate, touches
-from orbits.machines.states import nodes_of
+from orbits.machines.states import event_states, nodes_of
 from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
 from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
 from orbits.simulation.return_map import cyclic_distance
@@ -274,6 +274,23 @@ def _cycle(
     return _attractor(
         model, engine, params, kind, periods, window, state, codes, modes, nodes, residual, multipliers
     )
+
+
+def recurring(
+    model: Any,
+    engine: Machine,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    rows: np.ndarray,
+    periods: int,
+) -> Attractor:
+    """The polished cycle next to a piece of a motion that nearly returns after so many forcing periods, stable or not."""
+    window = _Window(engine, params)
+    window.codes, window.modes, window.rows, window.length = codes, modes, rows, float(periods)
+    window.nodes = nodes_of(engine, params, codes, modes, rows)
+    state = event_states(engine, modes, rows)[0]
+    return _cycle(model, engine, params, state, window, len(codes), periods)
 
 
 def _attractor(

@@ -81,7 +81,7 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
     for candidate in chain(proposals(border), _simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
-        if not _followed(orbit):
+        if not _followed(other, v, q, orbit):
             continue
         smallest, v, tangent = _simplest(other, orbit, v, tangent)
         persistence = bool(np.sign(q - p) != old_side)
@@ -96,8 +96,8 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
     return [read_alike(seed, before) for seed in seeds]
 
 
-def _followed(orbit: Solution) -> bool:
-    return orbit.margin >= REAL and orbit.replay() < FOLLOWED
+def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Solution) -> bool:
+    return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < FOLLOWED
 
 
 def _simplest(
@@ -118,7 +118,7 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
-        if _followed(other.orbit(v, q)):
+        if _followed(other, v, q, other.orbit(v, q)):
             text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
@@ -154,7 +154,7 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
             there = other.orbit(v, q)
             if there.root().periods != other.periods or (there.symmetric and not other.symmetric):
                 continue
-            if not _followed(there):
+            if not _followed(other, v, q, there):
                 continue
             what = _escape(problem, rounds)
             yield Seed(

@@ -32,17 +32,21 @@ def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
     In units of the machine's size. Where one of them hits no wall its mean position is free, and left out.
     """
     periods = math.lcm(one.periods, other.periods)
-    here, there = (np.tile(orbit.track, periods // orbit.periods) for orbit in (one, other))
+    here, there = (
+        orbit.track if orbit.periods == periods else np.tile(orbit.track, periods // orbit.periods)
+        for orbit in (one, other)
+    )
     free = one.word.impact_free or other.word.impact_free
     images = [here, -np.roll(here, -PER_PERIOD // 2)] if mirror else [here]
     best = np.inf
     turned = (PER_PERIOD * np.arange(one.periods)[:, None] + np.arange(0, len(here), COARSE)) % len(here)
     for image in images:
         rough = _largest(image[turned] - there[::COARSE], free)
-        for shift in np.argsort(rough, kind="stable"):
+        for shift in np.argsort(rough, kind="stable").tolist() if len(rough) > 1 else (0,):
             if rough[shift] >= best:
                 break
-            best = min(best, float(_largest(np.roll(image, -PER_PERIOD * int(shift)) - there, free)))
+            moved = np.roll(image, -PER_PERIOD * shift) if shift else image
+            best = min(best, float(_largest(moved - there, free)))
     return best / one.model.natural_units(one.params)[0]
 
 

@@ -233,13 +233,12 @@ def _hold(
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
         unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
-        cavity = _cavity_speed(other, u, q, first)
-        node = slice(first * n, (first + 1) * n)
-        slopes = other.model.cavity_speed_slopes(other.expand(u)[first], other.values(q))
-        border[node] = -sign * slopes * unit / unit[1]
+        node, near = other.expand(u)[first], NEAR * parameter_unit(other, p)
+        cavity, beside = _cavity_speeds(other, node, np.array([q, q + near])) / unit[1]
+        slopes = other.model.cavity_speed_slopes(node, other.values(q))
+        border[first * n : (first + 1) * n] = -sign * slopes * unit / unit[1]
         border[first * n + 1] += sign
-        near = NEAR * parameter_unit(other, p)
-        border[size] = -sign * (_cavity_speed(other, u, q + near, first) - cavity) / near
+        border[size] = -sign * (beside - cavity) / near
         speed = sign * (u[first * n + 1] - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if (
@@ -252,11 +251,10 @@ def _hold(
     return Held(u, float(q_new), tangent, wanted)
 
 
-def _cavity_speed(problem: CycleProblem, u: np.ndarray, p: float, place: int) -> float:
-    """v' at an impact, in the unit of its node's second entry."""
-    node = problem.expand(u)[place]
-    speed = problem.model.cavity_motion(node[None, None], problem.values(p)[None])[1][0, 0]
-    return float(speed / problem.equations.unit[place, 1])
+def _cavity_speeds(problem: CycleProblem, node: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """v' at an impact, at some parameter values."""
+    nodes = np.broadcast_to(node, (len(p), 1, len(node)))
+    return problem.model.cavity_motion(nodes, problem.values(p))[1][:, 0]
 
 
 def _begins_at(

@@ -13,6 +13,7 @@ At an impact of vanishing speed the derivatives grow without bound; there only t
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import NamedTuple
 
@@ -52,28 +53,28 @@ class Rounds(NamedTuple):
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
-        keys, place, chosen, count = _sequences(most)
-        one, P = np.eye(self.maps.shape[1]), np.empty((len(chosen), *self.maps.shape[1:]))
-        M = P.copy()
-        P[:], M[:] = one, self.maps[chosen[:, 0]]
+        keys, place, first, later = _sequences(most)
+        n = self.maps.shape[1]
+        one, both = np.eye(n), np.empty((len(first), n, 2 * n))  # P and M side by side
+        both[:, :, :n], both[:, :, n:] = one, self.maps[first]
         with np.errstate(all="ignore"):
-            for k in range(1, most):
-                on = slice(np.searchsorted(count, k, side="right"), None)
-                factor = self.maps[chosen[on, k]]
-                P[on], M[on] = one + factor @ P[on], factor @ M[on]
+            for start, changed in later:
+                part = both[start:]
+                part[:] = self.maps[changed] @ part
+                part[:, :, :n] += one
             torn = np.zeros(len(keys), bool)
             if self.linear:
-                side = np.where(chosen[:, 0] == 1, 1.0, -1.0) * np.linalg.det(P)
+                side = (2 * first - 1) * np.linalg.det(both[:, :, :n])
                 low, high = np.minimum.reduceat(side, place), np.maximum.reduceat(side, place)
                 torn = (low < -DECIDED * high) & (high > -DECIDED * low)
             sizes = np.abs(self.maps).sum(axis=2).max(axis=1)
             rounds, changed = np.array(keys).T
             error = rounds * self.error * sizes[0] ** (rounds - changed) * sizes[1] ** changed
-            M = M[place]
+            M = both[place, :, n:]
             known = np.isfinite(M).all(axis=(1, 2)) & np.isfinite(error)
             radius = np.abs(np.linalg.eigvals(np.where(known[:, None, None], M, 0.0))).max(axis=1)
             unstable = known & (rounds > 2) & (radius > UNSTABLE + error)
-        return {key for key, no in zip(keys, torn | unstable) if no}
+        return {key for key, no in zip(keys, (torn | unstable).tolist()) if no}
 
 
 @cache
@@ -83,9 +84,11 @@ def choices(most: int) -> list[tuple[int, int]]:
 
 
 @cache
-def _sequences(most: int) -> tuple[list[tuple[int, int]], np.ndarray, np.ndarray, np.ndarray]:
-    """(rounds, changed) of the cycles; then, cycle by cycle and read from each of their points: where a cycle begins, which
-    rounds are changed, and how many there are.
+def _sequences(
+    most: int,
+) -> tuple[list[tuple[int, int]], np.ndarray, np.ndarray, list[tuple[int, np.ndarray]]]:
+    """(rounds, changed) of the cycles; then, cycle by cycle and read from each of their points: where a cycle begins, whether its
+    first round is changed, and for each later round the first of those that have it, and whether it is changed in these.
     """
     keys = choices(most)
     rows, count, place = [], [], []
@@ -94,7 +97,10 @@ def _sequences(most: int) -> tuple[list[tuple[int, int]], np.ndarray, np.ndarray
         place.append(len(rows))
         rows += [word[i:] + word[:i] + [0] * (most - n) for i in range(n)]
         count += [n] * n
-    return keys, np.array(place), np.array(rows), np.array(count)
+    chosen = np.array(rows)
+    starts = [int(np.searchsorted(count, k, side="right")) for k in range(most)]
+    later = [(starts[k], chosen[starts[k] :, k].copy()) for k in range(1, most)]
+    return keys, np.array(place), chosen[:, 0].copy(), later
 
 
 def rounds_at(
@@ -166,16 +172,15 @@ def _derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndar
         factors = -np.linalg.solve(work.D, work.A)
     except np.linalg.LinAlgError:
         return None
-    image = np.array([1.0] + [problem.data.twist] * (factors.shape[1] - 1))
-    found = image[:, None] * _product(factors)
-    error = ROUNDING * float(_product(np.abs(factors)).max())
-    return (found, error) if np.isfinite(found).all() and np.isfinite(error) else None
+    whole, sizes = _product(np.array([factors, np.abs(factors)]))
+    found, error = whole.copy(), ROUNDING * float(sizes.max())
+    found[1:] *= problem.data.twist
+    return (found, error) if np.isfinite(found).all() and math.isfinite(error) else None
 
 
 def _product(factors: np.ndarray) -> np.ndarray:
-    """M_{l-1} ... M_0, neighbours first."""
-    while len(factors) > 1:
-        odd = factors[-1:] if len(factors) % 2 else factors[:0]
-        pairs = factors[1::2] @ factors[: len(factors) - len(odd) : 2]
-        factors = np.concatenate([pairs, odd])
-    return factors[0]
+    """M_{l-1} ... M_0 of factors (..., l, n, n), neighbours first."""
+    while (count := factors.shape[-3]) > 1:
+        pairs = factors[..., 1::2, :, :] @ factors[..., : count - count % 2 : 2, :, :]
+        factors = np.concatenate([pairs, factors[..., -1:, :, :]], axis=-3) if count % 2 else pairs
+    return factors[..., 0, :, :]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from orbits.contacts.changes import CLOSE, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import SWITCH, Letter
+from orbits.contacts.riding import touched, withdrawn
 
 
 class NotAlternating(ValueError):
@@ -101,6 +102,8 @@ class SwitchLaw:
             found = self.collapsed(site, j)
             if found:
                 return found
+        if site.at >= 0 and (j, word.letter(site.at).contact) in word.alphabet.rides:
+            return touched(site, j, word.letter(site.at).contact)
         if site.at >= 0 and (word.letter(site.at).contact, j) in word.alphabet.flips:
             return [self._beside(site, j)]
         if len(word) and site.lengths[site.place] < CLOSE:
@@ -126,7 +129,7 @@ class SwitchLaw:
 
     def weakened(self, site: Site, j: int) -> list[Change]:
         """Two crossings that meet disappear."""
-        word, found = site.word, []
+        word, found = site.word, withdrawn(site, j)
         for first in (site.place, site.place - 1):
             if first < 0 or first + 1 >= len(word):
                 continue

@@ -7,7 +7,7 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -65,7 +65,8 @@ class Equations:
         if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
             raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
         self.model, self.params, self.parameter = model, params, parameter
-        self.path = model.path(parameter, params)
+        frame = _frame(_Itself(model), parameter, params.tobytes(), units)
+        self.path, self.units = frame.path.copy(), frame.units
         length = len(word) // 2 if symmetric else len(word)
         n = model.node
         self.length, self.dimension = length, length * n
@@ -77,25 +78,19 @@ class Equations:
         self.n_margins = PER_NODE * length
         self.period_shift = np.zeros(self.dimension)
         self.period_shift[::n] = 2.0 * np.pi
-        self.units = model.natural_units(params) if units is None else units
         self.unit = unit_nodes(word, n, self.units)
-        path, own, law, amounts = self.path, params.copy(), model.law, params
-        if self.units != PLAIN:
-            factors = model.factors(self.units)
-            own, path = params / factors, np.array([self.path[0] / factors, self.path[1]])
-            law = law.copy() if len(law) else np.vstack([np.ones(params.size), np.eye(params.size)])
-            law[0] /= factors
+        own = frame.own.copy()
         self.data = CycleData(
             word.codes[:length].copy(),
             word.mode_codes[:length].copy(),
             own,
-            path,
+            self.path if self.units == PLAIN else frame.own_path.copy(),
             self.twist,
             self.shift,
             self.pinned,
-            model.place_of(parameter),
-            np.array(model.amounts(amounts), dtype=float) if len(law) else own,
-            law,
+            frame.active,
+            frame.amounts.copy() if len(frame.law) else own,
+            frame.law,
         )
 
     @property
@@ -143,6 +138,48 @@ class Equations:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
         spectrum = np.asarray(spectrum, dtype=complex)
         return spectrum**2 if self.twist < 0.0 else spectrum
+
+
+class _Frame(NamedTuple):
+    """What the equations of all words have in common: numbers and how they follow the parameter, in the machine's units and in its own."""
+
+    path: np.ndarray
+    units: tuple[float, float]
+    own: np.ndarray
+    own_path: np.ndarray
+    active: int
+    amounts: np.ndarray
+    law: np.ndarray
+
+
+class _Itself:
+    """A machine as a key: machines that are equal as numbers may be given in other quantities."""
+
+    __slots__ = ("model",)
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+
+    def __hash__(self) -> int:
+        return id(self.model)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Itself) and self.model is other.model
+
+
+@lru_cache(maxsize=64)
+def _frame(itself: _Itself, parameter: str, values: bytes, units: tuple[float, float] | None) -> _Frame:
+    model, params = itself.model, np.frombuffer(values)
+    path, law = model.path(parameter, params), model.law
+    units = model.natural_units(params) if units is None else units
+    own, own_path = params, path
+    if units != PLAIN:
+        factors = model.factors(units)
+        own, own_path = params / factors, np.array([path[0] / factors, path[1]])
+        law = law.copy() if len(law) else np.vstack([np.ones(params.size), np.eye(params.size)])
+        law[0] /= factors
+    amounts = np.array(model.amounts(params), dtype=float)
+    return _Frame(path, units, own, own_path, model.place_of(parameter), amounts, law)
 
 
 def unit_nodes(word: Word, node: int, units: tuple[float, float]) -> np.ndarray:

@@ -79,15 +79,19 @@ def canonical(
     target = word.canonical(mirror)
     image: float | np.ndarray = -1.0  # half a forcing period on cosine and sine change their signs, too
     if forced:
-        flat = np.concatenate([np.cos(nodes[:, :1]), np.sin(nodes[:, :1]), nodes[:, 1:]], axis=1)
+        flat = np.empty((len(nodes), nodes.shape[1] + 1))
+        np.cos(nodes[:, 0], out=flat[:, 0])
+        np.sin(nodes[:, 0], out=flat[:, 1])
+        flat[:, 2:] = nodes[:, 1:]
     else:
         flat, image = nodes, np.r_[1.0, np.full(nodes.shape[1] - 1, -1.0)]
-    direction = _direction(flat.size)
-    best, best_score = flat.ravel(), -np.inf
-    for mirrored, place in word.readings(mirror):
-        turned = np.concatenate([flat[place:], flat[:place]])
+    best, best_score, readings = flat.ravel(), -np.inf, word.readings(mirror)
+    for mirrored, place in readings:
+        turned = np.concatenate([flat[place:], flat[:place]]) if place else flat
         vector = (image * turned if mirrored else turned).ravel()
-        score = float(direction @ vector)
+        if len(readings) == 1:
+            return (target.events, target.modes, periods), vector
+        score = float(_direction(flat.size) @ vector)
         if score > best_score + 1e-12:
             best, best_score = vector, score
     return (target.events, target.modes, periods), best

@@ -90,7 +90,7 @@ def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
     ]
 
 
-UNBOUNDED = 1e15  # a multiplier so large grows without bound towards the border
+UNBOUNDED = 0.999e15  # multipliers of 1e15, but for rounding, grow without bound towards the border
 
 
 def limits_of(multipliers: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -87,9 +87,16 @@ class Solution(Claim, Cycle):
         """w at equal phases of the forcing, kept: distances to several other orbits ask for it; see `orbits.cycles.sampling.positions`."""
         return positions(self)
 
+    def repeat(self, times: int) -> Self:
+        """The same orbit, written `times` times."""
+        found = super().repeat(times)
+        if "track" in vars(self):
+            vars(found)["track"] = np.tile(self.track, times)
+        return found
+
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
-        return replay_error(self, self._examined[2], self.multipliers)
+        return replay_error(self, lambda: (self._examined[2], self.multipliers))
 
 
 def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:

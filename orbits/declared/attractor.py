@@ -205,8 +205,8 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
     return None
 
 
-def solved(run: Trajectory, length: int, periods: int) -> DeclaredOrbit | None:
-    """The last `length` events of a run as an orbit, if its equations have a solution next to them."""
+def solved(run: Trajectory, length: int, periods: int, far: float = 0.1) -> DeclaredOrbit | None:
+    """The last `length` events of a run as an orbit, if its equations have a solution within `far` of them; see `polished`."""
     machine = run.machine
     word = PageWord(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
     clocks = run.clocks[-length:]
@@ -215,7 +215,7 @@ def solved(run: Trajectory, length: int, periods: int) -> DeclaredOrbit | None:
     else:
         first = np.append(np.diff(clocks), clocks[0] - run.clocks[-length - 1])
     nodes = np.column_stack([first, run.states[-length:]])
-    return polished(DeclaredOrbit(machine, word, periods, nodes, run.params))
+    return polished(DeclaredOrbit(machine, word, periods, nodes, run.params), far)
 
 
 def polished(orbit: DeclaredOrbit, far: float = 0.1) -> DeclaredOrbit | None:

@@ -1,99 +1,21 @@
-"""What a page is asked before it becomes a machine; every refusal is a sentence that names the contact and the way out."""
+"""What the formulas of a page are asked before it becomes a machine; every refusal is a sentence that names the contact and the way out."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
-from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
 from orbits.declared import engine
 from orbits.declared.equations import Equations
 from orbits.declared.formulas import PageError
+from orbits.declared.names import described
 
 DRAWS = 8  # random states at which formulas are compared
 SAME = 1e-9  # relative
-
-
-def check_names(
-    name: Any, states: Sequence[str], parameters: Mapping[str, Any], phase_rate: Any, contacts: Sequence[Any]
-) -> None:
-    """Names, numbers and letters, before anything is traced."""
-    if not (isinstance(name, str) and name.isidentifier()):
-        raise PageError(
-            f"name = {name!r} must be a word of letters, digits and underscores, for example 'stop'"
-        )
-    if isinstance(states, str) or not states:
-        raise PageError(f"states = {states!r} must be a sequence of names, for example ('x', 'v')")
-    for what, names in (("states", list(states)), ("parameters", list(parameters))):
-        for item in names:
-            if not (isinstance(item, str) and item.isidentifier()):
-                raise PageError(f"{what}: {item!r} is no name; use letters, digits and underscores")
-        if len(set(names)) != len(names):
-            raise PageError(f"{what} = {names!r} has a name twice")
-    for item, value in parameters.items():
-        try:
-            number = float(value)
-        except (TypeError, ValueError):
-            raise PageError(f"parameters: {item} = {value!r} is not a number") from None
-        if not math.isfinite(number):
-            raise PageError(f"parameters: {item} = {number} is not finite")
-    if phase_rate is not None and phase_rate not in parameters:
-        raise PageError(
-            f"phase_rate = {phase_rate!r} is no parameter; name the forcing's frequency, one of "
-            f"{', '.join(parameters) or 'none'}, or leave it out for a self-excited machine"
-        )
-    if not len(contacts):
-        raise PageError(
-            "contacts = []: give at least one Wall, DryFriction or Switch; without any there are no events that a word could name"
-        )
-    taken: dict[str, str] = {}
-    for contact in contacts:
-        if not isinstance(contact, (Wall, DryFriction, Switch)):
-            raise PageError(f"contacts has {contact!r}; it may have Wall, DryFriction and Switch")
-        what = _what(contact)
-        if isinstance(contact, DryFriction) and len(tuple(contact.letters)) != 3:
-            raise PageError(
-                f"{what}: letters = {contact.letters!r} must be three, for a turn, a stick and a slip"
-            )
-        if not isinstance(contact, Wall) and not str(contact.name).isidentifier():
-            raise PageError(f"{what}: the name must be one that contact.<name> can have")
-        for letter in contact.letters:
-            if not letter or any(c in " []" or c.isspace() for c in letter):
-                raise PageError(f"{what}: {letter!r} is no letter of a word; use letters and digits")
-            if letter in taken:
-                hint = " (letters=('t2', 's2', 'u2'))" if isinstance(contact, DryFriction) else ""
-                raise PageError(
-                    f"{taken[letter]} and {what} share the letter {letter!r}; give one of them another{hint}"
-                )
-            taken[letter] = what
-        if isinstance(contact, Wall):
-            unknown = [k for k in contact.push if k not in states]
-            if unknown or not contact.push:
-                raise PageError(
-                    f"{what}: push names {unknown[0] if unknown else 'nothing'!r}; "
-                    f"say how an impulse changes the states, of {', '.join(states)}"
-                )
-            if not isinstance(contact.restitution, str):
-                check_restitution(what, float(contact.restitution))
-
-
-def check_restitution(what: str, value: float) -> None:
-    """Newton's coefficient."""
-    if not 0.0 < value <= 1.0:
-        raise PageError(
-            f"{what}: restitution = {value:g} is out of range; give a number above 0 and at most 1"
-        )
-
-
-def _what(contact: Any) -> str:
-    if isinstance(contact, Wall):
-        return f"wall {contact.letter!r}"
-    return f"{'friction' if isinstance(contact, DryFriction) else 'switch'} {contact.name!r}"
 
 
 class Draws:
@@ -126,8 +48,13 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     force = {j: engine.variable(f"force_{e.contacts[j].name}") for j in frictions}
     rates = e.motion_with(force)
     zero = {f"force_{e.contacts[j].name}": 0.0 for j in frictions}
+    _check_periods(draws, rates)
+    _check_surfaces(draws, rates)
     for j in frictions:
-        what = _what(e.contacts[j])
+        what = described(e.contacts[j])
+        limit = draws.of([e.limit[j]])[:, 0]
+        if np.all(limit < 0.0):
+            raise PageError(f"{what}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
         name = f"force_{e.contacts[j].name}"
         (effect,) = engine.derivatives([e.along(e.velocity[j], rates)], [force[j]])
         others = {n for n in zero if n != name}
@@ -148,7 +75,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     for j, contact in enumerate(e.contacts):
         if not isinstance(contact, Wall):
             continue
-        what = _what(contact)
+        what = described(contact)
         rate = e.along(e.gap[j], rates)
         if any(name in engine.variables_of(rate) for name in zero):
             raise PageError(
@@ -176,6 +103,81 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
             if flip != 0:
                 flips[j, k] = flip
     return flips
+
+
+def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
+    """Whether everything on the page has the period 2 pi in the phase."""
+    e = draws.equations
+    if e.phase_rate is None:
+        return
+    forces = {name: 0.0 for j in e.velocity for name in (f"force_{e.contacts[j].name}",)}
+    told = [(f"motion's rate of {n}", engine.replaced(r, forces)) for n, r in zip(e.states, rates)]
+    for table, what in ((e.gap, "gap"), (e.velocity, "velocity"), (e.limit, "limit"), (e.surface, "surface")):
+        told += [(f"the {what} of {described(e.contacts[j])}", value) for j, value in table.items()]
+    values = [value for _, value in told]
+    here, there = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
+    for (what, _), a, b in zip(told, here.T, there.T):
+        gap = np.abs(a - b)
+        if np.nanmax(gap, initial=0.0) > SAME * (1.0 + np.nanmax(np.abs(a), initial=0.0)):
+            k = int(np.nanargmax(gap))
+            raise PageError(
+                f"{what} does not have the period 2 pi in the phase: at phase = {draws.clock[k]:.4g} it is {a[k]:.6g}, 2 pi later "
+                f"{b[k]:.6g}; let phase_rate be the lowest frequency of the forcing, and write the others as whole multiples of the phase"
+            )
+
+
+def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
+    """Whether switches switch something, and whether contacts that would always act at once are declared apart."""
+    e = draws.equations
+    for j, surface in e.surface.items():
+        what, name = described(e.contacts[j]), e.contacts[j].name
+        if not engine.variables_of(surface) & {*e.layout.states, e.layout.clock}:
+            raise PageError(
+                f"{what}: its surface is a constant; give a function of the states that changes sign"
+            )
+        known = set().union(*(engine.variables_of(v) for v in (*rates, *e.limit.values())))
+        if not engine.variables_of(e.sign[j]) & known:
+            raise PageError(
+                f"{what}: motion ignores contact.{name}; use it where the law changes, or leave the switch out"
+            )
+    pairs = [*e.velocity.items(), *e.surface.items()]
+    for place, (j, one) in enumerate(pairs):
+        for k, other in pairs[place + 1 :]:
+            if j not in e.velocity or not _proportional(draws, one, other):
+                continue
+            both = f"{described(e.contacts[j])} and {described(e.contacts[k])}"
+            if k in e.velocity:
+                raise PageError(
+                    f"{both} have the same velocity; declare one DryFriction whose limit is the sum of theirs"
+                )
+            raise PageError(
+                f"{both} change together; leave the switch out: what turns with the velocity belongs into the friction's limit, "
+                "for example limit=lambda state, phase, p: p.friction + p.drag * state.v**2"
+            )
+
+
+def _proportional(draws: Draws, one: Any, other: Any) -> bool:
+    """Whether two quantities differ by a constant factor only."""
+    table = draws.of([one, other])
+    with np.errstate(all="ignore"):
+        ratio = table[:, 0] / table[:, 1]
+    return bool(np.all(np.isfinite(ratio)) and np.any(ratio) and np.ptp(ratio) < SAME * np.abs(ratio).max())
+
+
+def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
+    """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
+    e, draws = equations, Draws(equations, params)
+    force = {j: engine.variable(f"force_{e.contacts[j].name}") for j in e.velocity}
+    rates = e.motion_with(force)
+    found = set()
+    for j, surface in e.surface.items():
+        rate = e.along(surface, rates)
+        if any(name in engine.variables_of(rate) for f in force.values() for name in engine.variables_of(f)):
+            continue
+        for k, velocity in e.velocity.items():
+            if _proportional(draws, rate, velocity):
+                found.add((j, k))
+    return frozenset(found)
 
 
 def _inside(rates: Sequence[Any], name: str) -> set[str]:
@@ -208,6 +210,10 @@ def check_mirror(
     turned : frozenset of int
         Switches whose sign turns.
     """
+    if not isinstance(pairs, Mapping):
+        raise PageError(
+            f"mirror = {pairs!r} must say which contacts change places, for example {{'L': 'R'}}; {{}} where none does"
+        )
     e, draws = equations, Draws(equations, params)
     by_letter = {letter: j for j, c in enumerate(e.contacts) for letter in (c.name, *c.letters)}
     images = {j: j for j in range(len(e.contacts))}
@@ -236,7 +242,7 @@ def check_mirror(
             )
 
     for j, contact in enumerate(e.contacts):
-        what, k = _what(contact), images[j]
+        what, k = described(contact), images[j]
         if isinstance(contact, Wall):
             here = draws.of([e.gap[j], e.restitution[j]])
             there = draws.of([e.gap[k], e.restitution[k]], states=-draws.states, clock=on)
@@ -264,29 +270,3 @@ def check_mirror(
     for i, name in enumerate(e.states):
         compare(f"motion's rate of {name}", here[:, i], -there[:, i])
     return images, frozenset(turned)
-
-
-def check_starts(
-    starts: Mapping[str, tuple[float, float]] | None, states: Sequence[str]
-) -> dict[str, tuple[float, float]]:
-    """Ranges of starts as numbers.
-
-    Raises
-    ------
-    PageError
-        If a state is unknown or a range no interval.
-    """
-    ranges = {}
-    for name, limits in dict(starts or {}).items():
-        if name not in states:
-            raise PageError(f"starts: {name!r} is no state; the machine has {', '.join(states)}")
-        try:
-            low, high = map(float, limits)
-        except (TypeError, ValueError):
-            raise PageError(f"starts: {name} = {limits!r}; give two numbers (low, high)") from None
-        if not (np.isfinite(low) and np.isfinite(high) and low < high):
-            raise PageError(
-                f"starts: {name} = ({low:g}, {high:g}) is no interval; give the lower number first"
-            )
-        ranges[name] = (low, high)
-    return ranges

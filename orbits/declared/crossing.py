@@ -28,6 +28,7 @@ from orbits.protocol import Seed
 
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
 CLOSE = 0.05  # of one that goes on from the border
+ROOM = 4  # events that may stand before that of the margin
 
 
 def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
@@ -63,16 +64,19 @@ def _simplest(
     return smallest, smallest.reduce(root.nodes), None
 
 
+def usual_room(problem: DeclaredSystem, index: int) -> int:
+    """Events that stand before that of a margin where a border is read: one, unless a word of two has no room for it and the next."""
+    width = per_node(problem.contacts)
+    return 1 if problem.length > 2 or index % width == width - 2 else 0
+
+
 def turned(
-    problem: DeclaredSystem, u: np.ndarray, p: float, index: int
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int, ahead: int
 ) -> tuple[DeclaredSystem, np.ndarray, int]:
     """The same border read from another event, so that what changes does not straddle the end of the word."""
     width = per_node(problem.contacts)
     place, column = divmod(index, width)
-    if problem.length < 3:
-        first = place if column < problem.contacts or column == width - 1 else place - 1
-    else:
-        first = place - 1
+    first = place - ahead
     if first % problem.length == 0 or not len(problem.word):
         return problem, u, index
     orbit = DeclaredOrbit.of(problem, u, p).rotate(first % len(problem.word))
@@ -84,13 +88,14 @@ def proposals(
     problem: DeclaredSystem, u: np.ndarray, p: float, index: int
 ) -> Iterator[tuple[DeclaredSystem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the rules propose."""
-    first = problem
-    problem, u, index = turned(problem, u, p, index)
-    orbit = DeclaredOrbit.of(problem, u, p)
-    for edit in edits_at(orbit, index):
-        found = grown(problem, orbit, p, [edit])
-        if found is not None:
-            yield (*_read_alike(first, problem, edit.change, found), edit.change.what.value)
+    usual = usual_room(problem, index)  # a change may need more room on either side
+    for ahead in dict.fromkeys((usual, *range(min(ROOM, problem.length)))):
+        read, v, place = turned(problem, u, p, index, ahead)
+        orbit = DeclaredOrbit.of(read, v, p)
+        for edit in edits_at(orbit, place):
+            found = grown(read, orbit, p, [edit])
+            if found is not None:
+                yield (*_read_alike(problem, read, edit.change, found), edit.change.what.value)
 
 
 def _read_alike(first: DeclaredSystem, problem: DeclaredSystem, edit: Change, found: Found) -> Found:
@@ -142,7 +147,7 @@ def _escapes(problem: DeclaredSystem, u: np.ndarray, p: float, index: int) -> It
     """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
     if not len(problem.word):
         return
-    problem, u, index = turned(problem, u, p, index)
+    problem, u, index = turned(problem, u, p, index, usual_room(problem, index))
     orbit = DeclaredOrbit.of(problem, u, p)
     if problem.symmetric:
         wider, what = (

@@ -6,6 +6,7 @@ import numpy as np
 
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.sampling import lengths
+from orbits.declared.system import loose_states
 
 SAME = 1e-5  # largest difference of states, at equal clocks, of one and the same motion
 
@@ -14,20 +15,34 @@ def distance(one: DeclaredOrbit, other: DeclaredOrbit, points: int = 300) -> flo
     """How far two motions are apart, whatever their words; the mirror image of a motion counts as the same.
 
     Forced: the states at equal phases, but for the instants at which one of them jumps a little earlier. Self-excited: periods and
-    extremes.
+    extremes. Where both motions may be shifted along a state (a body that nothing but friction holds in its place), so may they be
+    to compare them.
     """
-    if not one.machine.forced:
-        names = [n for n in one.problem().measure_names if n.startswith(("max_", "min_", "period"))]
-        a, b = one.measures(*names), other.measures(*names)
-        scale = 1.0 + max(abs(v) for v in a.values())
-        return max(abs(a[n] - b[n]) for n in names) / scale
+    machine = one.machine
+    loose = sorted({*loose_states(machine, one.word)} & {*loose_states(machine, other.word)})
+    if not machine.forced:
+        return _unlike(one, other, {machine.states[j] for j in loose})
     images = [other]
-    if one.machine.alphabet.mirror is not None:
+    if machine.alphabet.mirror is not None:
         images.append(other.mirror())
-    return min(_apart(one, image, points) for image in images)
+    return min(_apart(one, image, points, loose) for image in images)
 
 
-def _apart(one: DeclaredOrbit, other: DeclaredOrbit, points: int) -> float:
+def _unlike(one: DeclaredOrbit, other: DeclaredOrbit, loose: set[str]) -> float:
+    """How much periods and extremes (of states along which both may be shifted: how far they go) differ."""
+    names = [f"{side}_{state}" for state in one.machine.states for side in ("max", "min")]
+    rows = []
+    for orbit in (one, other):
+        found = orbit.measures(*names, "period")
+        for state in loose:
+            found[f"max_{state}"] -= found[f"min_{state}"]
+            found[f"min_{state}"] = 0.0
+        rows.append(np.array(list(found.values())))
+    a, b = rows
+    return float(np.abs(a - b).max() / (1.0 + np.abs(a).max()))
+
+
+def _apart(one: DeclaredOrbit, other: DeclaredOrbit, points: int, loose: list[int]) -> float:
     periods = max(one.periods, other.periods)
     if periods % one.periods or periods % other.periods:
         return np.inf
@@ -36,7 +51,9 @@ def _apart(one: DeclaredOrbit, other: DeclaredOrbit, points: int) -> float:
     jumps = 2 * (len(one.word) + len(other.word)) + 2
     best = np.inf
     for shift in range(periods):
-        gap = np.abs(a - np.roll(b, shift * points, axis=0)).max(axis=1)
+        apart = a - np.roll(b, shift * points, axis=0)
+        apart[:, loose] -= np.median(apart[:, loose], axis=0)
+        gap = np.abs(apart).max(axis=1)
         best = min(best, float(np.sort(gap)[max(0, len(gap) - 1 - jumps)]))
     return best
 

@@ -195,6 +195,8 @@ class Equations:
             elif isinstance(contact, Switch):
                 given[contact.name] = self.sign[j]
         rates = called("motion", self._motion, self.state, self.phase, self.p, Named("contact", given))
+        if rates is None:
+            raise PageError("motion returns nothing; return one rate per state, in their order")
         if isinstance(rates, Symbol) or not hasattr(rates, "__len__"):
             rates = (rates,)
         if len(rates) != len(self.states):

@@ -57,6 +57,9 @@ class NoPhase:
 
 
 def called(what: str, function: Any, *arguments: Any) -> Any:
+    if not callable(function):
+        given = "state, phase, p, contact" if what == "motion" else "state, phase, p"
+        raise PageError(f"{what} is {function!r}; give a function, for example lambda {given}: ...")
     try:
         return function(*arguments)
     except PageError:

@@ -11,7 +11,7 @@ import numpy as np
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
-from orbits.declared import checks
+from orbits.declared import checks, names
 from orbits.declared.compiled import Compiled
 from orbits.declared.equations import Equations
 from orbits.declared.formulas import PageError
@@ -62,12 +62,12 @@ class Machine:
         mirror: Mapping[str, str] | None = None,
         starts: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
-        checks.check_names(name, states, parameters, phase_rate, contacts)
+        names.check_names(name, states, parameters, phase_rate, contacts)
         self.name = name
         self.states = tuple(states)
         self.parameters = {key: float(value) for key, value in parameters.items()}
         self.parameter_names = tuple(self.parameters)
-        self.starts = checks.check_starts(starts, self.states)
+        self.starts = names.check_starts(starts, self.states)
         self.phase_rate, self.contacts = phase_rate, tuple(contacts)
         self.page: Page = page_of(motion)
         self.equations = Equations(self.states, self.parameter_names, phase_rate, motion, self.contacts)
@@ -76,7 +76,8 @@ class Machine:
         images, turned = (
             (None, frozenset()) if mirror is None else checks.check_mirror(self.equations, params, mirror)
         )
-        self.alphabet = Alphabet(self.contacts, images, turned, flips)
+        rides = checks.riding(self.equations, params)
+        self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
         self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
 
     def __repr__(self) -> str:
@@ -139,7 +140,8 @@ class Machine:
         return np.array([merged[key] for key in self.parameter_names])
 
     def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter cannot have: the forcing's frequency and coefficients of restitution have limits.
+        """Refuse a value that a parameter cannot have: the forcing's frequency, limits of friction and coefficients of restitution
+        have limits.
 
         Raises
         ------
@@ -152,6 +154,10 @@ class Machine:
             if isinstance(contact, Wall) and contact.restitution == name and not 0.0 < value <= 1.0:
                 raise ParameterError(
                     f"{name} = {value:g} is out of range: the restitution of wall {contact.letter!r} is above 0 and at most 1"
+                )
+            if isinstance(contact, DryFriction) and contact.limit == name and value < 0.0:
+                raise ParameterError(
+                    f"{name} = {value:g} is out of range: the limit of friction {contact.name!r} is 0 or above"
                 )
 
     def absent(self, params: np.ndarray) -> frozenset[int]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from orbits.contacts.changes import Change, Grows, What
 from orbits.cycles.claim import REAL
-from orbits.declared.edits import Edit
+from orbits.declared.edits import FIRST, Edit
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.sampling import sample
 from orbits.declared.solving import SOLVED, examined, newton
@@ -15,6 +15,7 @@ from orbits.words.rewriting import applied, spliced
 
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))  # of what grows beyond the border
 NEAR = 0.02  # change of the parameter, relative, beyond which an orbit is not next to the border
+LEAST = 1e-6  # duration of a flight of a guess
 GROWING = 1e-4  # least growth of the margins with the distance from a border
 Found = tuple[DeclaredSystem, np.ndarray, float, np.ndarray]
 
@@ -72,12 +73,24 @@ def _durations(orbit: DeclaredOrbit, nodes: np.ndarray, edit: Edit) -> np.ndarra
         for k in range(m):
             until = inside[k + 1] if k + 1 < m else whole
             nodes[change.start + k, 0] = until - inside[k]
-    elif not m:  # removed: the flight before takes over
-        gone = float(orbit.nodes[change.start : change.stop, 0].sum())
-        nodes[(change.start - 1) % len(nodes), 0] += gone
-    elif m == 2 and change.stop - change.start == 1:
-        nodes[change.start, 0] = 2e-3
-        nodes[change.start + 1, 0] = max(float(orbit.nodes[change.start, 0]) - 2e-3, 1e-6)
+    else:  # from the event before `start` to that at `stop` it takes as long as before
+        alone = (
+            len(nodes) == m
+        )  # nothing of the old word is left: the last flight leads to the first new event
+        durations = np.roll(orbit.nodes[:, 0], 1 - change.start)
+        passed = np.cumsum(durations[: change.stop - change.start + 1])
+        instants = []
+        for spot in change.spots:
+            event = spot.node if spot.clock is None else spot.clock
+            assert event is not None  # nothing is met where events give way to others
+            place = event - change.start
+            ahead = 0.5 * (passed[place + 1] - passed[place]) if spot.between else 0.0
+            instants.append(passed[place] + ahead + spot.later * FIRST)
+        whole = np.array(
+            [0.0, *instants, passed[-1]] if not alone else [*instants, instants[0] + durations.sum()]
+        )
+        spans = np.maximum(np.diff(whole), LEAST)
+        nodes[(np.arange(len(spans)) + change.start - (0 if alone else 1)) % len(nodes), 0] = spans
     return nodes
 
 

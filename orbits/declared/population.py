@@ -16,6 +16,7 @@ from orbits.attractors.motion import Motion
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.declared.attractor import RETURNED, look, returning, skip
+from orbits.declared.embedded import embedded_cycles
 from orbits.declared.growth import growth
 from orbits.declared.machine import Machine
 from orbits.declared.orbit import DeclaredOrbit
@@ -23,6 +24,7 @@ from orbits.declared.simulation import Trajectory, collect, letter_of, outside
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
+EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for in a chaotic motion
 LONGEST = 16  # forcing periods of the longest recurrence looked for
 SURE = 1e-7  # a state so near to a known motion, relative to 1 + states, lies on it
 NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto it
@@ -166,6 +168,25 @@ class DeclaredPopulation:
         ]
         return sorting.motions, np.array([k for k, _ in found]), np.array([side for _, side in found])
 
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Unstable cycles that the chaotic motion through a start passes near, each once, as problems with their unknowns."""
+        stepper = Stepper(self.machine, self.vector(p))
+        stepper.start(*self._parted(state))
+        found: list[tuple[Any, np.ndarray]] = []
+        forms: list[Any] = []
+        for orbit in embedded_cycles(stepper, EMBEDDED):
+            problem = orbit.problem(self.parameter)
+            u = orbit.seed(problem)[0]
+            form = problem.canonical(u, p)
+            if not any(_alike(form, known) for known in forms):
+                forms.append(form)
+                found.append((problem, u))
+        return found
+
+    def _parted(self, start: np.ndarray) -> tuple[np.ndarray, float]:
+        """States and phase of a start."""
+        return (start[1:], float(start[0])) if self.machine.forced else (start, 0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class _Marks:
@@ -198,9 +219,8 @@ class _Sorting:
     def sort(self, start: np.ndarray) -> tuple[int, bool]:
         """Which motion a start reaches, and whether its mirror image."""
         stepper = Stepper(self.machine, self.params)
-        state, clock = (start[1:], start[0]) if self.machine.forced else (start, 0.0)
         try:
-            stepper.start(state, float(clock))
+            stepper.start(*self.population._parted(start))
             return self._followed(stepper)
         except SimulationError:
             return self.plain("escaped")
@@ -229,13 +249,14 @@ class _Sorting:
         if known is not None:
             return known, False
         exponent, error = growth(stepper)
+        state = np.append(stepper.clock % TWO_PI, stepper.state) if self.machine.forced else stepper.state
         if exponent > SIGMAS * error:
             kind = "chaotic"
         elif exponent > -SIGMAS * error and self.machine.size > 2:
             kind = "quasi-periodic"
         else:
             kind = "slow"
-        return self.plain(kind, exponent=exponent, error=error)
+        return self.plain(kind, exponent=exponent, error=error, state=state.copy())
 
     def _row(self, stepper: Stepper) -> np.ndarray:
         if not self.machine.forced:
@@ -270,7 +291,7 @@ class _Sorting:
         u, p = root.seed(problem)
         form = problem.canonical(u, p)
         for k, known in enumerate(self.forms):
-            if known is not None and known[0] == form[0] and np.allclose(known[1], form[1], atol=1e-6):
+            if known is not None and _alike(form, known):
                 return k, self._side(k, stepper)
         place = len(self.motions)
         kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
@@ -307,6 +328,11 @@ class _Sorting:
             letter: rows[[k for k, own in enumerate(letters) if own == letter]] for letter in set(letters)
         }
         return _Marks(place, mirrored, table, known)
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Whether two canonical forms are those of one motion."""
+    return one[0] == other[0] and np.allclose(other[1], one[1], atol=1e-6)
 
 
 def _chatters(run: Trajectory) -> bool:

@@ -14,6 +14,7 @@ from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
 from orbits.declared import measures as measuring
 from orbits.declared.attractor import witness
 from orbits.declared.crossing import cross
+from orbits.declared.dead_ends import dead_end
 from orbits.declared.distance import SAME, distance
 from orbits.declared.margins import border_kind
 from orbits.declared.orbit import DeclaredOrbit
@@ -67,6 +68,10 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
         return cross(self, point)
+
+    def dead_end(self, point: Any) -> str:
+        """Why no motion was found on the other side of a border."""
+        return dead_end(self, point)
 
     # ------------------------------------------------------------------ identity
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:

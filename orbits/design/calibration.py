@@ -1,125 +1,29 @@
 """Calibration: restitution, friction and other parameters from measured impact times or from a measured sweep.
 
-Least squares through simulated motions, with confidence intervals from the curvature of the sum of squares (linearised about the estimate,
-Student's t): sources of scatter that the model does not have are in the residual, and so in the intervals.
+Least squares through simulated motions (`orbits.design.estimates`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from orbits.design.columns import read_columns
+from orbits.design.estimates import Calibration, fit
 from orbits.machines.base import ParameterError
+from orbits.machines.path import along
 
-GRID = 9  # values per parameter at which the search for a guess looks
+GRID = 900  # places at which the search for a guess looks
+CANDIDATES = 8  # of them that are followed
+STARTS = 5  # of a sweep, beside rest
+TRIED = 6  # values of the parameters with which they are tried
+ASTRAY = 0.1  # of the mean time between impacts: data that scatter more are not described by the model
 SETTLED = 400  # forcing periods before a steady response is read
 
 
-@dataclass(frozen=True, eq=False)
-class Calibration:
-    """Estimated parameters.
-
-    Attributes
-    ----------
-    values : dict
-        Estimates.
-    intervals : dict
-        Name -> (low, high) at `confidence`.
-    confidence : float
-    scatter : float
-        Standard deviation of the residuals, in the unit of the data.
-    residuals : float array
-    correlation : float array (n, n)
-        Of the estimates: near 1 or -1 the data cannot tell two of them apart.
-    """
-
-    values: dict[str, float]
-    intervals: dict[str, tuple[float, float]]
-    confidence: float
-    scatter: float
-    residuals: np.ndarray = field(repr=False)
-    correlation: np.ndarray = field(repr=False)
-
-    def __str__(self) -> str:
-        lines = [
-            f"{name} = {value:.6g}, {100 * self.confidence:g} % between {self.intervals[name][0]:.6g} and {self.intervals[name][1]:.6g}"
-            for name, value in self.values.items()
-        ]
-        return "\n".join([*lines, f"scatter of the data about the model: {self.scatter:.3g}"])
-
-
-def fit(
-    residuals: Callable[[np.ndarray], np.ndarray],
-    guess: Mapping[str, float],
-    limits: Mapping[str, tuple[float, float]],
-    confidence: float = 0.95,
-) -> Calibration:
-    """Least squares with confidence intervals.
-
-    Parameters
-    ----------
-    residuals : callable
-        Data minus model at parameter values (n,), shape (m,).
-    guess : mapping
-        Where the search begins.
-    limits : mapping
-        Name -> (low, high).
-    confidence : float
-
-    Raises
-    ------
-    ParameterError
-        If there are fewer data than parameters, or they do not depend on one of them.
-    """
-    from scipy.optimize import least_squares
-    from scipy.stats import t
-
-    names = list(guess)
-    start = np.array([float(guess[name]) for name in names])
-    low, high = (np.array([limits[name][k] for name in names], dtype=float) for k in (0, 1))
-    if np.any(start < low) or np.any(start > high):
-        raise ParameterError("the guess leaves the limits: begin inside them")
-    if not 0.0 < confidence < 1.0:
-        raise ParameterError(f"confidence = {confidence!r}: give a number between 0 and 1, for example 0.95")
-    span = high - low
-    found = least_squares(
-        residuals,
-        start,
-        bounds=(low, high),
-        x_scale=span,
-        diff_step=1e-5,
-        xtol=1e-12,
-        ftol=1e-12,
-        gtol=1e-14,
-        method="trf",
-    )
-    data, unknowns = found.fun.size, len(names)
-    if data <= unknowns:
-        raise ParameterError(f"{data} data do not fix {unknowns} parameters: measure more, or estimate fewer")
-    jacobian = _slopes(residuals, found.x, span)
-    _, sizes, axes = np.linalg.svd(jacobian * span, full_matrices=False)
-    if sizes[-1] <= 1e-10 * sizes[0]:
-        flat = names[int(np.argmax(np.abs(axes[-1])))]
-        raise ParameterError(
-            f"the data do not depend on {flat} (alone): leave it out, or measure something that does"
-        )
-    scatter = math.sqrt(float(found.fun @ found.fun) / (data - unknowns))
-    covariance = scatter**2 * np.linalg.inv(jacobian.T @ jacobian)
-    deviations = np.sqrt(np.diag(covariance))
-    reach = float(t.ppf(0.5 + 0.5 * confidence, data - unknowns)) * deviations
-    return Calibration(
-        dict(zip(names, map(float, found.x))),
-        {name: (float(x - r), float(x + r)) for name, x, r in zip(names, found.x, reach)},
-        confidence,
-        scatter,
-        found.fun,
-        covariance / np.outer(deviations, deviations) if scatter > 0.0 else np.eye(unknowns),
-    )
+__all__ = ["Calibration", "fit", "from_impacts", "from_sweep", "read_columns"]
 
 
 def from_impacts(
@@ -129,12 +33,12 @@ def from_impacts(
     *,
     start: Mapping[str, float] | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
+    fixed: Mapping[str, float] | None = None,
     confidence: float = 0.95,
 ) -> Calibration:
     """From the instants of successive impacts.
 
-    The first impact is taken as the origin; what is compared are the times since then, so that the clock of the measurement needs
-    no phase. Parameters to which time is proportional cannot be told from it.
+    The clock of the measurement needs no phase: it is set so that the times agree in the mean. Parameters to which time is proportional cannot be told from it.
 
     Parameters
     ----------
@@ -146,6 +50,8 @@ def from_impacts(
     start : mapping, optional
         State in which the measurement begins (see `orbits.simulation.simulate`): from rest by default.
     limits : mapping, optional
+    fixed : mapping, optional
+        Parameters that are no fields of the machine (`amplitude`).
     confidence : float
 
     Raises
@@ -162,16 +68,28 @@ def from_impacts(
     count = measured.size
 
     def residuals(values: np.ndarray, used: int = count) -> np.ndarray:
-        params = _vector(model, dict(zip(unknown, values)))
+        params = _vector(model, dict(zip(unknown, values)), fixed)
         numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
-        run = simulate(model, start, events=40 * used + 400, **numbers)
-        phases = run.phases[run.codes < 2][:used]
+        phases = np.empty(0)
+        for events in (3 * used + 20, 40 * used + 400):  # most motions have few turns between impacts
+            if phases.size < used:
+                run = simulate(model, start, events=events, **numbers)
+                phases = run.phases[run.codes < 2][:used]
         if phases.size < used:
-            return np.full(used - 1, 1e3 * float(since[-1]))
+            return np.full(used, 1e3 * float(since[-1]))
         seconds = float(model.gauge("time", params))
-        return ((phases - phases[0]) / numbers["frequency"] * seconds - since[:used])[1:]
+        late = (phases - phases[0]) / numbers["frequency"] * seconds - since[:used]
+        return late - late.mean()
 
-    return fit(residuals, _nearer(residuals, unknown, bounds, count), bounds, confidence)
+    found = fit(residuals, _nearer(residuals, unknown, bounds, count), bounds, confidence, spent=1)
+    between = float(since[-1]) / (count - 1)
+    if found.scatter > ASTRAY * between:
+        raise ParameterError(
+            f"no {', '.join(unknown)} make{'s' if len(unknown) == 1 else ''} the model follow these impacts: at best they scatter by "
+            f"{found.scatter:.3g}, with {between:.3g} from one to the next. Is the machine the measured one, does the run begin as the "
+            "measurement did, is an impact missing? Fewer impacts, other limits or one more unknown parameter may help"
+        )
+    return found
 
 
 def _nearer(
@@ -182,22 +100,41 @@ def _nearer(
 ) -> dict[str, float]:
     """A guess good enough for all impacts: from the best of a grid for the first few, with more and more of them.
 
-    Motions with impacts forget: a wrong guess is soon out of step, and the sum over many impacts has many minima.
+    Motions with impacts forget: a wrong guess is soon out of step, and the sum over many impacts has many minima. So the lowest places
+    of the grid that have no lower neighbour are all taken along, and the best of them at the end is the guess.
     """
     from scipy.optimize import least_squares
 
-    few = min(count, 2 * len(guess) + 2)
+    few = min(count, 2 * len(guess) + 4)
     low, high = (np.array([limits[name][k] for name in guess], dtype=float) for k in (0, 1))
+    side = max(int(GRID ** (1.0 / len(guess))), 3)
+    shares = [np.linspace(0.0, 1.0, side + 2)[1:-1] ** (2.0 if a == 0.0 else 1.0) for a in low]  # closer to 0
     places = np.stack(
-        np.meshgrid(*(np.linspace(a, b, GRID + 2)[1:-1] for a, b in zip(low, high)), indexing="ij"), axis=-1
+        np.meshgrid(*(a + (b - a) * x for a, b, x in zip(low, high, shares)), indexing="ij"), axis=-1
     )
-    tried = [np.array([*guess.values()], dtype=float), *places.reshape(-1, len(guess))]
-    best = min(tried, key=lambda x: float(np.square(residuals(x, few)).sum()))
-    while few < count:
-        options = {"bounds": (low, high), "x_scale": high - low, "diff_step": 1e-5}
-        best = least_squares(lambda x, used=few: residuals(x, used), best, **options).x
-        few = min(2 * few, count)
+    sums = np.apply_along_axis(lambda x: float(np.square(residuals(x, few)).sum()), -1, places)
+    tried = [np.array([*guess.values()], dtype=float), *_lowest(sums, places, CANDIDATES)]
+    options: Any = {"bounds": (low, high), "x_scale": high - low, "diff_step": 1e-5}
+
+    def followed(x: np.ndarray) -> tuple[float, np.ndarray]:
+        used = few
+        while True:
+            x = least_squares(lambda y, used=used: residuals(y, used), x, **options).x
+            if used == count:
+                return float(np.square(residuals(x, count)).sum()), x
+            used = min(2 * used, count)
+
+    best = min((followed(x) for x in tried), key=lambda pair: pair[0])[1]
     return dict(zip(guess, map(float, best)))
+
+
+def _lowest(sums: np.ndarray, places: np.ndarray, most: int) -> list[np.ndarray]:
+    """Places of a grid that are no higher than their neighbours, the lowest first."""
+    from scipy.ndimage import minimum_filter
+
+    least = np.argwhere((sums <= minimum_filter(sums, 3, mode="nearest")) & np.isfinite(sums))
+    order = np.argsort([sums[tuple(place)] for place in least], kind="stable")
+    return [places[tuple(least[k])] for k in order[:most]]
 
 
 def from_sweep(
@@ -209,10 +146,14 @@ def from_sweep(
     *,
     measure: str = "max_abs_q1",
     limits: Mapping[str, tuple[float, float]] | None = None,
+    fixed: Mapping[str, float] | None = None,
     transient: float = SETTLED,
     confidence: float = 0.95,
 ) -> Calibration:
     """From steady responses over a parameter, measured in the order given: each from where the one before it has settled.
+
+    Several motions may coexist: the first response is that of the start, at rest or one of a few at random, from which all of them come
+    closest to the data.
 
     Parameters
     ----------
@@ -221,7 +162,7 @@ def from_sweep(
         What was swept.
     values, responses : sequences of float
         In the machine's units.
-    unknown, limits, confidence
+    unknown, limits, fixed, confidence
         As for `from_impacts`.
     measure : str
         What was measured: of `orbits.attractors.sweep.measure_names`.
@@ -239,51 +180,26 @@ def from_sweep(
         raise ParameterError("the sweep has numbers that are not finite: leave those rows out")
     model = _with_amounts(machine, unknown)
 
-    def residuals(guess: np.ndarray) -> np.ndarray:
-        params = _vector(model, dict(zip(unknown, guess)))
+    def residuals(guess: np.ndarray, start: Any = None) -> np.ndarray:
+        params = _vector(model, dict(zip(unknown, guess)), fixed)
         numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
-        rows = sweep(model, over, places, transient=transient, nudge=0.0, **numbers)
+        rows = sweep(model, over, places, start=start, transient=transient, nudge=0.0, **numbers)
         return np.array([row.measures[measure] for row in rows]) - heights
 
-    return fit(residuals, unknown, _limits(model, unknown, limits), confidence)
+    bounds = _limits(model, unknown, limits)
+    known = np.array([*unknown.values()], dtype=float)
+    generator = np.random.default_rng(20)
+    params = _vector(model, unknown, fixed)
+    starts = [None, *(model.random_start(params, generator) for _ in range(STARTS))]
+    tried = [known, *(_inside(share, bounds) for share in generator.random((TRIED, known.size)))]
+    pairs = [(start, x) for x in tried for start in starts]
+    start, x = min(pairs, key=lambda pair: float(np.square(residuals(pair[1], pair[0])).sum()))
+    return fit(lambda y: residuals(y, start), dict(zip(unknown, map(float, x))), bounds, confidence)
 
 
-def read_columns(path: str | Path, columns: int) -> np.ndarray:
-    """A CSV of numbers, shape (n, columns); one line of names at its top is passed over.
-
-    Raises
-    ------
-    ParameterError
-        With the row that cannot be read.
-    """
-    import csv
-
-    path = Path(path)
-    try:
-        lines = [
-            row
-            for row in csv.reader(path.read_text(encoding="utf-8").splitlines())
-            if row and not row[0].startswith("#")
-        ]
-    except (OSError, UnicodeDecodeError):
-        raise ParameterError(
-            f"{path}: cannot be read; give a CSV with {columns} columns of numbers"
-        ) from None
-    found = []
-    for number, row in enumerate(lines):
-        try:
-            found.append([float(cell) for cell in row[:columns]])
-        except ValueError:
-            if number == 0:
-                continue
-            raise ParameterError(
-                f"{path}: row {number + 1} holds {', '.join(row[:columns])!r}, not {columns} numbers"
-            ) from None
-        if len(found[-1]) < columns:
-            raise ParameterError(f"{path}: row {number + 1} has {len(row)} columns; {columns} are needed")
-    if not found:
-        raise ParameterError(f"{path}: there is no row of numbers; give {columns} columns")
-    return np.array(found)
+def _inside(share: np.ndarray, limits: Mapping[str, tuple[float, float]]) -> np.ndarray:
+    """Parameters at these shares of the way between their limits."""
+    return np.array([low + x * (high - low) for x, (low, high) in zip(share, limits.values())])
 
 
 def _measured(times: Any) -> np.ndarray:
@@ -313,9 +229,11 @@ def _with_amounts(machine: Any, unknown: Mapping[str, float]) -> Any:
     return machine
 
 
-def _vector(model: Any, values: Mapping[str, float]) -> np.ndarray:
-    with_ = getattr(model, "with_", None)
-    return with_(**values).vector() if with_ is not None else model.vector(values)
+def _vector(model: Any, values: Mapping[str, float], fixed: Mapping[str, float] | None) -> np.ndarray:
+    params = model.vector(fixed)
+    for name, value in values.items():
+        params = along(model.path(name, params), params, float(value))
+    return params
 
 
 def _limits(model: Any, unknown: Mapping[str, float], limits: Any) -> dict[str, tuple[float, float]]:
@@ -326,13 +244,3 @@ def _limits(model: Any, unknown: Mapping[str, float], limits: Any) -> dict[str, 
         else usual.get(name, (0.2 * value, 5.0 * value))
         for name, value in unknown.items()
     }
-
-
-def _slopes(residuals: Callable[[np.ndarray], np.ndarray], x: np.ndarray, span: np.ndarray) -> np.ndarray:
-    """Central differences, shape (m, n), with steps of a millionth of the limits' span."""
-    columns = []
-    for j in range(x.size):
-        step = np.zeros_like(x)
-        step[j] = 1e-6 * span[j]
-        columns.append((residuals(x + step) - residuals(x - step)) / (2.0 * step[j]))
-    return np.column_stack(columns)

@@ -102,7 +102,9 @@ class Family:
                 orbit = settled(model, model.vector_at(self.over or "", value, loose))
         if orbit is None:
             raise refusal or StartError(
-                f"the orbit {self.word!r} is no real one here, and the simulator finds no periodic motion to begin with"
+                "the simulator finds no periodic motion to begin with; give a word, or another interval"
+                if self.word is None
+                else f"the orbit {self.word!r} is no real one here, and the simulator finds no periodic motion to begin with"
             )
         return orbit
 

@@ -175,7 +175,7 @@ class Model(Varying):
     @classmethod
     def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """w at the left and at the right wall; shapes follow `params` (..., P)."""
-        one = np.ones(params.shape[:-1])
+        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else np.float64(1.0)
         return one, -one
 
     @classmethod

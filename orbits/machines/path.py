@@ -68,12 +68,14 @@ def single(count: int, index: int) -> np.ndarray:
 
 def along(path: np.ndarray, params: np.ndarray, p: np.ndarray | float) -> np.ndarray:
     """The numbers at each p: (P,) for one, (m, P) for an array (m,)."""
+    if isinstance(p, float) or np.ndim(p) == 0:
+        found, value = params.copy(), float(p)
+        for j, (factor, power) in enumerate(zip(*path.tolist())):
+            if power != 0.0:
+                found[j] = factor * value if power == 1.0 else factor * value**power
+        return found
     factors, powers = path
     moved = powers != 0.0
-    if np.ndim(p) == 0:
-        found = params.copy()
-        found[moved] = factors[moved] * p ** powers[moved]
-        return found
     values = np.asarray(p, dtype=float)[..., None]
     found = np.broadcast_to(params, (*values.shape[:-1], params.size)).copy()
     found[..., moved] = factors[moved] * values ** powers[moved]

@@ -153,7 +153,10 @@ def find(
         if nearest
         else "the simulator finds no periodic motion"
     )
-    given = ", ".join(f"{name} = {value:g}" for name, value in (parameters or {}).items())
+    given = ", ".join(
+        f"{name} = {value if isinstance(value, str) else format(value, 'g')}"  # a quantity is text
+        for name, value in (parameters or {}).items()
+    )
     raise StartError(
         f"no orbit {reading.text!r} with periods = {periods} was found{' at ' + given if given else ''}; tried: "
         f"{', '.join(tried)}; {found}. Change the word, the periods or the parameters, or give a guess of the nodes."

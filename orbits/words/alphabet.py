@@ -46,6 +46,8 @@ class Alphabet:
     flips : dict of (wall, contact) to int or None
         Sign of a friction's velocity, or of a switch, after an impact (before it: the opposite); None: an impact may leave
         either. A pair that is not listed: the impact does not touch it.
+    rides : frozenset of (switch, friction)
+        Switches whose surface moves with the velocity of a friction: it has an extreme wherever that one turns or sticks.
     alone : int, optional
         The contact whose mode alone is written; the others have one mode only. Left out: one entry per contact.
     without : frozenset of int
@@ -56,6 +58,7 @@ class Alphabet:
     mirror: Mapping[int, int] | None = None
     turned: frozenset[int] = frozenset()
     flips: Mapping[tuple[int, int], int | None] = field(default_factory=dict)
+    rides: frozenset[tuple[int, int]] = frozenset()
     alone: int | None = None
     without: frozenset[int] = frozenset()
 
@@ -132,6 +135,9 @@ class Alphabet:
         """The kind of border at which two consecutive events fall together."""
         if here.contact == there.contact:
             return self.contacts[here.contact].together(here.kind, there.kind)
+        for one, other in ((here, there), (there, here)):
+            if (one.contact, other.contact) in self.rides:
+                return self.contacts[one.contact].together(one.kind, one.kind)
         if self.touches(here, there.contact):
             return self.contacts[there.contact].together(there.kind, there.kind)
         if self.touches(there, here.contact):

@@ -46,6 +46,9 @@ def changes_at(site: Site, watched: int) -> list[Change]:
     if here.contact == there.contact:
         return contacts[here.contact].collapsed(site, here.contact)
     alphabet = word.alphabet
+    for one, other in ((here, there), (there, here)):
+        if (one.contact, other.contact) in alphabet.rides:
+            return contacts[one.contact].collapsed(site, one.contact)
     if alphabet.touches(here, there.contact) or alphabet.touches(there, here.contact):
         if SWITCH in (here.kind, there.kind):
             switch = (here if here.kind == SWITCH else there).contact

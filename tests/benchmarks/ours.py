@@ -6,6 +6,8 @@ import contvines as cv
 from contvines.command.compose import checked_study, first_orbit, run_diagram
 from contvines.continuation import march as source
 from contvines.continuation.binding import bind
+from contvines.continuation.corrector import Scratch
+from contvines.continuation.lengths import Metric
 from orbits import Absorber
 from orbits.problem import OrbitProblem
 from orbits.words import Word
@@ -43,21 +45,25 @@ class Core:
         self.tangents, self.rows = np.empty((count, n + 1)), np.zeros((count, rows))
         self.points[0], self.values[0], self.tangents[0] = case.start(l)
         control = np.zeros(source.CONTROL_SIZE)
-        control[source.METRIC_U], control[source.METRIC_P] = case.metric(l)
         control[source.ANGLE], control[source.MIN_STEP], control[source.MAX_STEP] = case.ANGLE, 1e-9, step
         control[source.TOLERANCE], control[source.SWEEPS] = case.TOLERANCE, 8
         control[source.LOWER], control[source.UPPER] = case.INTERVAL
         control[source.ROW_MARGINS] = 2 * self.problem.n_multipliers
-        arrays = (self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count))
-        scratch = (
-            np.ones(n + 1),
-            np.ones(n + 1),
-            np.zeros(n),
-            np.zeros(n + 1),
-            np.zeros(n + 1),
-            np.zeros(n + 1),
+        chunk = source.Points(
+            self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count)
         )
-        self.arguments = (self.problem.data, self.problem.workspace(), *arrays, 1, step, control, *scratch)
+        metric = Metric(np.ones(n + 1), np.ones(n + 1), *map(float, case.metric(l)))
+        scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
+        self.arguments = (
+            self.problem.data,
+            self.problem.workspace(),
+            chunk,
+            1,
+            step,
+            control,
+            metric,
+            scratch,
+        )
         self.march = bind(self.problem.kernels).march
 
     def run(self):

@@ -151,3 +151,12 @@ def test_script(name, gallery, tmp_path):
     assert f'paper.run("{name}", main)' in Path(str(script.__file__)).read_text()  # as a script, too
     assert script.__doc__ and any(word in script.__doc__ for word in ("Confirms", "Refines", "Contradicts"))
     globals()[f"check_{name}"](numbers)
+
+
+@pytest.mark.parametrize("name", ["sawtooth", "stability_region"])
+def test_a_picture_fits_a_column(name, gallery, tmp_path, monkeypatch):
+    from PIL import Image
+
+    monkeypatch.setattr(gallery, "width", 3.4)
+    gallery.run(name, importlib.import_module(name).main, tmp_path)
+    assert Image.open(tmp_path / f"{name}.png").width == 680  # 3.4 inches at 200 dots an inch

@@ -4,6 +4,7 @@ First order in the mass ratio. `SlowFlow` holds the parameters; the other functi
 """
 
 from .backbone import Backbone, Coefficients, backbone, coefficients, resonance_detuning, resonance_frequency
+from .clearance import BestClearance, TunedBackbone, best_clearance, tuned_backbone
 from .continuation import SlowResponse
 from .decay import damping_ratio, decay_amplitude, decay_bound, decay_rate, decay_time
 from .equilibria import (
@@ -34,6 +35,7 @@ from .trajectory import SlowTrajectory, integrate
 __all__ = [
     "CLOSURES",
     "Backbone",
+    "BestClearance",
     "Coefficients",
     "Equilibrium",
     "ManifoldPoint",
@@ -42,8 +44,10 @@ __all__ = [
     "SlowFlow",
     "SlowResponse",
     "SlowTrajectory",
+    "TunedBackbone",
     "activation",
     "backbone",
+    "best_clearance",
     "coefficients",
     "damping_ratio",
     "decay_amplitude",
@@ -68,6 +72,7 @@ __all__ = [
     "special_points",
     "squared_amplitude",
     "symmetry_limit",
+    "tuned_backbone",
     "turning_point",
     "velocity_at",
 ]

@@ -20,6 +20,8 @@ from .equilibria import Equilibrium, equilibrium_at, phase_at
 from .flow import Manifold, SlowFlow
 from .polynomials import real_roots, root_bound
 
+OFF_CUT = 1e-6  # radians from the ends of a piece that the manifold cuts off, where its slope is infinite
+
 
 @dataclass(frozen=True)
 class ResponseCurve:
@@ -168,14 +170,16 @@ def frequency_response(
         ends = (float(a), float(b))
         cut_low, cut_high = a == low, b == high
         if cut_low and cut_high:
-            pieces.append(_curve(flow, manifold, ends, (1e-6, np.pi - 1e-6), points, False))
-            pieces.append(_curve(flow, manifold, ends, (np.pi + 1e-6, 2.0 * np.pi - 1e-6), points, False))
+            spans = [(0.0, np.pi), (np.pi, 2.0 * np.pi)]
         elif cut_high:
-            pieces.append(_curve(flow, manifold, ends, (-np.pi + 1e-6, np.pi - 1e-6), points, False))
+            spans = [(-np.pi, np.pi)]
         elif cut_low:
-            pieces.append(_curve(flow, manifold, ends, (1e-6, 2.0 * np.pi - 1e-6), points, False))
+            spans = [(0.0, 2.0 * np.pi)]
         else:
             pieces.append(_curve(flow, manifold, ends, (0.0, 2.0 * np.pi), points, True))
+            continue
+        for first, last in spans:
+            pieces.append(_curve(flow, manifold, ends, (first + OFF_CUT, last - OFF_CUT), points, False))
     return pieces
 
 

@@ -138,13 +138,16 @@ def island() -> Isola:
     )
 
     def atlas() -> cv.Graph:
-        return cv.atlas(coupled, over="frequency", within=(0.990, 1.001), values=12, starts=64, depth=2)
+        return cv.atlas(coupled, over="frequency", within=(0.990, 1.001), values=12, starts=64, depth=0)
 
     return Isola("island of asymmetric orbits", atlas, (0.992992, 0.998990), tolerance=1e-6)
 
 
 def wide(half_width: int) -> Isola:
-    """The closed response of an absorber in a wide cavity, which hangs together with the sliding motion nowhere."""
+    """The closed response of an absorber in a wide cavity, which hangs together with the sliding motion nowhere.
+
+    From 32.5 mm on (at 8.054 Hz) it attracts no more: a pair of its multipliers leaves the unit circle.
+    """
     coupled = physical(
         "coupled",
         {
@@ -184,7 +187,7 @@ ISOLAS: list[Isola] = [
     island(),
     wide(27),
     wide(30),
-    wide(33),
+    wide(31),
 ]
 
 

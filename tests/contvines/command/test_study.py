@@ -120,7 +120,6 @@ def test_coupled_studies_have_their_own_parameters():
         ({"model__mass_ratio": 1e308}, ["[model] mass_ratio = 1e+308", "from 0 to 1e6"]),
         ({"start__periods": 1.5}, ["[start] periods = 1.5", "not a whole number"]),
         ({"start__word": 3}, ["[start] word = 3", "not text"]),
-        ({"start__word": None}, ["[start] word is missing", "'LR'"]),
         ({"start__amplitude": None}, ["[start] amplitude is missing", "from 0.2 to 1.3"]),
         ({"start__amplitude": 1.4}, ["[start] amplitude = 1.4", "outside [continue] within = [0.2, 1.3]"]),
         ({"start__amplitude": float("nan")}, ["[start] amplitude = nan", "not a finite number"]),

@@ -10,6 +10,7 @@ import contvines as cv
 from contvines.continuation.corrector import improve
 from contvines.continuation.engine import Engine
 from contvines.continuation.lengths import (
+    Metric,
     compare,
     correction_size,
     extrapolate,
@@ -22,6 +23,7 @@ from contvines.continuation.settings import Settings
 from contvines.events.segment import Segment
 
 ONES = np.ones(2)
+FLAT = Metric(ONES, ONES, 1.0, 1.0)
 
 
 def judged(sizes, residual=1.0, tolerance=1e-8, noise=0.0):
@@ -29,7 +31,7 @@ def judged(sizes, residual=1.0, tolerance=1e-8, noise=0.0):
     before, found = 0.0, []
     for sweep, size in enumerate(sizes):
         p, before, verdict = improve(
-            np.zeros(1), 0.0, np.array([size, 0.0]), sweep, residual, before, tolerance, ONES, noise
+            np.zeros(1), 0.0, np.array([size, 0.0]), sweep, residual, before, tolerance, FLAT, noise
         )
         found.append(verdict)
     return found
@@ -88,7 +90,7 @@ def ahead(step):
     """Error of the prediction over a step on the unit circle, from two points as far apart."""
     points, values, tangents = circle(0.4 + step * np.arange(3.0))
     u = np.zeros(1)
-    p = extrapolate(points, values, tangents, 2, step, ONES, 1.0, 1.0, u)
+    p = extrapolate(points, values, tangents, 2, step, FLAT, u)
     return math.hypot(u[0] - points[2, 0], p - values[2])
 
 
@@ -103,7 +105,7 @@ def test_the_prediction_is_of_fourth_order():
 def test_the_first_prediction_is_along_the_tangent():
     points, values, tangents = circle(np.array([0.4, 0.5]))
     u = np.zeros(1)
-    p = extrapolate(points, values, tangents, 1, 0.1, ONES, 1.0, 1.0, u)
+    p = extrapolate(points, values, tangents, 1, 0.1, FLAT, u)
     assert [u[0], p] == pytest.approx([points[0, 0] + 0.1 * tangents[0, 0], values[0] + 0.1 * tangents[0, 1]])
 
 
@@ -122,18 +124,20 @@ def test_a_segment_guesses_its_inside_in_arc_length():
 
 def test_sums_over_the_unknowns():
     u, step = np.array([1.0, -3.0]), np.array([0.1, 0.4, -0.3])
-    assert correction_size(step, u, 0.5, ONES) == pytest.approx(max(0.1 / 2.0, 0.4 / 4.0, 0.3 / 1.5))
-    assert correction_size(np.array([0.1, np.nan, 0.0]), u, 0.5, ONES) == math.inf
+    assert correction_size(step, u, 0.5, FLAT) == pytest.approx(max(0.1 / 2.0, 0.4 / 4.0, 0.3 / 1.5))
+    assert correction_size(np.array([0.1, np.nan, 0.0]), u, 0.5, FLAT) == math.inf
     border = np.array([0.2, -0.5, 2.0])
     assert remainder(border, u, 0.7, 4.0) == pytest.approx(4.0 - (0.2 + 1.5 + 1.4))
     fix_parameter(border)
     assert border.tolist() == [0.0, 0.0, 1.0]
     tangent = np.array([0.3, 0.4, 0.5])
-    target = plane(tangent, u, 0.7, ONES, 0.5, 0.25, border)
+    target = plane(tangent, u, 0.7, Metric(ONES, ONES, 0.5, 0.25), border)
     assert border.tolist() == pytest.approx([0.15, 0.2, 0.125])
     assert target == pytest.approx(0.15 - 0.6 + 0.125 * 0.7)
     other = np.array([0.6, -0.1, 0.2])
-    norm, cosine, error = compare(tangent, other, u, np.array([0.9, -2.8]), 0.7, 0.4, ONES, 0.5, 0.25)
+    norm, cosine, error = compare(
+        tangent, other, u, np.array([0.9, -2.8]), 0.7, 0.4, Metric(ONES, ONES, 0.5, 0.25)
+    )
     assert norm == pytest.approx(math.sqrt(0.5 * 0.25 + 0.25 * 0.25))
     assert cosine == pytest.approx((0.5 * (0.18 - 0.04) + 0.25 * 0.1) / norm)
     assert error == pytest.approx(math.sqrt(0.5 * (0.01 + 0.04) + 0.25 * 0.09))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
@@ -66,12 +66,32 @@ class TwoMargins(Line):
 
 
 @settings(max_examples=80, deadline=None)
+@example(
+    -0.1875, 0.0078125, 0.015625
+)  # between the ends of two chunks, another margin is lost in the next segment
+@example(
+    0.289122949011563, 0.00390625, 0.0078125
+)  # a margin that is nearly zero at a point, lost right behind it
 @given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.02), st.floats(1e-3, 0.02))
 def test_short_loss_of_a_margin_before_another_one_is_lost(centre, half, later):
     """The branch ends where the first of them is lost, though the next point lies beyond the other one."""
     graph = cv.diagram(TwoMargins(centre, half, later), within=(-1.0, 1.0))
     assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
     assert graph["B1"].values[-1] == graph["VG1"].value
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.02), st.floats(1e-9, 1e-2))
+def test_short_loss_of_a_margin_that_is_not_the_smallest(centre, half, level):
+    """Another margin is smaller nearly everywhere, and does not vanish."""
+
+    def inspect_both(data, u, p, work, row):
+        row[:] = 0.5, 0.0, (p - centre) ** 2 - half**2, level
+
+    problem = TwoMargins(centre, half, 0.0)
+    problem.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_both)
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
 
 
 @settings(max_examples=40, deadline=None)

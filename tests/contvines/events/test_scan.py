@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from contvines.continuation.lengths import Metric
 from contvines.events import scan
+from contvines.events.bits import Scanned, Symmetries
 from contvines.events.multipliers import counts
 
 WAYS = {"fold": scan.FOLD, "border": scan.BORDER, "multiplier": scan.MULTIPLIER, "shallow": scan.SHALLOW,
@@ -27,11 +29,16 @@ def marked(
     rows = np.ascontiguousarray(np.hstack(columns))
     flags, smallest = np.zeros(n - 1, np.int64), np.zeros(n)
     none = np.zeros((0, 1))
-    scan.mark_segments(
-        points, values, np.ones(n) if slopes is None else np.asarray(slopes, float), rows,
-        np.ones(n) if signs is None else np.asarray(signs, float), first, kind, real, 1e-9, 1.0, 1.0,
-        np.zeros((0, 1), np.int64), none, none, np.zeros(1), np.zeros((2, 0, 1)), flags, smallest,
-    )  # fmt: skip
+    chunk = Scanned(
+        points,
+        values,
+        np.ones(n) if slopes is None else np.asarray(slopes, float),
+        rows,
+        np.ones(n) if signs is None else np.asarray(signs, float),
+    )
+    symmetries = Symmetries(np.zeros((0, 1), np.int64), none, none, np.zeros(1), np.zeros((2, 0, 1)))
+    metric = Metric(np.ones(2), np.ones(2), 1.0, 1.0)
+    scan.mark_segments(chunk, first, kind, real, 1e-9, metric, symmetries, flags, smallest)
     return [{name for name, bit in WAYS.items() if flag & bit} for flag in flags], smallest
 
 

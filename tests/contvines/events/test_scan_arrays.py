@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from contvines.continuation.lengths import Metric
 from contvines.events import bits, scan, scan_arrays
 
 
@@ -26,10 +27,10 @@ def test_arrays_and_loops_mark_the_same(kind, real):
         )
         images, constants = draw.choice([-1.0, 1.0], (symmetries, size)), draw.normal(size=(symmetries, size))
         shift = np.full(size, 2.0 * np.pi) * (seed % 2)
-        given = (
-            points, values, draw.normal(size=n), rows, draw.choice([-1.0, 1.0], n), 2 * pairs, kind, real, 1e-9, 0.7, 1.3,
-            orders, images, constants, shift, np.zeros((2, symmetries, size)),
-        )  # fmt: skip
+        chunk = bits.Scanned(points, values, draw.normal(size=n), rows, draw.choice([-1.0, 1.0], n))
+        metric = Metric(np.ones(size + 1), np.ones(size + 1), 0.7, 1.3)
+        repeated = bits.Symmetries(orders, images, constants, shift, np.zeros((2, symmetries, size)))
+        given = (chunk, 2 * pairs, kind, real, 1e-9, metric, repeated)
         marks = []
         for module in (scan, scan_arrays):
             flags, smallest = np.zeros(max(n - 1, 0), np.int64), np.zeros(n)

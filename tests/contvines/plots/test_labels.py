@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from contvines.plots.labels import Label, place_labels
+from contvines.plots.labels import Ground, Label, grouped, place_labels
 
 
 @pytest.fixture
@@ -25,3 +25,28 @@ def test_names_of_branches_are_left_out_in_silence(axes):
     assert [text.get_text() for text in written] == ["SB1"] and left_out == 0
     outside = Label("SB2", 2.0, 0.5)
     assert place_labels(axes, [outside], np.zeros((0, 2)), size=8) == ([], 0)
+
+
+def test_a_leader_takes_the_way_that_crosses_no_curve(axes):
+    # curves above the point at every height, nothing below it: the text must go below
+    x = np.linspace(0.0, 1.0, 600)
+    above = np.vstack([np.column_stack([x, np.full_like(x, h)]) for h in np.arange(0.54, 0.9, 0.04)])
+    (text,), _ = place_labels(axes, [Label("SB1", 0.5, 0.5)], above, size=8)
+    assert text.xyann[1] < 0
+
+
+def test_curves_are_counted_along_a_line(axes):
+    x = np.linspace(0.0, 1.0, 600)
+    curves = np.vstack([np.column_stack([x, np.full_like(x, h)]) for h in (0.3, 0.5, 0.7)])
+    ground = Ground(axes.bbox, axes.transData.transform(curves))
+    ends = axes.transData.transform([(0.5, 0.3), (0.5, 0.95), (0.5, 0.05)])
+    assert (
+        2.0 <= ground.crossed((*ends[0], *ends[1])) < 3.0
+    )  # its own curve, at the first end, is not counted
+    assert ground.crossed((*ends[0], *ends[2])) == 0.0
+
+
+def test_of_a_crowd_the_number_is_told_and_not_one_name(axes):
+    crowd = [Label(f"LP{i}", 0.5, 0.5) for i in range(1, 38)]
+    assert [label.text for label in grouped(axes, crowd)] == ["37 points"]
+    assert [label.text for label in grouped(axes, crowd[:4])] == ["LP1, LP2 +2"]

@@ -1,10 +1,22 @@
 """Outcomes of the coupled machine: activation is the borders and folds of the diagram, shares and gaps add up."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.survey.outcomes import Findings, activation, covered, gaps, share, stable_range
+from contvines.graph.attractor import Attractor
+from contvines.survey import survey
+from contvines.survey.outcomes import (
+    Findings,
+    activation,
+    coexisting,
+    covered,
+    gaps,
+    share,
+    stable_range,
+)
 from orbits import Coupled
 
 
@@ -47,3 +59,57 @@ def test_gaps_and_cover_are_the_whole(found):
 def test_shares(found):
     assert share(found, "LR") == {"share_LR": 0.5}
     assert np.isnan(share(Findings(found.graph, None), "LR")["share_LR"])
+
+
+def test_shares_of_an_atlas(found):
+    """The mean over the values with the most starts, and the least of them; a brief look with few starts does not count."""
+    met = [
+        Attractor(1.0, "LR", 1, "periodic", "B1", 0.75, starts=64),
+        Attractor(1.0, "tt", 1, "periodic", "B2", 0.25, starts=64),
+        Attractor(1.5, "LR", 1, "periodic", "B1", 0.25, starts=64),
+        Attractor(1.2, "tt", 1, "periodic", "B2", 1.0, starts=16),
+    ]
+    graph = SimpleNamespace(attractors=met)
+    assert share(Findings(graph, None), "LR") == {"share_LR": 0.5, "share_LR_least": 0.25}
+    assert share(Findings(graph, None), "tt") == {"share_tt": 0.125, "share_tt_least": 0.0}
+
+
+def test_coexisting_responses_are_counted(found):
+    """As many as `at` finds stable points of at any of 401 values."""
+    values = np.linspace(*found.graph.within, 401)
+    counts = [
+        sum(
+            1
+            for branch in found.graph
+            if branch.real
+            for low, high in branch.stable_intervals()
+            if low <= value <= high
+        )
+        for value in values
+    ]
+    assert coexisting(found) == {"coexisting": max(counts), "ambiguous": np.mean(np.array(counts) > 1)}
+
+
+def test_an_atlas_of_each_machine_is_the_atlas_of_that_machine():
+    from orbits.design import Family
+
+    machine = Coupled(
+        restitution=0.6,
+        friction=0.1,
+        gravity=0.26,
+        mass_ratio=0.02,
+        damping=1.5,
+        frequency=1.003,
+        forcing=1.0,
+    )
+    asked = {"values": [1.0, 1.6], "starts": 12, "seed": 3, "scan": 0}
+    made = survey(
+        Family(machine, "LR", loose={"forcing": 1.2}), {"friction": [0.1, 0.12]}, over="forcing", within=(0.8, 2.0),
+        outcomes=("share:LR", "coexisting"), atlas=asked, workers=1, depth=1,
+    )  # fmt: skip
+    assert made.failed == 0
+    for i, friction in enumerate((0.1, 0.12)):
+        graph = cv.atlas(
+            machine.changed(friction=friction), over="forcing", within=(0.8, 2.0), depth=1, **asked
+        )
+        assert made["share_LR"][i] == sum(a.share for a in graph.attractors if a.word == "LR") / 2

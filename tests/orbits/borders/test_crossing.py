@@ -16,4 +16,5 @@ H = 0.5 * np.pi * 1.006 * 0.2 * 0.211
 def test_pure_sliding_a_little_beyond_the_walls_is_none(room, real):
     """It turns at w = -+ sqrt(C^2 - H^2); the simulation that hits a wall so slowly still stays within a millionth."""
     orbit = MACHINE.orbit("tt", 1, amplitude=float(np.hypot(1.0 - room, H)))
-    assert _followed(orbit) is real
+    problem = orbit.problem()
+    assert _followed(problem, *orbit.seed(problem), orbit) is real

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orbits import Absorber
-from orbits.cycles.margins import border_kind, margin_name
+from orbits.cycles.margins import border_kind, limits_of, margin_name
 from orbits.words import Word
 
 FLIGHT, EVENT, WALL, DURATION = range(4)
@@ -60,3 +60,11 @@ def test_a_stick_that_ends_where_it_begins_waits_no_time(shift, length):
         if m.kind == "hold" and m.segment == slip - 1
     )
     assert abs(hold.value) < 1e-12
+
+
+def test_no_limit_is_told_where_a_multiplier_grows_without_bound():
+    """1e15 stands for it, times a direction of length one: in one of five directions the modulus is rounded to less."""
+    for growing in -np.geomspace(1e-5, 1e8, 500):
+        listed = np.array([1e15 * complex(growing) / abs(growing), 0.5])
+        assert np.isnan(limits_of(listed)).all()
+    assert np.array_equal(limits_of(np.array([1e13, 0.5])), [1e13, 0.5])

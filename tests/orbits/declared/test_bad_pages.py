@@ -72,6 +72,39 @@ BAD = {
     "number": ({"parameters": {"forcing": "one", "frequency": 1.0, "gap": 1.0}}, "forcing = 'one' is not a number"),
     "state": ({"motion": lambda s, ph, p, c: (s.speed, -s.x)}, "state.speed: there is no state of this name; the states are x, v"),
     "contact": ({"motion": rubbing}, "contact.floor: the page declares no such contact; it has none"),
+    "list": ({"contacts": wall()}, r"contacts = Wall.* must be a list, for example \[Wall"),
+    "stranger": ({"contacts": ["R"]}, "contacts has 'R'; it may have Wall, DryFriction and Switch"),
+    "pushes": ({"contacts": [wall(push=[0.0, -1.0])]}, "wall 'R': push = .* must say how an impulse changes the states by name"),
+    "bounce": ({"contacts": [wall(restitution=None)]}, "wall 'R': restitution = None must be a number or the name of a parameter"),
+    "letter": ({"contacts": [wall(1)]}, "wall 1: 1 is no letter of a word; use letters and digits"),
+    "twins": ({"motion": rubbing, "contacts": [floor(), Switch("floor", lambda s, ph, p: s.x)]}, "share a name; give one of them another"),
+    "same": (
+        {"motion": lambda s, ph, p, c: (s.v, c.floor + c.rail - s.x),
+         "contacts": [floor(), DryFriction("rail", lambda s, ph, p: 2 * s.v, 0.1, letters=("t2", "s2", "u2"))]},
+        "friction 'floor' and friction 'rail' have the same velocity; declare one DryFriction whose limit is the sum",
+    ),
+    "together": (
+        {"motion": lambda s, ph, p, c: (s.v, c.floor - c.up * s.v**2), "contacts": [floor(), Switch("up", lambda s, ph, p: s.v)]},
+        "friction 'floor' and switch 'up' change together; leave the switch out.*limit=lambda",
+    ),
+    "idle": ({"contacts": [Switch("stop", lambda s, ph, p: s.x)]}, "switch 'stop': motion ignores contact.stop; use it where"),
+    "constant": (
+        {"motion": lambda s, ph, p, c: (s.v, -c.stop), "contacts": [Switch("stop", lambda s, ph, p: p.gap)]},
+        "switch 'stop': its surface is a constant; give a function of the states",
+    ),
+    "negative": (
+        {"motion": rubbing, "contacts": [DryFriction("floor", lambda s, ph, p: s.v, -0.2)]},
+        "friction 'floor': the limit is -0.2; give the largest force, 0 or above",
+    ),
+    "subharmonic": (
+        {"motion": lambda s, ph, p, c: (s.v, cos(0.5 * ph) - s.x)},
+        "motion's rate of v does not have the period 2 pi in the phase: at phase = .*lowest frequency",
+    ),
+    "both": ({"parameters": {"v": 1.0, "frequency": 1.0}}, "'v' is a state and a parameter; give one of them another name"),
+    "reserved": ({"parameters": {"phase": 1.0, "frequency": 1.0}}, "phase is the name of the forcing's phase"),
+    "nothing": ({"motion": lambda s, ph, p, c: None}, "motion returns nothing; return one rate per state"),
+    "formula": ({"motion": "x"}, "motion is 'x'; give a function, for example lambda state, phase, p, contact"),
+    "pairs": ({"mirror": "LR"}, "mirror = 'LR' must say which contacts change places"),
 }  # fmt: skip
 
 
@@ -91,6 +124,11 @@ def test_values_that_cannot_be():
     machine = declared(contacts=[wall(restitution="gap")])
     with pytest.raises(ParameterError, match="gap = 2 is out of range: the restitution of wall 'R'"):
         machine.vector({"gap": 2.0})
+    rough = declared(motion=rubbing, contacts=[DryFriction("floor", lambda s, ph, p: s.v, "gap")])
+    with pytest.raises(
+        ParameterError, match="gap = -1 is out of range: the limit of friction 'floor' is 0 or above"
+    ):
+        rough.vector({"gap": -1.0})
     with pytest.raises(ParameterError, match="frequency = -1: a forcing frequency is above 0"):
         machine.vector({"frequency": -1.0})
     with pytest.raises(ParameterError, match="mass is no parameter of the machine 'box'; it has forcing"):

@@ -118,3 +118,23 @@ def test_ranges_that_are_none(starts, sentence):
             contacts=[Wall("R", lambda s, phase, p: 1.0 - s.x, {"v": -1.0})],
             starts=starts,
         )
+
+
+def test_cycles_in_the_chaos_of_a_bouncing_ball_are_those_of_the_closed_form():
+    """One impact in k periods: the table moves with k pi g (1 - r) / (1 + r) there (P. J. Holmes, J. Sound Vib. 84 (1982) 173)."""
+    gravity, restitution, amplitude = 0.1, 0.8, 0.2
+    population = page("bouncing_ball").population("amplitude", gravity=gravity, restitution=restitution)
+    cycles = population.embedded(np.array([0.3, 3.0, 0.0]), amplitude)
+    assert len(cycles) > 1
+    alone = []
+    for problem, u in cycles:
+        orbit = problem.orbit(u, amplitude)
+        assert orbit.replay() < 1e-7
+        if len(orbit.word) == 1:
+            phase = orbit.nodes[0, 0]
+            speed = -amplitude * np.sin(phase)
+            assert speed == pytest.approx(
+                orbit.periods * np.pi * gravity * (1 - restitution) / (1 + restitution), abs=1e-9
+            )
+            alone.append(orbit)
+    assert alone

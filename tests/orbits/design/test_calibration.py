@@ -5,7 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from orbits import Coupled
-from orbits.design.calibration import fit, from_impacts, from_sweep, read_columns
+from orbits.design.calibration import fit, from_impacts, from_sweep
+from orbits.design.columns import read_columns
 from orbits.machines.base import ParameterError
 
 TRUE = {"restitution": 0.63, "friction": 0.12}

@@ -89,3 +89,14 @@ def test_bad_records_get_a_sentence():
         )
     with pytest.raises(ParameterError, match="other than 0"):
         free_decay(MACHINE, p, 0.0)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_impacts_that_pile_up_end_in_contact(friction):
+    """Under a constant acceleration A both masses hang on the spring at last: x1 = -(1 + eps) A, the absorber on the left wall."""
+    machine = MACHINE.changed(friction=friction, damping=5.0)
+    t = np.linspace(0.0, 600.0, 601)
+    seen = recorded(machine, machine.vector(), t, np.full(601, 3.0))
+    assert seen.oscillator[-1] == pytest.approx(-3.0 * 1.02, abs=1e-9)
+    assert seen.relative[-1] == pytest.approx(1.0, abs=1e-9)
+    assert 10 < seen.impact_times.size < 200

@@ -1,0 +1,111 @@
+"""Windows of periodic motion beside chaos, reached from the unstable cycles that live in the chaos."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..branches.branch import Branch
+from ..graph.builder import begin, work
+from ..graph.graph import Graph
+from ..graph.run import Run
+from ..journal import NullJournal
+from ..problems.registry import rebuild
+from .census import Counted
+from .population import Population
+
+MOST = 10_000  # branches traced apart
+
+
+class Windows:
+    """Branches traced from unstable cycles, apart from the graph: only what is stable somewhere goes on it.
+
+    Parameters
+    ----------
+    run : Run
+        Of the atlas.
+    population : Population
+    """
+
+    def __init__(self, run: Run, population: Population) -> None:
+        self.run, self.population = run, population
+        whole = run.graph
+        graph = Graph(
+            parameter=whole.parameter, model=whole.model, within=whole.within, settings=dict(whole.settings)
+        )
+        settings = replace(run.settings, max_branches=MOST)
+        self.apart = Run(graph, settings, NullJournal(), 0, False, None, None, run.limits)
+
+    def beside(self, found: Sequence[Counted]) -> int:
+        """Add to the graph the branches that are stable somewhere and hold an unstable cycle of a chaotic motion.
+
+        A window opens at a fold with a stable and an unstable cycle; the stable one doubles and is lost in chaos, the unstable one
+        lives on in it (E. Ott, Chaos in Dynamical Systems, 2002, on periodic windows). So it leads back, through the fold, into a window that may be too
+        narrow for starts to meet.
+
+        Returns
+        -------
+        int
+            How many branches were added.
+        """
+        before = len(self.run.graph.branches)
+        for counted in found:
+            if counted.state is None:
+                continue
+            for problem, u, p in self._stable(counted):
+                if self.run.register.find(problem, u, p, True) is None:
+                    begin(self.run, problem, u, p)
+                    work(self.run)
+        return len(self.run.graph.branches) - before
+
+    def _stable(self, counted: Counted) -> list[tuple[Any, np.ndarray, float]]:
+        """A point of every stable stretch to which the cycles of one chaotic motion lead; kept in the journal."""
+        p = counted.attractor.value
+        key = f"windows/{p!r}"
+        known = self.run.journal.recall(key)
+        parts = [] if known is None else [rebuild(description) for description in known["problems"]]
+        if known is not None and all(
+            part is not None for part in parts
+        ):  # functions of the user's may not be at hand
+            return [(problem, known[f"u{k}"], float(known["at"][k])) for k, problem in enumerate(parts)]
+        self.run.tell(f"unstable cycles in the chaos at {self.population.parameter} = {p:.6g}", p)
+        points = []
+        for problem, u in self.population.embedded(counted.state, p):
+            if self.run.register.find(problem, u, p) is None:
+                points += self._traced(problem, u, p)
+        record: dict[str, Any] = {
+            "problems": [problem.describe() for problem, _, _ in points],
+            "at": np.array([at for _, _, at in points]),
+        }
+        record.update({f"u{k}": u for k, (_, u, _) in enumerate(points)})
+        self.run.journal.record(key, record)
+        return points
+
+    def _traced(self, problem: Any, u: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
+        """Trace a cycle unless it has been; a point of each stable stretch of what is new."""
+        if self.apart.register.find(problem, u, p) is not None:
+            return []
+        known = set(self.apart.graph.branches)
+        try:
+            begin(self.apart, problem, u, p)
+            work(self.apart)
+        except ValueError:  # it is real only within rounding
+            return []
+        new = [branch for label, branch in self.apart.graph.branches.items() if label not in known]
+        return [
+            (branch.problem, branch.points[i], float(branch.values[i]))
+            for branch in new
+            if branch.real
+            for i in _middles(branch)
+        ]
+
+
+def _middles(branch: Branch) -> Iterator[int]:
+    """For every stable stretch the point that is nearest to its middle."""
+    for low, high in branch.stable_intervals():
+        inside = np.flatnonzero((branch.values >= low) & (branch.values <= high) & np.asarray(branch.stable))
+        if inside.size:
+            yield int(inside[np.argmin(np.abs(branch.values[inside] - 0.5 * (low + high)))])

@@ -1,0 +1,312 @@
+"""`contvines calibrate STUDY.toml`: restitution, friction and other parameters from measured impact times or a measured sweep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from contvines.command.options import JsonOption
+from contvines.text_table import fitted
+
+if TYPE_CHECKING:
+    from orbits.design.calibration import Calibration
+
+CLOSE = 0.95  # correlation of two estimates from which on it is told
+
+
+def calibrate(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="The study; its values are where the search begins.")
+    ],
+    impacts: Annotated[
+        Path | None,
+        typer.Option("--impacts", metavar="FILE.csv", help="Instants of successive impacts, in one column."),
+    ] = None,
+    sweep: Annotated[
+        Path | None,
+        typer.Option(
+            "--sweep",
+            metavar="FILE.csv",
+            help="Steady responses: the parameter and the response, a column each.",
+        ),
+    ] = None,
+    unknown: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--unknown", metavar="NAME", help="What is estimated (repeatable); by default restitution."
+        ),
+    ] = None,
+    release: Annotated[
+        str | None,
+        typer.Option(
+            "--release",
+            metavar="LENGTH",
+            help='The impacts are of a free decay, let go at this displacement: "5 mm".',
+        ),
+    ] = None,
+    measure: Annotated[
+        str | None,
+        typer.Option(
+            "--measure", metavar="NAME", help="Which response a sweep has; max_abs_q1 if not given."
+        ),
+    ] = None,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--limits",
+            metavar="NAME=LOW,HIGH",
+            help="Where an estimate may lie: restitution=0.3,0.9 (repeatable).",
+        ),
+    ] = None,
+    confidence: Annotated[float, typer.Option("--confidence", help="Of the intervals.")] = 0.95,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", metavar="FILE.png", help="Draw the data and what the estimate leaves over."),
+    ] = None,
+    json_: JsonOption = False,
+) -> None:
+    """Estimate restitution, friction and the like from a measurement, with confidence intervals.
+
+    Impact times are counted from the first impact of a run that begins at rest with the excitation's phase 0
+    (or, with --release, of a free decay).
+    A sweep holds steady responses in the order in which they were measured. Heads of columns may name units: time [ms].
+    """
+    from contvines.command.compose import checked_study, say
+
+    if (impacts is None) == (sweep is None):
+        both = "both are" if impacts is not None else "neither is"
+        raise ValueError(
+            f"--impacts and --sweep: {both} given; give one of them: --impacts times.csv or --sweep responses.csv."
+        )
+    if plot is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(plot)
+    if release is not None and impacts is None:
+        raise ValueError(f"--release {release}: this goes with --impacts.")
+    if measure is not None and sweep is None:
+        raise ValueError(f"--measure {measure}: this goes with --sweep.")
+    if not 0.0 < confidence < 1.0:
+        raise ValueError(f"--confidence {confidence:g}: give a number between 0 and 1, for example 0.95.")
+    read = checked_study(study)
+    if read.machine is not None:
+        raise ValueError(
+            f"{study}: [model] name = {read.name!r}: the built-in machines can be calibrated, a page cannot."
+        )
+    names = list(dict.fromkeys(unknown or ["restitution"]))
+    model, guesses = _guesses(read, names)
+    bounds = _limits(limits or [], names, model)
+    path: Any = impacts or sweep
+    try:
+        if impacts is not None:
+            found, places = _from_impacts(read, model, impacts, guesses, bounds, release, confidence)
+        else:
+            found, places = _from_sweep(read, model, path, guesses, bounds, measure, confidence)
+    except ValueError as error:
+        sentence = str(error).rstrip(".")
+        raise ValueError(
+            sentence + "." if sentence.startswith(str(path)) else f"{path}: {sentence}."
+        ) from None
+    units = {name: model.units[name] for name in names if model.units.get(name)}
+    if json_:
+        from contvines.export import json_text
+
+        typer.echo(json_text(as_json(found, units)))
+    else:
+        typer.echo(fitted(told(found, units, guesses)))
+    if plot is not None:
+        from contvines.plots.figures import save_figure
+
+        save_figure(_draw(found, *places), plot)
+        say(f"drawn in {plot}", json_)
+
+
+def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
+    """A calibration as one JSON object."""
+    return {
+        "values": found.values,
+        "intervals": {name: list(ends) for name, ends in found.intervals.items()},
+        "confidence": found.confidence,
+        "scatter": found.scatter,
+        "correlation": found.correlation.tolist(),
+        "residuals": found.residuals.tolist(),
+        **({"units": units} if units else {}),
+    }
+
+
+def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -> str:
+    """The estimates, what the data cannot tell apart, and lines for the study."""
+    from contvines.text_table import Table, terminal_width
+
+    rows = [
+        (
+            name,
+            f"{value:.6g}",
+            *(f"{end:.6g}" for end in found.intervals[name]),
+            f"{guesses[name]:.6g}",
+            units.get(name, ""),
+        )
+        for name, value in found.values.items()
+    ]
+    heads = ("parameter", "estimate", "from", "to", "study says", "unit")
+    lines = [*Table(heads, rows).lines(terminal_width()), ""]
+    lines.append(
+        f"from ... to: {100 * found.confidence:g} % confidence; {found.residuals.size} residuals scatter by {found.scatter:.3g}"
+    )
+    names = list(found.values)
+    for i, first in enumerate(names):
+        for j in range(i):
+            if abs(found.correlation[i, j]) > CLOSE:
+                lines.append(
+                    f"{names[j]} and {first} can hardly be told apart by these data (correlation {found.correlation[i, j]:.3f})"
+                )
+    lines += ["", "for [survey] of the study:"]
+    for name, value in found.values.items():
+        low, high = found.intervals[name]
+        if units.get(name):
+            ends = ", ".join(f'"{x:.6g} {units[name]}"' for x in (low, high))
+        else:
+            ends = f"{low:.6g}, {high:.6g}"
+        lines.append(f"vary.{name} = {{ uniform = [{ends}] }}    # {value:.6g}")
+    return "\n".join(lines)
+
+
+def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
+    """The machine told by the unknown parameters, and their values in the study."""
+    from contvines.command.compose import machine
+    from contvines.hints import did_you_mean
+
+    model = machine(study)
+    known = list(model.tables.QUANTITIES) if study.quantities else list(study.parameters)
+    for name in names:
+        if name not in known:
+            raise ValueError(
+                f"--unknown {name}: the model {study.name!r} has no such parameter{did_you_mean(name, known)}; it has {', '.join(known)}."
+            )
+        if study.quantities:
+            model = model.told_by(name)
+    values = model.quantities if study.quantities else study.parameters
+    return model, {name: float(values[name]) for name in names}
+
+
+def _limits(said: list[str], names: list[str], model: Any) -> dict[str, tuple[float, float]]:
+    found = {}
+    for text in said:
+        name, _, ends = text.partition("=")
+        parts = ends.split(",")
+        try:
+            low, high = (float(part) for part in parts)
+        except ValueError:
+            raise ValueError(f"--limits {text}: write it as {names[0]}=LOW,HIGH, two numbers.") from None
+        if name not in names:
+            raise ValueError(
+                f"--limits {text}: {name or 'nothing'} is not estimated; --unknown has {', '.join(names)}."
+            )
+        if not low < high:
+            raise ValueError(f"--limits {text}: low < high would do.")
+        found[name] = (low, high)
+    return found
+
+
+def _from_impacts(
+    study: Any,
+    model: Any,
+    path: Path,
+    guesses: dict[str, float],
+    bounds: Any,
+    release: str | None,
+    confidence: float,
+) -> tuple[Calibration, tuple[Any, ...]]:
+    from contvines.command.compose import loose
+    from contvines.command.measured import Column, length_on_line, measured, scales
+    from orbits.design.calibration import from_impacts
+
+    params = model.vector(loose(study))
+    length, unit, _, second = scales(model, params)
+    (times,) = measured(path, (Column("time", second),))
+    start = None
+    if release is not None:
+        displacement = length_on_line(release, "--release", unit) / length
+        if "damping" not in model.parameter_names:
+            raise ValueError(
+                f"--release {release}: the machine {model.name!r} has no oscillator to be let go."
+            )
+        start, model = {"q1": displacement, "q2": displacement}, model.changed(forcing=0.0)
+    found = from_impacts(
+        model, times, guesses, start=start, limits=bounds, fixed=loose(study), confidence=confidence
+    )
+    return found, (
+        "time",
+        second,
+        times,
+        None,
+        f"measured less computed [{second}]" if second else "measured less computed",
+    )
+
+
+def _from_sweep(
+    study: Any,
+    model: Any,
+    path: Path,
+    guesses: dict[str, float],
+    bounds: Any,
+    measure: str | None,
+    confidence: float,
+) -> tuple[Calibration, tuple[Any, ...]]:
+    from contvines.command.compose import loose
+    from contvines.command.measured import Column, measured
+    from contvines.graph.table import with_unit
+    from orbits.attractors.sweep import measure_names
+    from orbits.design.calibration import from_sweep
+
+    over, name = study.parameter, measure or "max_abs_q1"
+    known = measure_names(model)
+    if name not in known:
+        raise ValueError(f"--measure {name}: a simulation tells {', '.join(known)}.")
+    if over in guesses:
+        raise ValueError(
+            f"--unknown {over}: this is what was swept ([continue] parameter); estimate something else."
+        )
+    unit = model.units.get(name, "")
+    values, heights = measured(path, (Column(over, model.units.get(over, "")), Column("response", unit)))
+    found = from_sweep(
+        model,
+        over,
+        values,
+        heights,
+        guesses,
+        measure=name,
+        limits=bounds,
+        fixed=loose(study),
+        confidence=confidence,
+    )
+    return found, (over, model.units.get(over, ""), values, heights, with_unit(name, unit))
+
+
+def _draw(found: Calibration, over: str, unit: str, places: Any, heights: Any, label: str) -> Any:
+    """A sweep: the data and the computed responses; impact times: what is left over."""
+    from contvines.graph.table import with_unit
+    from contvines.plots.figures import new_axes, styled
+
+    with styled():
+        figure, axes = new_axes(None)
+        if heights is None:
+            axes.axhline(0.0, color="0.6", linewidth=0.8)
+            axes.plot(places, -found.residuals, "o", color="#0b3c6f", markersize=4)
+        else:
+            axes.plot(
+                places, heights, "o", color="#b5121b", markersize=5, markerfacecolor="none", label="measured"
+            )
+            axes.plot(
+                places,
+                heights + found.residuals,
+                "-",
+                color="#0b3c6f",
+                linewidth=1.2,
+                label="with the estimate",
+            )
+            axes.legend()
+        axes.set(xlabel=with_unit(over, unit), ylabel=label)
+        return figure

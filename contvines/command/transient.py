@@ -1,0 +1,257 @@
+"""`contvines transient STUDY.toml`: a free decay, or the answer to a recorded motion of the base, with the absorber and without."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from contvines.command.options import JsonOption
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def transient(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="The study whose machine is meant (coupled).")
+    ],
+    release: Annotated[
+        str | None,
+        typer.Option(
+            "--release", metavar="LENGTH", help='Let go from this displacement, "5 mm": a free decay.'
+        ),
+    ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            "--record", metavar="FILE.csv", help="Time and acceleration of the base, a column each."
+        ),
+    ] = None,
+    tail: Annotated[
+        str | None,
+        typer.Option("--tail", metavar="TIME", help='Go on after the record with the base at rest, "2 s".'),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE.csv", help="The motion (or the energy of a decay) over time."
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", metavar="FILE.png", help="Draw it, with the bare oscillator beside."),
+    ] = None,
+    json_: JsonOption = False,
+) -> None:
+    """A shock, a recorded base motion or a free decay, compared with the bare oscillator.
+
+    The record is a CSV of time and acceleration; its heads may name units (time [ms], acceleration [g]).
+    """
+    from contvines.command.compose import checked_study, say
+    from contvines.export import check_target
+
+    if (release is None) == (record is None):
+        both = "both are" if release is not None else "neither is"
+        raise ValueError(
+            f'--release and --record: {both} given; give one of them: --release "5 mm" for a free decay, '
+            "--record shock.csv for a measured motion of the base."
+        )
+    if tail is not None and record is None:
+        raise ValueError(f"--tail {tail}: this goes with --record.")
+    if output is not None:
+        check_target(output, "csv")
+    if plot is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(plot)
+    read = checked_study(study)
+    if read.machine is not None:
+        raise ValueError(
+            f"{study}: [model] name = {read.name!r}: transients are those of the built-in machine 'coupled'."
+        )
+    found = _released(read, release) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
+    if json_:
+        from contvines.export import json_text
+
+        typer.echo(json_text(found.as_json()))
+    else:
+        typer.echo(str(found))
+    if output is not None:
+        found.write(output)
+        say(f"kept in {output}", json_)
+    if plot is not None:
+        from contvines.plots.figures import save_figure
+
+        save_figure(found.draw(), plot)
+        say(f"drawn in {plot}", json_)
+
+
+class Told:
+    """A transient in the study's units.
+
+    Attributes
+    ----------
+    title : str
+    rows : list of (name, value, unit, words)
+    series : list of (name, unit, float array)
+        The first is time.
+    hits : float array
+        Times of impacts.
+    """
+
+    def __init__(
+        self,
+        title: str,
+        rows: list[tuple[str, float, str, str]],
+        series: list[tuple[str, str, np.ndarray]],
+        hits: np.ndarray | None = None,
+    ) -> None:
+        self.title, self.rows, self.series, self.hits = title, rows, series, hits
+
+    def as_json(self) -> dict[str, Any]:
+        """Names and values, and their units."""
+        units = {name: unit for name, _, unit, _ in self.rows if unit}
+        return {**{name: value for name, value, _, _ in self.rows}, **({"units": units} if units else {})}
+
+    def __str__(self) -> str:
+        from contvines.text_table import Table, fitted, terminal_width
+
+        table = Table(
+            ("figure", "value", "unit", "what it is"),
+            [(name, f"{value:.6g}", unit, words) for name, value, unit, words in self.rows],
+        )
+        return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
+
+    def write(self, path: Path) -> None:
+        """The series as a CSV."""
+        import csv
+
+        from contvines.graph.table import with_unit
+
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow([with_unit(name, unit) for name, unit, _ in self.series])
+            writer.writerows(
+                [repr(float(x)) for x in row] for row in zip(*(values for _, _, values in self.series))
+            )
+
+    def draw(self) -> Any:
+        """The motion, or the energy, with the absorber and without; impacts as ticks."""
+        import numpy as np
+
+        from contvines.graph.table import with_unit
+        from contvines.plots.figures import new_axes, styled
+
+        (clock, second, time), *curves = self.series
+        with styled():
+            figure, axes = new_axes(None)
+            looks = {"bare": ("0.55", (0, (4, 1.5)), "without absorber")}
+            for name, _, values in curves:
+                if name.startswith("relative"):
+                    continue
+                color, dashes, label = looks.get(name.split("_")[0], ("#0b3c6f", "-", "with absorber"))
+                axes.plot(time, values, color=color, linestyle=dashes, linewidth=1.2, label=label)
+            if self.hits is not None and self.hits.size:
+                low = axes.get_ylim()[0]
+                axes.plot(
+                    self.hits,
+                    np.full(self.hits.size, low),
+                    "|",
+                    color="#b5121b",
+                    markersize=7,
+                    label="impacts",
+                )
+            name, unit, _ = curves[0]
+            axes.set(xlabel=with_unit(clock, second), ylabel=with_unit(name.replace("_", " "), unit))
+            if name == "energy":
+                axes.set(yscale="log", ylabel="energy / first energy")
+            axes.margins(x=0.0)
+            axes.legend()
+            return figure
+
+
+def _params(study: Any) -> tuple[Any, Any]:
+    from contvines.command.compose import loose, machine
+
+    model = machine(study)
+    return model, model.vector(loose(study))
+
+
+def _released(study: Any, text: str) -> Told:
+    from contvines.command.measured import length_on_line, scales
+    from orbits.design.transients import free_decay
+
+    model, params = _params(study)
+    length, unit, seconds, second = scales(model, params)
+    displacement = length_on_line(text, "--release", unit)
+    try:
+        decay = free_decay(model, params, displacement / length)
+    except ValueError as error:
+        raise ValueError(f"{study.path}: --release {text}: {error}.") from None
+    lost = decay.impacts + decay.friction + decay.damping
+    rows = [
+        ("pumping_time", decay.pumping_time * seconds, second, "until nine tenths of the energy are gone"),
+        ("bare_time", decay.bare_time * seconds, second, "the same without absorber"),
+        ("impact_share", decay.impacts / lost, "", "of what was dissipated: by impacts"),
+        ("friction_share", decay.friction / lost, "", "by friction"),
+        ("damping_share", decay.damping / lost, "", "by the oscillator's own damping"),
+    ]
+    series = [
+        ("time", second, decay.times * seconds),
+        ("energy", "", decay.energy),
+        ("bare_energy", "", decay.bare),
+    ]
+    return Told(f"Free decay of {study.path.name} from {text}", rows, series)
+
+
+def _recorded(study: Any, path: Path, tail: str | None) -> Told:
+    import numpy as np
+
+    from contvines.command.measured import Column, length_on_line, measured, scales
+    from orbits.design.transients import recorded
+
+    model, params = _params(study)
+    length, unit, seconds, second = scales(model, params)
+    rate = "m/s^2" if unit else ""
+    times, acceleration = measured(path, (Column("time", second), Column("acceleration", rate)))
+    from orbits.machines.physical import units
+
+    metre = units.size(unit, "m") if unit else 1.0
+    one = (metre or 1.0) * length / seconds**2  # of acceleration
+    after = 0.0 if tail is None else length_on_line(tail, "--tail", second) / seconds
+    if after < 0.0:
+        raise ValueError(f"--tail {tail}: give a time of 0 or above.")
+    try:
+        seen = recorded(model, params, times / seconds, acceleration / one, after)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}.") from None
+    energy = float(model.gauge("energy", params)) / float(model.column(params, "mass_ratio"))
+    joule = units.unit_of(model.tables.GAUGES["energy"]) if unit else ""
+    over = np.abs(seen.oscillator)
+    rows = [
+        ("peak", seen.peak * length, unit, "largest displacement of the oscillator from the base"),
+        ("peak_at", float(seen.times[int(over.argmax())]) * seconds, second, "when"),
+        ("bare_peak", seen.bare_peak * length, unit, "the same without absorber"),
+        ("impacts", float(seen.impact_times.size), "", "how many"),
+        ("impact_energy", seen.impacts * energy, joule, "dissipated by impacts"),
+        ("friction_energy", seen.friction * energy, joule, "by friction"),
+        ("damping_energy", seen.damping * energy, joule, "by the oscillator's own damping"),
+        (
+            "absorber_share",
+            seen.absorber_share,
+            "",
+            "share of the dissipated energy that impacts and friction take",
+        ),
+    ]
+    series = [
+        ("time", second, seen.times * seconds),
+        ("oscillator", unit, seen.oscillator * length),
+        ("relative", unit, seen.relative * length),
+        ("bare_oscillator", unit, seen.bare * length),
+    ]
+    return Told(
+        f"{study.path.name} under the base motion of {path.name}, {times.size} instants", rows, series,
+        seen.impact_times * seconds,
+    )  # fmt: skip

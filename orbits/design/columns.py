@@ -1,0 +1,61 @@
+"""Columns of measured numbers from a CSV, and the heads above them."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from orbits.machines.base import ParameterError
+
+
+def read_columns(path: str | Path, columns: int) -> np.ndarray:
+    """A CSV of numbers, shape (n, columns); one line of heads at its top, empty lines and lines that begin with # are passed over.
+
+    Cells may be parted by commas, semicolons (then with a decimal comma, too) or tabs.
+
+    Raises
+    ------
+    ParameterError
+        With the row that cannot be read.
+    """
+    return read_table(path, columns)[1]
+
+
+def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
+    """The heads of a CSV, empty where it has none, and its numbers; see `read_columns`."""
+    path = Path(path)
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError):
+        raise ParameterError(f"{path}: cannot be read; give a CSV with {_needed(columns)}") from None
+    numbered = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
+    parting = next((sign for sign in (";", "\t") if numbered and sign in numbered[0][1]), ",")
+    heads: list[str] = []
+    found: list[list[float]] = []
+    for number, line in numbered:
+        cells = [cell.strip() for cell in next(csv.reader([line], delimiter=parting))]
+        try:
+            row = [float(cell.replace(",", ".") if parting == ";" else cell) for cell in cells[:columns]]
+        except ValueError:
+            if not found and not heads:
+                heads = cells
+                continue
+            raise ParameterError(
+                f"{path}: row {number} holds {', '.join(cells[:columns])!r}, not {_needed(columns, 'number')}"
+            ) from None
+        if len(row) < columns:
+            raise ParameterError(
+                f"{path}: row {number} has {_needed(len(row))}; {_needed(columns)} are needed"
+                if columns > 1
+                else f"{path}: row {number} is empty"
+            )
+        found.append(row)
+    if not found:
+        raise ParameterError(f"{path}: there is no row of numbers; give {_needed(columns)}")
+    return heads, np.array(found)
+
+
+def _needed(count: int, what: str = "column") -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -1,0 +1,136 @@
+"""Estimates: least squares with confidence intervals from the curvature of the sum of squares.
+
+Linearised about the estimate, with Student's t: sources of scatter that the model does not have are in the residual, and so in the
+intervals.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from orbits.machines.base import ParameterError
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Estimated parameters.
+
+    Attributes
+    ----------
+    values : dict
+        Estimates.
+    intervals : dict
+        Name -> (low, high) at `confidence`, cut off at the limits.
+    confidence : float
+    scatter : float
+        Standard deviation of the residuals, in the unit of the data.
+    residuals : float array
+    correlation : float array (n, n)
+        Of the estimates: near 1 or -1 the data cannot tell two of them apart.
+    """
+
+    values: dict[str, float]
+    intervals: dict[str, tuple[float, float]]
+    confidence: float
+    scatter: float
+    residuals: np.ndarray = field(repr=False)
+    correlation: np.ndarray = field(repr=False)
+
+    def __str__(self) -> str:
+        lines = [
+            f"{name} = {value:.6g}, {100 * self.confidence:g} % between {self.intervals[name][0]:.6g} and {self.intervals[name][1]:.6g}"
+            for name, value in self.values.items()
+        ]
+        return "\n".join([*lines, f"scatter of the data about the model: {self.scatter:.3g}"])
+
+
+def fit(
+    residuals: Callable[[np.ndarray], np.ndarray],
+    guess: Mapping[str, float],
+    limits: Mapping[str, tuple[float, float]],
+    confidence: float = 0.95,
+    spent: int = 0,
+) -> Calibration:
+    """Least squares with confidence intervals.
+
+    Parameters
+    ----------
+    residuals : callable
+        Data minus model at parameter values (n,), shape (m,).
+    guess : mapping
+        Where the search begins.
+    limits : mapping
+        Name -> (low, high).
+    confidence : float
+    spent : int
+        Degrees of freedom of the data that something else than the parameters has used up.
+
+    Raises
+    ------
+    ParameterError
+        If there are fewer data than parameters, or they do not depend on one of them.
+    """
+    from scipy.optimize import least_squares
+    from scipy.stats import t
+
+    names = list(guess)
+    start = np.array([float(guess[name]) for name in names])
+    low, high = (np.array([limits[name][k] for name in names], dtype=float) for k in (0, 1))
+    if np.any(start < low) or np.any(start > high):
+        raise ParameterError("the guess leaves the limits: begin inside them")
+    if not 0.0 < confidence < 1.0:
+        raise ParameterError(f"confidence = {confidence!r}: give a number between 0 and 1, for example 0.95")
+    span = high - low
+    found = least_squares(
+        residuals,
+        start,
+        bounds=(low, high),
+        x_scale=span,
+        diff_step=1e-5,
+        xtol=1e-12,
+        ftol=1e-12,
+        gtol=1e-14,
+        method="trf",
+    )
+    data, unknowns = found.fun.size - spent, len(names)
+    if data <= unknowns:
+        raise ParameterError(f"{data} data do not fix {unknowns} parameters: measure more, or estimate fewer")
+    jacobian = _slopes(residuals, found.x, low, high)
+    _, sizes, axes = np.linalg.svd(jacobian * span, full_matrices=False)
+    if sizes[-1] <= 1e-10 * sizes[0]:
+        flat = names[int(np.argmax(np.abs(axes[-1])))]
+        raise ParameterError(
+            f"the data do not depend on {flat} (alone): leave it out, or measure something that does"
+        )
+    scatter = math.sqrt(float(found.fun @ found.fun) / (data - unknowns))
+    covariance = scatter**2 * np.linalg.inv(jacobian.T @ jacobian)
+    deviations = np.sqrt(np.diag(covariance))
+    reach = float(t.ppf(0.5 + 0.5 * confidence, data - unknowns)) * deviations
+    return Calibration(
+        dict(zip(names, map(float, found.x))),
+        {
+            name: (float(max(x - r, a)), float(min(x + r, b)))
+            for name, x, r, a, b in zip(names, found.x, reach, low, high)
+        },
+        confidence,
+        scatter,
+        found.fun,
+        covariance / np.outer(deviations, deviations) if scatter > 0.0 else np.eye(unknowns),
+    )
+
+
+def _slopes(
+    residuals: Callable[[np.ndarray], np.ndarray], x: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Central differences, shape (m, n), with steps of a millionth of the limits' span; at a limit to one side."""
+    columns = []
+    for j in range(x.size):
+        below, above = x.copy(), x.copy()
+        step = 1e-6 * (high[j] - low[j])
+        below[j], above[j] = max(x[j] - step, low[j]), min(x[j] + step, high[j])
+        columns.append((residuals(above) - residuals(below)) / (above[j] - below[j]))
+    return np.column_stack(columns)

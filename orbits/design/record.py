@@ -1,0 +1,240 @@
+"""The answer to a recorded motion of the base, a shock for example.
+
+The record is the base's acceleration at instants and runs linearly between them; relative to the base the machine is
+
+    x1'' + eps lambda x1' + x1 = -e'' - eps mu g S,    x2'' = -e'' + mu g S,    w = x1 - x2,
+
+with constant S between events, so that the oscillator's motion is a decaying oscillation about a straight line and the absorber's a cubic:
+exact from instant to instant, events bracketed in steps of a hundredth of the natural period and found to roundoff. Impacts that pile up on a
+wall end in contact that lasts: both then move as one until friction no longer holds what the wall cannot pull.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from orbits.machines.base import ParameterError
+
+SLOWEST = 1e-7  # speed of an impact, in half-widths times omega_0, below which the absorber stays on a wall that it is pressed to
+MOST_EVENTS = 20_000  # in a hundredth of the natural period
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """The answer to a recorded motion of the base, in the machine's own units.
+
+    Attributes
+    ----------
+    times : float array (n,)
+    oscillator, relative, bare : float array (n,)
+        Displacement x1 of the oscillator from the base, w = x1 - x2, and x1 of the oscillator without absorber.
+    impacts, friction, damping : float
+        Dissipated, in the unit of x1'^2.
+    impact_times : float array
+    """
+
+    times: np.ndarray
+    oscillator: np.ndarray
+    relative: np.ndarray
+    bare: np.ndarray
+    impacts: float
+    friction: float
+    damping: float
+    impact_times: np.ndarray
+
+    @property
+    def peak(self) -> float:
+        """Largest displacement of the oscillator."""
+        return float(np.abs(self.oscillator).max())
+
+    @property
+    def bare_peak(self) -> float:
+        """The same without absorber."""
+        return float(np.abs(self.bare).max())
+
+    @property
+    def absorber_share(self) -> float:
+        """Share of what is dissipated that impacts and friction take."""
+        lost = self.impacts + self.friction + self.damping
+        return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
+
+
+def recorded(
+    model: Any, params: np.ndarray, times: np.ndarray, acceleration: np.ndarray, tail: float = 0.0
+) -> Response:
+    """The answer of the machine, from rest, to a recorded acceleration of its base.
+
+    Parameters
+    ----------
+    model : Model
+        A machine with an oscillator.
+    params : float array (P,)
+    times : float array (n,)
+        Ascending, in 1/omega_0.
+    acceleration : float array (n,)
+        Of the base, in half-widths times omega_0^2; linear between the instants.
+    tail : float
+        How long the motion is followed after the last instant, the base unaccelerated.
+
+    Raises
+    ------
+    ParameterError
+        If the machine has no oscillator, or the record cannot be.
+    """
+    times, acceleration = np.asarray(times, dtype=float), np.asarray(acceleration, dtype=float)
+    if times.ndim != 1 or times.shape != acceleration.shape or times.size < 2:
+        raise ParameterError(
+            "the record needs two columns of equal length, time and acceleration, with two rows or more"
+        )
+    if not (np.all(np.isfinite(times)) and np.all(np.isfinite(acceleration))):
+        raise ParameterError("the record has numbers that are not finite: leave those rows out")
+    if np.any(np.diff(times) <= 0.0):
+        at = int(np.flatnonzero(np.diff(times) <= 0.0)[0]) + 1
+        raise ParameterError(f"the record's times do not grow at row {at}: sort them, one row per instant")
+    numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+    if "damping" not in numbers:
+        raise ParameterError(f"the machine {model.name!r} has no oscillator")
+    if tail > 0.0:
+        times = np.append(times, [times[-1] + 1e-9, times[-1] + tail])
+        acceleration = np.append(acceleration, [0.0, 0.0])
+    eps, r = numbers["mass_ratio"], numbers["restitution"]
+    steps = np.maximum(np.ceil(np.diff(times) / (0.02 * math.pi)), 1).astype(np.int64)
+    out = np.zeros((int(steps.sum()) + 1, 4))
+    hits, lost = np.zeros(100_000), np.zeros(3)
+    rate, pull = eps * numbers["damping"], numbers["friction"] * numbers["gravity"]
+    count = _march(times, acceleration, steps, rate, eps, pull, r, out, hits, lost)
+    if count < 0:
+        raise ParameterError(
+            f"the machine has more than {MOST_EVENTS} events in a hundredth of its natural period: the record's acceleration "
+            "is too large for it; check its unit"
+        )
+    impacts, friction, damper = (float(x) for x in lost)
+    return Response(
+        out[:, 0], out[:, 1], out[:, 2], out[:, 3], impacts, friction, damper, hits[:count].copy()
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _drift(x, v, mass, rate, force, slope, t):
+    """Displacement and speed after t of mass x'' + rate x' + x = force + slope t."""
+    alpha = 0.5 * rate / mass
+    beta = math.sqrt(1.0 / mass - alpha * alpha)
+    offset = force - rate * slope
+    z, zr = x - offset, v - slope
+    decay, c, s = math.exp(-alpha * t), math.cos(beta * t), math.sin(beta * t) / beta
+    y = decay * (z * c + (zr + alpha * z) * s)
+    yr = decay * (zr * c - (alpha * zr + z / mass) * s)
+    return y + offset + slope * t, yr + slope
+
+
+@njit(cache=True, error_model="numpy")
+def _at(state, mode, rate, eps, pull, a0, a1, t):
+    """(x1, v1, x2, v2) after t in a mode: -1, +1 slide, 0 stick; the base's acceleration is a0 + a1 t."""
+    x1, v1, x2, v2 = state
+    if mode == 0:
+        y, yr = _drift(x1, v1, 1.0 + eps, rate, -(1.0 + eps) * a0, -(1.0 + eps) * a1, t)
+        return y, yr, x2 + y - x1, yr
+    y, yr = _drift(x1, v1, 1.0, rate, -a0 - eps * pull * mode, -a1, t)
+    push = pull * mode - a0
+    return y, yr, x2 + (v2 + (0.5 * push - a1 * t / 6.0) * t) * t, v2 + (push - 0.5 * a1 * t) * t
+
+
+@njit(cache=True, error_model="numpy")
+def _watch(state, mode, rate, eps, pull, a0, a1, t, what):
+    """What vanishes at an event: 0, 1 the walls, 2 the relative speed, 3, 4 the reserve of friction while stuck."""
+    x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, t)
+    if what == 0:
+        return 1.0 - (x1 - x2)
+    if what == 1:
+        return 1.0 + (x1 - x2)
+    if what == 2:
+        return mode * (v1 - v2)
+    need = -(rate * v1 + x1) / (1.0 + eps)  # relative to inertia: x2'' + e'' while stuck
+    return pull - need if what == 3 else pull + need
+
+
+@njit(cache=True, error_model="numpy")
+def _march(times, acceleration, steps, rate, eps, pull, r, out, hits, lost):
+    """Through the record; fills rows (time, x1, w, bare x1), times of impacts and (impacts, friction, damping).
+
+    While the mode is 0 (both move as one), `wall` is +1 or -1 where the absorber lies against the left or right wall, which only pushes.
+    The result is -1 where events have no end.
+    """
+    state = (0.0, 0.0, 0.0, 0.0)
+    bare, bare_rate = 0.0, 0.0
+    mode = 0 if pull > 0.0 else 1
+    wall = 0
+    row, count = 1, 0
+    out[0, 0] = times[0]
+    for k in range(steps.size):
+        span = times[k + 1] - times[k]
+        a1 = (acceleration[k + 1] - acceleration[k]) / span
+        for j in range(steps[k]):
+            h = span / steps[k]
+            a0 = acceleration[k] + a1 * h * j
+            now = times[k] + h * j
+            bare, bare_rate = _drift(bare, bare_rate, 1.0, rate, -a0, -a1, h)
+            left, tries = h, 0
+            while left > 0.0:
+                tries += 1
+                if tries > MOST_EVENTS:
+                    return -1
+                first, which = left, -1
+                lowest = 3 if mode == 0 else 0
+                for what in range(lowest, 5 if mode == 0 else (3 if pull > 0.0 else 2)):
+                    if mode == 0 and ((what == 3 and wall == 1) or (what == 4 and wall == -1)):
+                        continue  # the wall holds against this
+                    if _watch(state, mode, rate, eps, pull, a0, a1, first, what) >= 0.0:
+                        continue
+                    low, high = 0.0, first
+                    while high - low > 1e-15 * (1.0 + first):
+                        middle = 0.5 * (low + high)
+                        if middle <= low or middle >= high:
+                            break
+                        if _watch(state, mode, rate, eps, pull, a0, a1, middle, what) >= 0.0:
+                            low = middle
+                        else:
+                            high = middle
+                    first, which = high, what
+                x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, first)
+                lost[2] += rate * 0.5 * (state[1] * state[1] + v1 * v1) * first
+                if mode != 0:
+                    lost[1] += eps * pull * abs((x1 - x2) - (state[0] - state[2]))
+                a0 += a1 * first
+                left -= first
+                now += first
+                if which == 0 or which == 1:
+                    w_rate, v_rate = v1 - v2, v1 + eps * v2
+                    lost[0] += 0.5 * eps / (1.0 + eps) * (1.0 - r * r) * w_rate * w_rate
+                    if count < hits.size:
+                        hits[count] = now
+                        count += 1
+                    after = -r * w_rate
+                    v2 = (v_rate - after) / (1.0 + eps)
+                    v1 = v2 + after
+                    x2 = x1 - (1.0 if which == 0 else -1.0)
+                    mode = 1 if after > 0.0 else -1
+                    side = 1 if which == 0 else -1
+                    need = -(rate * v1 + x1) / (1.0 + eps)
+                    if abs(after) < SLOWEST and side * need > -pull:
+                        v2 = v_rate / (1.0 + eps)
+                        v1 = v2
+                        mode, wall = 0, side
+                elif which == 2:
+                    need = -(rate * v1 + x1) / (1.0 + eps)
+                    v2 = v1
+                    mode, wall = (0 if abs(need) <= pull else (1 if need > 0.0 else -1)), 0
+                elif which >= 3:
+                    mode, wall = (1 if which == 3 else -1), 0
+                state = (x1, v1, x2, v2)
+            out[row, 0] = times[k] + h * (j + 1)
+            out[row, 1] = state[0]
+            out[row, 2] = state[0] - state[2]
+            out[row, 3] = bare
+            row += 1
+    return count

@@ -1,0 +1,161 @@
+"""Which clearance quiets a resonance most: half-widths against the linear peak, along the tuned backbone.
+
+At phase resonance the forcing ``F`` holds the amplitude ``q`` of the oscillator's first harmonic against its own damping and the
+absorber's. `backbone` gives that to first order in the mass ratio. Here the frequency is kept as it is instead of ``1 + eps sigma``:
+with the harmonics ``k1``, ``k2`` of the impacting absorber (`SlowFlow.harmonics`, no friction) at ``q/b = C``
+
+    Omega^2 = C^2/(C^2 - eps k2),    F/(b k) = eps (lambda Omega C - Omega^2 k1/C)
+
+The linear peak is that of the same forcing with the absorber held fast in its cavity, ``F/(2 D k)``; ``D`` and ``Omega_0`` then belong
+to the mass ``M + m``, and ``2 D = eps lambda/sqrt(1 + eps)``. The half-width over this peak,
+
+    b/q_lin = lambda/(sqrt(1 + eps) (lambda Omega C - Omega^2 k1/C)),
+
+has a maximum on the attracting part of the manifold: a wider cavity is not entered at resonance in steady impacts, a narrower one lets
+the oscillator swing farther. Sources: the single-harmonic backbone of T. Weidemann, L. A. Bergman, A. F. Vakakis and M. Krack, Energy
+transfer and localization in a forced cyclic chain of oscillators with vibro-impact nonlinear energy sinks, Nonlinear Dynamics (2025), whose
+mass ratio is ``m/(M + m)``; in the quantities of the slow flow: own derivation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+
+from .flow import SlowFlow
+
+PLACES = 2000  # along the attracting part, where the maximum is looked for first
+
+
+@dataclass(frozen=True)
+class TunedBackbone:
+    """Phase-resonant states as arrays over ``B``.
+
+    Attributes
+    ----------
+    velocity : float array
+        ``B``, mean speed of the absorber.
+    amplitude : float array
+        ``q/b``, of the oscillator's first harmonic.
+    ratio : float array
+        ``b/q_lin``: half-width over the linear peak under the same forcing, the absorber held fast.
+    frequency : float array
+        Of resonance, over that with the absorber held fast.
+    """
+
+    velocity: NDArray
+    amplitude: NDArray
+    ratio: NDArray
+    frequency: NDArray
+
+
+@dataclass(frozen=True)
+class BestClearance:
+    """The largest half-width that is still entered at resonance; fields as of `TunedBackbone`.
+
+    `reduction` is ``q/q_lin``: what is left of the linear peak. `interior` is false where the maximum lies at the end of the
+    attracting part (`SlowFlow.symmetry_limit`), because damping of its own makes up most of the oscillator's.
+    """
+
+    velocity: float
+    amplitude: float
+    ratio: float
+    frequency: float
+    interior: bool
+
+    @property
+    def reduction(self) -> float:
+        """``q/q_lin``."""
+        return self.amplitude * self.ratio
+
+
+def tuned_backbone(flow: SlowFlow, velocity: ArrayLike | None = None) -> TunedBackbone:
+    """Half-width over linear peak, amplitude and frequency at phase resonance.
+
+    Parameters
+    ----------
+    flow : SlowFlow
+        Without friction; its forcing is not used.
+    velocity : array_like, optional
+        ``B``; by default 200 values over the attracting part of the manifold.
+
+    Raises
+    ------
+    ValueError
+        If there is friction, or no damping: there is no linear peak then.
+    """
+    _check(flow)
+    if velocity is None:
+        velocity = np.linspace(float(flow.activation.velocity), float(flow.symmetry_limit.velocity), 200)
+    b = np.asarray(velocity, dtype=float)
+    force, amplitude, frequency = _held(flow, b)[:3]
+    eps = flow.mass_ratio
+    ratio = flow.damping / (np.sqrt(1.0 + eps) * force)
+    return TunedBackbone(b, amplitude, ratio, frequency * np.sqrt(1.0 + eps))
+
+
+def best_clearance(flow: SlowFlow) -> BestClearance:
+    """The maximum of ``b/q_lin`` on the attracting part of the manifold.
+
+    Parameters
+    ----------
+    flow : SlowFlow
+        Scalar fields, without friction.
+
+    Raises
+    ------
+    ValueError
+        As `tuned_backbone`.
+    """
+    _check(flow)
+    places = np.linspace(float(flow.activation.velocity), float(flow.symmetry_limit.velocity), PLACES)
+    force, slope = _held(flow, places)[0::3]
+    least = int(np.argmin(force))
+    low, high = max(least - 1, 0), min(least + 1, PLACES - 1)
+    interior = slope[low] < 0.0 < slope[high]
+    best: Any = (
+        brentq(lambda b: float(_held(flow, np.asarray(b))[3]), places[low], places[high], xtol=1e-15)
+        if interior
+        else float(places[least])
+    )
+    found = tuned_backbone(flow, best)
+    return BestClearance(
+        float(best), float(found.amplitude), float(found.ratio), float(found.frequency), bool(interior)
+    )
+
+
+def _held(flow: SlowFlow, b: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """``F/(eps b k)``, ``C``, ``Omega`` at phase resonance, and the derivative of the first with respect to ``B``."""
+    eps, damping = flow.mass_ratio, flow.damping
+    squared, k1, k2 = flow.harmonics(b)
+    d_squared, d_k1, d_k2 = flow.harmonic_slopes(b)
+    amplitude = np.sqrt(squared)
+    d_amplitude = d_squared / (2.0 * amplitude)
+    left = squared - eps * k2
+    omega2 = squared / left
+    d_omega2 = (d_squared * left - squared * (d_squared - eps * d_k2)) / left**2
+    omega = np.sqrt(omega2)
+    d_omega = d_omega2 / (2.0 * omega)
+    force = damping * omega * amplitude - omega2 * k1 / amplitude
+    slope = (
+        damping * (d_omega * amplitude + omega * d_amplitude)
+        - (d_omega2 * k1 + omega2 * d_k1) / amplitude
+        + omega2 * k1 * d_amplitude / squared
+    )
+    return force, amplitude, omega, slope
+
+
+def _check(flow: SlowFlow) -> None:
+    if np.any(np.asarray(flow.level) != 0.0):
+        raise ValueError(
+            f"friction = {flow.friction} and gravity = {flow.gravity}: the tuned backbone is that of a cavity without friction; "
+            "set friction = 0."
+        )
+    if np.any(np.asarray(flow.damping) <= 0.0):
+        raise ValueError(
+            f"damping = {flow.damping}: without damping the oscillator has no linear peak; give a number above 0."
+        )

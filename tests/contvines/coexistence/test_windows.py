@@ -1,0 +1,83 @@
+"""Unstable cycles in chaos lead to the windows beside it, however narrow these are."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.journal import MemoryJournal
+from orbits import Absorber
+from tests.contvines.coexistence.isolas import window
+
+LOGISTIC = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
+
+
+def henon(x, p):
+    return [1 - p * x[0] ** 2 + x[1], 0.3 * x[0]]
+
+
+def test_the_cycles_in_henon_s_attractor_are_as_many_as_are_published():
+    """For a = 1.4, b = 0.3: 1, 1, 0, 1, 0, 2 cycles of 1 to 6 points (O. Biham, W. Wenzel, Phys. Rev. Lett. 63 (1989) 819)."""
+    population = cv.MapProblem(henon, [0.6, 0.2], 1.0).population(box=[(-2.0, 2.0), (-2.0, 2.0)])
+    cycles = [u.reshape(-1, 2) for _, u in population.embedded(np.array([0.1, 0.1]), 1.4)]
+    assert [sum(len(points) == n for points in cycles) for n in range(1, 7)] == [1, 1, 0, 1, 0, 2]
+    for points in cycles:
+        images = np.array([henon(x, 1.4) for x in points])
+        assert np.abs(images - np.roll(points, -1, axis=0)).max() < 1e-7
+
+
+def test_one_chaotic_value_leads_to_windows_that_no_start_meets():
+    """All starts are at 3.97; the windows are 0.013, 0.0007, 0.003, 0.0005 and 0.00008 wide; where each begins is solved apart."""
+    population = LOGISTIC.population(box=[(0.01, 0.99)])
+    graph = cv.atlas(population, within=(3.7, 4.0), values=[3.97], starts=16, depth=0, scan=1)
+    folds = np.array([point.value for point in graph.of_kind("fold")])
+    edges = [
+        edge
+        for period, near, x in [
+            (3, 3.8284, 0.514),
+            (4, 3.9601, 0.505),
+            (5, 3.7382, 0.504),
+            (5, 3.9056, 0.502),
+            (6, 3.9375, 0.502),
+        ]
+        for edge in window(period, near, x).folds
+    ]
+    for edge in edges:
+        assert np.abs(folds - edge).min() < 1e-9
+        assert any(
+            branch.real and any(abs(low - edge) < 1e-9 for low, _ in branch.stable_intervals())
+            for branch in graph
+        )
+
+
+def test_an_atlas_with_chaos_is_the_same_when_it_is_resumed():
+    def atlas(journal):
+        population = LOGISTIC.population(box=[(0.01, 0.99)])
+        return cv.atlas(
+            population, within=(3.93, 4.0), values=[3.97], starts=16, depth=0, scan=1, journal=journal
+        )
+
+    whole = MemoryJournal()
+    first = atlas(whole)
+    kept = MemoryJournal()
+    kept.entries = {key: entry for key, entry in whole.entries.items() if not key.startswith("windows")}
+    again = atlas(kept)
+    assert [b.label for b in again] == [b.label for b in first]
+    for one, other in zip(again, first, strict=True):
+        assert np.array_equal(one.points, other.points)
+
+
+@pytest.mark.parametrize(("friction", "amplitude"), [(0.5, 1.1441666666666668), (0.05, 1.0341666666666667)])
+def test_unstable_cycles_in_an_absorber_s_chaos_return(friction, amplitude):
+    """Each is followed by the event-driven simulation for one cycle, which knows no equation of theirs, and comes back."""
+    machine = Absorber(restitution=0.76, friction=friction, gravity=0.211, mass_ratio=0.006)
+    population = machine.population("amplitude")
+    motions, _, _ = population.settle(population.starts(64, 0, amplitude), amplitude)
+    (chaotic,) = [motion for motion in motions if motion.kind == "chaotic"]
+    cycles = population.embedded(chaotic.state, amplitude)
+    assert len(cycles) > 1
+    forms = [problem.canonical(u, amplitude) for problem, u in cycles]
+    assert len({(key, tuple(np.round(vector, 6))) for key, vector in forms}) == len(forms)
+    for problem, u in cycles:
+        orbit = problem.orbit(u, amplitude)
+        assert np.abs(orbit.multipliers).max() > 1.0
+        assert orbit.replay() < 1e-7

@@ -1,0 +1,52 @@
+"""Motions compared as functions of time: w at equal phases, whatever words say."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from orbits.cycles.sampling import PER_PERIOD
+
+BACKWARDS = -1e-7  # durations below
+LONGEST = 64  # forcing periods over which motions are compared
+
+
+def apart(one: Any, other: Any, *, images: bool = True) -> float:
+    """Largest difference in w between two orbits, in units of the machine's size.
+
+    The smallest one over shifts by whole forcing periods and, with `images`, mirror images of a machine that has them. Motions without
+    impacts may be moved as a whole. nan for virtual orbits whose time runs backwards, and for very long ones.
+    """
+    if min(one.durations.min(initial=0.0), other.durations.min(initial=0.0)) < BACKWARDS:
+        return math.nan
+    periods = math.lcm(one.periods, other.periods)
+    if periods > LONGEST:
+        return math.nan
+    here, there = (np.tile(orbit.track, periods // orbit.periods) for orbit in (one, other))
+    free = not (one.impacts and other.impacts)
+    faces = [here]
+    if images and one.model.has_mirror(one.params):
+        faces.append(-np.roll(here, PER_PERIOD // 2))
+    gaps = np.array([np.roll(face, k * PER_PERIOD) - there for face in faces for k in range(periods)])
+    sizes = 0.5 * np.ptp(gaps, axis=1) if free else np.abs(gaps).max(axis=1)
+    return float(sizes.min()) / one.model.natural_units(one.params)[0]
+
+
+def shortest(orbit: Any, near: float = 1e-7) -> int:
+    """Forcing periods after which w comes back, a divisor of the orbit's own."""
+    for periods in range(1, orbit.periods):
+        if orbit.periods % periods == 0:
+            gap = np.roll(orbit.track, periods * PER_PERIOD) - orbit.track
+            if np.abs(gap).max() < near * orbit.model.natural_units(orbit.params)[0]:
+                return periods
+    return orbit.periods
+
+
+def alike(listed: np.ndarray, seen: np.ndarray) -> float:
+    """Largest difference of the characteristic polynomials, as a part of their largest coefficient; sets need no order."""
+    one, other = np.poly(listed), np.poly(seen)
+    if one.shape != other.shape or not (np.isfinite(one).all() and np.isfinite(other).all()):
+        return math.inf
+    return float(np.abs(one - other).max() / max(np.abs(one).max(), np.abs(other).max()))

@@ -1,0 +1,148 @@
+"""Special points and the orbits beside them: motions tend to that of the point, multipliers to those listed, and something crosses."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contvines.events.kinds import BORDERS
+from tests.orbits.fuzz.between import Between
+from tests.orbits.fuzz.motion import alike, apart
+from tests.orbits.fuzz.tally import Tally
+
+PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
+NEAR = 1e-7  # values of one point
+SAME = 1e-6  # motions that differ by less need not come nearer
+SHRINKS = 0.5  # a square root shrinks by 0.32 where the distance does tenfold
+NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # the same for multipliers
+UNBOUNDED = 1e14  # multipliers listed as large grow without bound
+LIMIT = 1e-3  # relative difference of characteristic polynomials
+ASIDE = 0.1  # of the distance, where crossings are looked for
+
+
+def judge(graph: Any, tally: Tally) -> None:
+    """Each mark of each branch."""
+    for branch in graph:
+        between = Between(branch, graph.within)
+        for i, label in branch.marks:
+            if label in graph.special and graph[label].kind not in ("end", "user"):
+                _tends(between, i, graph[label], tally)
+                if graph[label].kind in BORDERS:
+                    _limits(between, i, graph[label], tally)
+                elif graph[label].branch == branch.label and branch.real and 0 < i < len(branch) - 1:
+                    _crosses(between, i, graph[label], tally)
+    for switch in graph.switches:
+        _joined(graph, switch, tally)
+
+
+def _joined(graph: Any, switch: Any, tally: Tally) -> None:
+    """Both branches of a switch carry the point, so that `_tends` has looked at both; or have its orbit at one of their own."""
+    tally.count("crossings")
+    point = graph[switch.point]
+    for end in (switch.source, switch.target):
+        branch = graph[end]
+        if any(label == switch.point for _, label in branch.marks):
+            continue
+        places = [
+            i
+            for i in {0, len(branch) - 1, *(i for i, _ in branch.marks)}
+            if abs(branch.values[i] - point.value) < NEAR
+        ]
+        if any(apart(point.orbit, branch.orbit(i)) < SAME for i in places):
+            continue
+        if not branch.real:
+            tally.count("virtual branches that are met where they have no point")
+        else:
+            tally.find(
+                "link", f"{switch.point} joins {switch.source} and {switch.target}, but is not on {end}"
+            )
+
+
+def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
+    """The branch's orbits tend to the point's as the distance does."""
+    branch = between.branch
+    for way in between.ways(i):
+        seen = [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, PARTS)]
+        gaps = [gap for _, gap in seen]
+        if len(gaps) < 2 or math.isnan(gaps[-1]):
+            tally.count("ways to special points that cannot be followed")
+            continue
+        tally.count("ways to special points followed")
+        falls = gaps[-1] < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
+        if not falls:
+            what = ", ".join(f"{gap:.1e} at {d:.0e}" for d, gap in seen)
+            tally.find(
+                "jump",
+                f"{branch.label} does not tend to {point.label} ({point.kind}, {point.value:.10g}): {what}",
+            )
+
+
+def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
+    """Multipliers listed at a border are the limits of those beside it, on this branch's side."""
+    branch = between.branch
+    ways = between.ways(i)
+    if len(ways) != 1 or not branch.multipliers.shape[1] or not len(branch.problem.word):
+        return
+    listed = branch.multipliers[i]
+    if branch.real and not any(
+        m is not None and len(m) == len(listed) and np.array_equal(m, listed)
+        for m in (point.multipliers, point.multipliers_beyond)
+    ):
+        tally.count("ends of branches with multipliers of a third branch")
+    seen = [(d, orbit.multipliers) for d, orbit in between.beside(i, ways[0], NEARER)]
+    if len(seen) < 3:
+        tally.count("borders beside which nothing can be solved for")
+        return
+    tally.count("multipliers at borders")
+    sizes = [float(np.abs(m).max()) for _, m in seen]
+    if sizes[0] > UNBOUNDED / 100.0:
+        tally.count("borders of orbits too unstable to tell")
+        return
+    if not np.all(np.abs(listed) < UNBOUNDED):
+        if not sizes[-1] > 1.5 * sizes[-2]:
+            tally.find("limit", f"{branch.label} at {point.label}: without bound, but {sizes[-3:]} beside it")
+        return
+    gaps = [alike(listed, m) for _, m in seen]
+    nearest = gaps[-3:]
+    if min(gaps) < LIMIT or (nearest[2] < SHRINKS * nearest[0] and nearest[2] < 0.1):
+        return
+    what = f"{_text(listed)} listed, {_text(seen[-1][1])} at {seen[-1][0]:.0e}, {_text(seen[-3][1])} at {seen[-3][0]:.0e}"
+    tally.find("limit", f"{branch.label} at {point.label} ({point.kind}, {point.value:.10g}): {what}")
+
+
+def _text(multipliers: np.ndarray) -> str:
+    return "[" + " ".join(f"{m:.6g}" for m in multipliers) + "]"
+
+
+def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
+    """At a bifurcation a multiplier passes the circle, at a fold the parameter turns.
+
+    Of real branches: equations of virtual orbits may be singular without, where a stick that forgets all before ends at a maximum.
+    """
+    branch = between.branch
+    sides = [next((orbit for _, orbit in between.beside(i, way, (ASIDE,))), None) for way in (-1, 1)]
+    if None in sides or point.met_from is not None:
+        return
+    tally.count("bifurcations with both sides")
+    before, after = (_past(orbit.multipliers) for orbit in sides)
+    p = point.parameter
+    values = [branch.problem.value(orbit.params) - point.value for orbit in sides]
+    if point.kind == "fold" and values[0] * values[1] < 0.0:
+        tally.find(
+            "fold", f"{point.label} on {branch.label}: {p} does not turn at {point.value:.12g}: {values}"
+        )
+    if before == after:
+        what = f"{_text(sides[0].multipliers)} and {_text(sides[1].multipliers)}"
+        tally.find(
+            "crossing",
+            f"nothing crosses at {point.label} ({point.kind}, {branch.label}, {point.value:.10g}): {what} beside it",
+        )
+
+
+def _past(multipliers: np.ndarray) -> tuple[int, int, int]:
+    """Multipliers past 1, past -1, and pairs past the circle."""
+    real = multipliers[multipliers.imag == 0.0].real
+    pairs = multipliers[multipliers.imag > 0.0]
+    return int((real > 1.0).sum()), int((real < -1.0).sum()), int((np.abs(pairs) > 1.0).sum())

@@ -1,0 +1,88 @@
+"""One machine judged by all checks, within its time."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import traceback
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+import contvines as cv
+from tests.orbits.fuzz import finer, neighbours, simulated, structure
+from tests.orbits.fuzz.drawing import Draw, draw
+from tests.orbits.fuzz.tally import Tally
+
+SECONDS = 150.0  # of processor time for each part
+LIMITS = {"max_branches": 80}
+
+
+class TooLong(Exception):
+    """A part takes longer than its time."""
+
+
+@contextlib.contextmanager
+def within_seconds(seconds: float) -> Iterator[None]:
+    """Stop after so much processor time, where the system can."""
+    if not hasattr(signal, "SIGVTALRM"):
+        yield
+        return
+
+    def stop(*_: Any) -> None:
+        raise TooLong
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
+def search(kind: str, salt: int, seed: int, finely: bool = False) -> Tally:
+    """Draw a machine and judge it."""
+    tally = Tally(kind, salt, seed)
+    tally.count("machines")
+    rng = np.random.default_rng([salt, seed])
+    drawn: list[Draw] = []
+    graphs: list[Any] = []
+    parts = {
+        "start": lambda: drawn.append(draw(kind, salt, seed)),
+        "diagram": lambda: graphs.extend(_diagram(drawn[0])),
+        "attractors": lambda: simulated.settle(drawn[0], tally, rng),
+        "structure": lambda: [structure.judge(graph, tally) for graph in graphs],
+        "neighbours": lambda: [neighbours.judge(graph, tally) for graph in graphs],
+        "simulation": lambda: [simulated.judge(graph, tally, rng) for graph in graphs],
+    }
+    if finely:
+        parts["finer"] = lambda: [finer.judge(drawn[0], graph, tally, LIMITS) for graph in graphs]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        for name, part in parts.items():
+            try:
+                with within_seconds(SECONDS):
+                    part()
+            except TooLong:
+                tally.find("time", f"{name} takes more than {SECONDS:.0f} s")
+            except Exception as error:
+                last = traceback.extract_tb(error.__traceback__)[-1]
+                tally.find(
+                    "exception", f"{name}: {type(error).__name__}: {error} ({last.filename}:{last.lineno})"
+                )
+            if not drawn:
+                break
+    tally.count("diagrams", len(graphs))
+    tally.count(
+        "diagrams cut at their largest number of branches", sum(not graph.complete for graph in graphs)
+    )
+    return tally
+
+
+def _diagram(drawn: Draw) -> list[Any]:
+    if drawn.orbit is None:
+        return []
+    return [cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS)]

@@ -1,0 +1,184 @@
+"""Orbits of branches against the event-driven simulation: events, multipliers, and whether it comes back to stable ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors import find_attractor
+from orbits.simulation import replay
+from orbits.simulation.driver import SimulationError, machine
+from orbits.simulation.return_map import monodromy
+from orbits.starts.find import polish
+from tests.orbits.fuzz.between import Between
+from tests.orbits.fuzz.motion import alike, apart
+from tests.orbits.fuzz.tally import Tally
+
+EACH = 3  # orbits of each branch
+STARTS = 3  # of each machine
+BESIDE = 1e-6  # margins as small make events a matter of rounding
+WILD = 1e6  # multipliers as large are lost within a period
+DIFFERENCES = 1e-4  # of characteristic polynomials, relative
+CURVED = 1e-6  # times the outermost multiplier: where it is large, differences are less exact
+SMALLER = (1e-7, 1e-9)  # displacements
+MOST = 4  # events from which a return map is taken
+SETTLED = 0.999  # outermost multiplier of what a simulation can settle on
+
+
+def judge(graph: Any, tally: Tally, rng: np.random.Generator) -> None:
+    """Orbits between the points of each branch."""
+    for branch in graph:
+        if len(branch) < 2 or not len(branch.problem.word):
+            continue
+        between = Between(branch, graph.within)
+        for i in rng.permutation(len(branch) - 1)[:EACH]:
+            orbit = between.orbit(int(i), float(rng.uniform(0.2, 0.8)))
+            if orbit is None:
+                tally.count("places that cannot be solved for")
+                continue
+            settled = branch.stable[i] if branch.stable[i] == branch.stable[i + 1] else None
+            if branch.real:
+                follow(orbit, branch.label, settled, tally)
+            else:
+                _refused(orbit, branch.label, tally)
+
+
+def _said(label: str, orbit: Any) -> str:
+    value = {
+        name: orbit.parameters[name]
+        for name in ("amplitude", "frequency", "forcing")
+        if name in orbit.parameters
+    }
+    return f"{label} {orbit.spelling} k={orbit.periods} at " + ", ".join(
+        f"{k} = {v:.10g}" for k, v in value.items()
+    )
+
+
+def follow(orbit: Any, label: str, stable: bool | None, tally: Tally) -> None:
+    """A real orbit: the simulation goes through its events, has its multipliers, and comes back if it is said to be stable."""
+    growth = float(np.abs(orbit.multipliers).max(initial=0.0))
+    said = _said(label, orbit)
+    if orbit.margin < -BESIDE:
+        tally.find("virtual", f"{said}: a margin is {orbit.margin:.1e} on a branch called real")
+        return
+    if orbit.margin < BESIDE or growth > WILD:
+        tally.count("orbits beside a border, or too unstable to be simulated")
+        return
+    tally.count("orbits simulated")
+    seen = replay(orbit, thorough=True, most=1)
+    if not seen.matches:
+        if seen.motion < 1e-5:
+            tally.count("orbits whose motion is simulated, with other events")
+        else:
+            tally.find(
+                "replay", f"{said}: {seen.message} (margin {orbit.margin:.1e}, multipliers to {growth:.1e})"
+            )
+        return
+    if not min(seen.error, orbit.replay()) < 1e-9 * max(
+        1.0, growth
+    ):  # beside a border positions tell more than nodes
+        tally.find("replay", f"{said}: nodes differ by {seen.error:.1e} (multipliers to {growth:.1e})")
+    if len(seen.multipliers):
+        _compared(orbit, seen.multipliers, said, tally)
+        moved = _without_trivial(orbit, seen.multipliers)
+        outermost = float(np.abs(moved).max())
+        if stable is not None and abs(outermost - 1.0) > 1e-3 and (outermost < 1.0) != stable:
+            tally.find(
+                "stability",
+                f"{said}: called {'stable' if stable else 'unstable'}, simulated multipliers {moved}",
+            )
+    else:
+        tally.count("orbits at which the return map has a kink")
+    if stable and seen.returned is not None:
+        tally.count("stable orbits simulated")
+        if not seen.returned and growth < SETTLED:
+            tally.find(
+                "return",
+                f"{said}: called stable, not returned to (margin {orbit.margin:.1e}, multipliers to {growth:.6f})",
+            )
+
+
+def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> None:
+    """Multipliers against differences; where the return map is steep, and so curved within a displacement, against smaller ones."""
+    tally.count("multipliers against differences")
+    gap = alike(orbit.multipliers, _without_trivial(orbit, seen))
+    if gap < DIFFERENCES:
+        return
+    engine, (letters, modes) = machine(orbit.model.name), (orbit.word.codes, orbit.word.mode_codes)
+    places = np.flatnonzero(letters < 2) if orbit.impacts else range(len(letters))
+    for place in places[:MOST]:
+        turned = orbit.rotate(int(place))
+        letters, modes = turned.word.codes, turned.word.mode_codes
+        for step in SMALLER:
+            matrix = monodromy(engine, orbit.params, letters, modes, turned.nodes[0], step)
+            if matrix is not None:
+                gap = min(gap, alike(orbit.multipliers, _without_trivial(orbit, np.linalg.eigvals(matrix))))
+        if gap < max(DIFFERENCES, CURVED * float(np.abs(orbit.multipliers).max())):
+            tally.count("multipliers against smaller differences")
+            return
+    tally.find(
+        "multipliers", f"{said}: {orbit.multipliers} against {seen}, {gap:.1e} (margin {orbit.margin:.1e})"
+    )
+
+
+def _without_trivial(orbit: Any, multipliers: np.ndarray) -> np.ndarray:
+    """A motion without impacts may be moved as a whole: one multiplier is 1."""
+    if orbit.impacts:
+        return multipliers
+    return np.delete(multipliers, int(np.argmin(np.abs(multipliers - 1.0))))
+
+
+def _refused(orbit: Any, label: str, tally: Tally) -> None:
+    """A virtual orbit: the simulation does something else."""
+    if orbit.margin > BESIDE:
+        tally.find(
+            "virtual",
+            f"{_said(label, orbit)}: called virtual, but all margins are positive ({orbit.margin:.1e})",
+        )
+        return
+    if orbit.margin > -BESIDE:
+        tally.count("virtual orbits beside a border")
+        return
+    tally.count("virtual orbits simulated")
+    seen = replay(orbit)
+    if seen.matches and seen.error < 1e-6:
+        tally.find(
+            "virtual",
+            f"{_said(label, orbit)}: called virtual ({orbit.margin:.1e}), but the simulation follows it",
+        )
+
+
+def settle(draw: Any, tally: Tally, rng: np.random.Generator) -> None:
+    """What a few starts settle on solves its word, with the simulated multipliers."""
+    drawn = draw.machine
+    for _ in range(STARTS):
+        parameters = {**draw.parameters, draw.options["over"]: float(rng.uniform(*draw.options["within"]))}
+        start = drawn.random_start(drawn.vector(parameters), rng)
+        tally.count("starts simulated")
+        try:
+            found = find_attractor(drawn, start, max_period=4, patience=1, **parameters)
+        except SimulationError as error:
+            tally.find("exception", f"find_attractor({start}, {parameters}): {error}")
+            continue
+        if found.word is None or not len(found.codes):
+            tally.count(f"attractors: {found.kind}")
+            continue
+        tally.count("attractors: with a word")
+        claimed = found.orbit
+        said = f"attractor {claimed.spelling} k={claimed.periods} at {parameters}"
+        solved = polish(claimed)
+        if solved is None:
+            tally.find("attractor", f"{said}: does not solve its word")
+            continue
+        outermost = float(np.abs(solved.multipliers).max(initial=0.0))
+        if outermost > SETTLED:
+            tally.count("attractors that have hardly settled")
+            continue
+        if not (solved.real and solved.stable):
+            tally.find("attractor", f"{said}: margin {solved.margin:.1e}, multipliers {solved.multipliers}")
+        gap = apart(solved, claimed, images=False)
+        if not gap < 1e-7:
+            tally.find("attractor", f"{said}: solved for it differs by {gap:.1e}")
+        if np.isfinite(found.multipliers).all() and solved.margin > BESIDE:
+            _compared(solved, found.multipliers, said, tally)

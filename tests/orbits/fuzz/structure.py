@@ -1,0 +1,118 @@
+"""What a graph itself must not have: doubled branches, repeated orbits, branches of no length, borders without a reason, loose ends."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from contvines.events.kinds import BORDERS
+from orbits.cycles.claim import REAL
+from orbits.starts.find import polish
+from tests.orbits.fuzz.motion import apart, shortest
+from tests.orbits.fuzz.tally import Tally
+
+ONE = 1e-9  # motions this near are one
+CRITICAL = 1e-2  # multipliers as near to 1: beside a branch point two branches do share an orbit
+NOTHING = 1e-7  # extent of a branch, in parameter and unknowns
+ROUNDOFF = 1e-9
+IN_PLACE = 1e-8  # a special point's error
+
+
+def judge(graph: Any, tally: Tally) -> None:
+    """All of these checks on one graph."""
+    tally.count("branches", len(graph))
+    tally.count("special points", len(graph.special))
+    for branch in graph:
+        _branch(branch, tally)
+    for point in graph.special.values():
+        _point(graph, point, tally)
+    if not graph.settings["virtual"]:
+        _doubled([branch for branch in graph if branch.real and len(branch.description["word"])], tally)
+
+
+def _branch(branch: Any, tally: Tally) -> None:
+    inner = branch.margin[1:-1]
+    if branch.real and len(inner) and inner.min() < REAL:
+        tally.find("margin", f"{branch.label} is called real, a margin inside is {inner.min():.1e}")
+    extent = max(float(np.ptp(branch.values)), float(np.ptp(branch.points, axis=0).max(initial=0.0)))
+    if branch.real and len(branch) > 1 and extent < NOTHING:
+        tally.find("no length", f"{branch.label} is called real, but is {extent:.1e} long")
+    marked = {i for i, _ in branch.marks}
+    flips = np.flatnonzero(branch.stable[1:] != branch.stable[:-1])
+    loose = [int(i) for i in flips if not {i, i + 1} & marked]
+    if loose:
+        tally.find(
+            "stability",
+            f"{branch.label} changes its stability at {branch.values[loose[0]]:.9g} without a point",
+        )
+    if not len(branch.problem.word):
+        return
+    places = np.unique(np.linspace(0, len(branch) - 1, 7).astype(int))
+    orbits = [branch.orbit(int(i)) for i in places]
+    if all(shortest(orbit) < orbit.periods for orbit in orbits):
+        tally.find(
+            "repeated",
+            f"{branch.label} {branch.description['word']} k={branch.problem.periods} repeats a shorter orbit",
+        )
+
+
+def _point(graph: Any, point: Any, tally: Tally) -> None:
+    where = f"{point.label} at {point.value:.10g}"
+    size = max(1.0, float(np.abs(point.u).max(initial=0.0)))
+    if not point.residual < ROUNDOFF * size:
+        tally.find("residual", f"{where}: {point.residual:.1e}")
+    branch = graph[point.branch]
+    if not (point.real and branch.real):
+        return
+    if not point.location_error < IN_PLACE:
+        tally.count("special points with a told error above 1e-8")
+    outermost = np.abs(point.multipliers).max(initial=0.0)
+    if point.replay is None or not point.replay < (1e-3 if outermost > 1e3 else 2e-5):
+        if outermost > 1e8:
+            tally.count("special points too unstable to be simulated")
+        else:
+            tally.find(
+                "replay",
+                f"{where} ({point.kind}, {point.branch}): {point.replay}, multipliers to {outermost:.1e}",
+            )
+    if point.kind in BORDERS and not any(switch.point == point.label for switch in graph.switches):
+        if not point.note:
+            tally.find(
+                "no reason",
+                f"{where} ({point.kind}) on {point.branch}: nothing goes on, and nothing says why",
+            )
+        else:
+            tally.count("borders with a reason: " + " ".join(point.note.split()[:4]))
+
+
+def _doubled(branches: list[Any], tally: Tally) -> None:
+    """Motions at the middle of a branch, solved for on every other branch that has this value of the parameter."""
+    for i, one in enumerate(branches):
+        place = _middle(one)
+        if place is None:
+            continue
+        value, orbit = float(one.values[place]), one.orbit(place)
+        for other in branches[i + 1 :]:
+            for q in np.flatnonzero((other.values[:-1] - value) * (other.values[1:] - value) <= 0.0):
+                step = other.values[q + 1] - other.values[q]
+                if step == 0.0:
+                    continue
+                t = (value - other.values[q]) / step
+                guess = (1.0 - t) * other.points[q] + t * other.points[q + 1]
+                solved = polish(other.problem.orbit(guess, value))
+                if solved is None:
+                    continue
+                tally.count("pairs of branches compared")
+                if apart(orbit, solved) < ONE:
+                    tally.find("doubled", f"{one.label} and {other.label} have one motion at {value:.10g}")
+
+
+def _middle(branch: Any) -> int | None:
+    """The point of the largest margin: furthest from borders, and not critical, so that the orbit is no other branch's."""
+    margin = branch.margin.copy()
+    margin[[0, -1]] = 0.0
+    if branch.multipliers.shape[1]:
+        margin[np.abs(branch.multipliers - 1.0).min(axis=1) < CRITICAL] = 0.0
+    place = int(np.argmax(margin))
+    return place if margin[place] > 0.0 else None

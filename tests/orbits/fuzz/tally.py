@@ -1,0 +1,46 @@
+"""What a search counts and what it finds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import NamedTuple
+
+
+class Finding(NamedTuple):
+    """Something that seems false: which check says so of which machine, and where."""
+
+    kind: str
+    salt: int
+    seed: int
+    check: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.seed} (salt {self.salt})  {self.check}: {self.text}"
+
+
+class Tally:
+    """Counts and findings of the machine at hand, or of many."""
+
+    def __init__(self, kind: str = "", salt: int = 0, seed: int = 0) -> None:
+        self.kind, self.salt, self.seed = kind, salt, seed
+        self.counts: Counter[str] = Counter()
+        self.findings: list[Finding] = []
+
+    def count(self, what: str, times: int = 1) -> None:
+        """So many more of something."""
+        self.counts[what] += times
+
+    def find(self, check: str, text: str) -> None:
+        """Something seems false."""
+        self.findings.append(Finding(self.kind, self.salt, self.seed, check, text))
+
+    def add(self, other: Tally) -> None:
+        """Another machine's."""
+        self.counts += other.counts
+        self.findings += other.findings
+
+    def table(self) -> str:
+        """The counts, a line each."""
+        width = max(map(len, self.counts), default=0)
+        return "\n".join(f"{what:<{width}}  {times}" for what, times in sorted(self.counts.items()))

@@ -1,0 +1,160 @@
+"""A short search, and forged graphs that every check must notice; ``python -m tests.orbits.fuzz absorber 150 1`` asks for more."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+from tests.orbits.fuzz import finer, neighbours, simulated, structure
+from tests.orbits.fuzz.drawing import draw
+from tests.orbits.fuzz.motion import alike, apart, shortest
+from tests.orbits.fuzz.searching import search
+from tests.orbits.fuzz.tally import Tally
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("absorber", 0), ("absorber", 3), ("cavity", 8), ("coupled", 1)])
+def test_a_short_search_finds_nothing(kind, seed):
+    tally = search(kind, 1, seed)
+    assert not tally.findings
+    assert tally.counts["diagrams"] == 1
+    assert tally.counts["orbits simulated"] > 0
+
+
+def test_the_same_seed_draws_the_same_machine():
+    one, other = (draw("absorber", 1, 3) for _ in range(2))
+    assert one.machine == other.machine and one.options == other.options
+    assert draw("absorber", 2, 3).machine != one.machine
+
+
+@pytest.fixture(scope="module")
+def graph():
+    """LR with a fold, its symmetry breaking, and borders where sticks and turns appear; the rest of LR beyond its border is kept."""
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    orbit = machine.symmetric_orbit(amplitude=0.7)
+    return cv.diagram(orbit, over="amplitude", within=(0.2, 0.92), depth=1, virtual=True)
+
+
+def changed(graph, **branches):
+    """The graph with some branches replaced."""
+    return replace(graph, branches={**graph.branches, **branches})
+
+
+def checks(judge, *given):
+    """Names of the checks that find something."""
+    tally = Tally()
+    judge(*given, tally) if judge is not simulated.judge else judge(*given, tally, np.random.default_rng(1))
+    return {finding.check for finding in tally.findings}
+
+
+def word(graph, text, real=True):
+    return next(
+        b for b in graph if b.description["word"] == text and b.real == real and not b.problem.symmetric
+    )
+
+
+def test_nothing_is_found_in_the_graph_as_it_is(graph):
+    for judge in (structure.judge, neighbours.judge, simulated.judge):
+        assert not checks(judge, graph)
+
+
+def test_stability(graph):
+    branch = word(graph, "LR")
+    forged = changed(graph, **{branch.label: replace(branch, stable=~branch.stable)})
+    assert "stability" in checks(simulated.judge, forged)
+    stable = branch.stable.copy()
+    stable[len(stable) // 2 :] = False
+    assert "stability" in checks(
+        structure.judge, changed(graph, **{branch.label: replace(branch, stable=stable)})
+    )
+
+
+def test_virtual_branches_called_real_and_real_ones_called_virtual(graph):
+    ghost, branch = word(graph, "LR", real=False), word(graph, "LR")
+    forged = changed(graph, **{ghost.label: replace(ghost, real=True)})
+    assert "margin" in checks(structure.judge, forged)
+    assert "virtual" in checks(simulated.judge, forged)
+    assert "virtual" in checks(simulated.judge, changed(graph, **{branch.label: replace(branch, real=False)}))
+
+
+def test_doubled_branches_and_repeated_orbits(graph):
+    branch = word(graph, "LR")
+    plain = replace(graph, settings={**graph.settings, "virtual": False})
+    assert "doubled" in checks(structure.judge, changed(plain, B99=replace(branch, label="B99")))
+    twice = branch.orbit(3).repeat(2)
+    problem = branch.problem.sibling(twice.word, twice.periods, False)
+    points = np.array([problem.reduce(branch.orbit(i).repeat(2).nodes) for i in range(len(branch))])
+    forged = replace(branch, problem=problem, points=points)
+    assert "repeated" in checks(structure.judge, changed(graph, **{branch.label: forged}))
+
+
+def test_a_branch_of_no_length(graph):
+    branch = word(graph, "LR")
+    kept = {
+        name: getattr(branch, name)[[3, 3]]
+        for name in ("points", "values", "tangents", "multipliers", "margin", "stable")
+    }
+    assert "no length" in checks(
+        structure.judge, changed(graph, B99=replace(branch, label="B99", marks=(), **kept))
+    )
+
+
+def test_multipliers_at_borders(graph):
+    branch = word(graph, "LRs")
+    listed = branch.multipliers.copy()
+    listed[[0, -1]] += 0.1
+    assert "limit" in checks(
+        neighbours.judge, changed(graph, **{branch.label: replace(branch, multipliers=listed)})
+    )
+
+
+def test_false_links(graph):
+    switch = next(s for s in graph.switches if graph[s.target].description["word"] == "LRs")
+    other = next(b for b in graph if b.label not in (switch.source, switch.target))
+    forged = replace(graph, switches=[replace(switch, target=other.label)])
+    assert "link" in checks(neighbours.judge, forged)
+    branch = graph[switch.target]
+    marks = tuple((len(branch) // 2 if label == switch.point else i, label) for i, label in branch.marks)
+    assert "jump" in checks(neighbours.judge, changed(graph, **{branch.label: replace(branch, marks=marks)}))
+
+
+def test_false_folds(graph):
+    branch = word(graph, "LR")
+    i = len(branch) // 2
+    point = replace(
+        graph.of_kind("fold")[0],
+        label="LP99", branch=branch.label, index=i, value=float(branch.values[i]), u=branch.points[i],
+        tangent=branch.tangents[i], problem=branch.problem,
+    )  # fmt: skip
+    marked = replace(branch, marks=(*branch.marks, (i, "LP99")))
+    forged = replace(changed(graph, **{branch.label: marked}), special={**graph.special, "LP99": point})
+    assert {"fold", "crossing"} <= checks(neighbours.judge, forged)
+
+
+def test_points_that_are_lost(graph):
+    fold = graph.of_kind("fold")[0]
+    less = replace(graph, special={label: p for label, p in graph.special.items() if label != fold.label})
+    tally = Tally()
+    finer.compare(less, graph, graph.within, "itself", tally)
+    assert not tally.findings
+    finer.compare(graph, less, graph.within, "less", tally)
+    assert [finding.check for finding in tally.findings] == ["lacks"]
+
+
+def test_multipliers_of_no_simulation(graph):
+    branch = word(graph, "LR")
+    orbit = branch.orbit(len(branch) // 2)
+    forged = orbit.with_multipliers(orbit.multipliers + 0.01)
+    tally = Tally()
+    simulated.follow(forged, "B99", True, tally)
+    assert [finding.check for finding in tally.findings] == ["multipliers"]
+
+
+def test_motions(graph):
+    """A forcing period later, or twice through, it is the same motion; half a period later it is not."""
+    orbit = word(graph, "LR").orbit(5)
+    assert apart(orbit, orbit.repeat(3).rotate(2)) < 1e-12
+    assert apart(orbit, orbit.mirror()) < 1e-12 < 1e-2 < apart(orbit, orbit.mirror(), images=False)
+    assert (shortest(orbit), shortest(orbit.repeat(4))) == (1, 1)
+    assert alike(np.array([0.5, -0.2]), np.array([-0.2, 0.5])) < 1e-15
