@@ -40,12 +40,12 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
     units = data.get("units", model.get("units"))
     if units != "si":
-        return None, plain, [f'units = {units!r} is unknown; "si" would do, or leave it out.']
+        return None, _without_texts(plain), [f'units = {units!r} is unknown; "si" would do, or leave it out.']
     name = model.get("name")
     try:
         known = tables(model_class(str(name))).QUANTITIES
     except ValueError as error:
-        return None, plain, [f"[model] {error}."]
+        return None, _without_texts(plain), [f"[model] {error}."]
     wrong = [
         _unknown(section, key, value, known, extra)
         for section, values, extra in (("model", model, OWN), ("start", start, SAID))
@@ -65,8 +65,19 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     try:
         machine = physical(str(name), {k: v for k, (_, v) in told.items()}, bool(model.get("unusual", False)))
     except QuantityError as error:
-        return None, plain, [*wrong, f"{_placed(str(error), told)}."]
+        return None, _without_texts(plain), [*wrong, f"{_placed(str(error), told)}."]
     return _numbers(machine, plain, known, wrong)
+
+
+def _without_texts(plain: dict[str, Any]) -> dict[str, Any]:
+    """The sections with numbers in place of quantities that no machine can read, so that these are not refused as well."""
+    found = {}
+    for section, values in plain.items():
+        found[section] = dict(values) if isinstance(values, dict) else values
+        for key in ("within", "values") if isinstance(values, dict) else ():
+            if isinstance(values.get(key), list) and any(isinstance(value, str) for value in values[key]):
+                found[section][key] = [float(i) for i in range(len(values[key]))]
+    return found
 
 
 def _numbers(

@@ -51,7 +51,7 @@ function traces() {
 function draw(keep = true) {
   const old = $("diagram").layout;
   const range = (name, own) => ({ range: keep && old && old[name] ? old[name].range : own });
-  Plotly.react("diagram", traces(), layout({ showlegend: true, legend: { orientation: "h", y: -0.14 },
+  Plotly.react("diagram", traces(), layout({ showlegend: true, legend: { orientation: "h", y: 1.02, yanchor: "bottom" },
     xaxis: axis(data.names[q], range("xaxis", data.within[1])), yaxis: axis(data.names[p], range("yaxis", data.within[0])) }), options);
 }
 
@@ -106,6 +106,8 @@ $("tints").closest("label").hidden = !data.regions.length;
 for (const id of ["virtual", "tints"]) $(id).addEventListener("change", () => draw());
 $("reset").addEventListener("click", () => draw(false));
 draw(false);
+$("diagram").on("plotly_afterplot", thin);
+thin();
 $("diagram").on("plotly_click", (event) => {
   const found = event.points.find((entry) => entry.customdata);
   if (!found) return;

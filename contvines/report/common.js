@@ -30,8 +30,34 @@ const layout = (more) => ({
   margin: { l: 62, r: 12, t: 12, b: 46 }, showlegend: false,
   ...more,
 });
-const axis = (title, more = {}) => ({ title: { text: title }, gridcolor: dark.matches ? "#3a3d44" : "#e6e6e6", zeroline: false, ...more });
+// a title longer than a narrow screen goes on in a second line
+const lines = (text) => (innerWidth > 600 ? text : text.split(" ").reduce((made, word) => (made.length - made.lastIndexOf(">") + word.length > 36 ? `${made}<br>${word}` : `${made} ${word}`).trim(), ""));
+const axis = (title, more = {}) => ({ title: { text: lines(title) }, automargin: true, gridcolor: dark.matches ? "#3a3d44" : "#e6e6e6", zeroline: false, ...more });
 const options = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
+/* labels that would cover one another at this zoom are left out; the hover names every mark */
+function thin() {
+  const picture = $("diagram"), full = picture._fullLayout;
+  const k = picture.data.findIndex((t) => t.mode === "markers+text");
+  if (k < 0 || !full.xaxis) return;
+  const names = picture.data[k].customdata.map((c) => c[2]), kept = [];
+  const text = names.map((name, i) => {
+    const x = full.xaxis.d2p(picture.data[k].x[i]), y = full.yaxis.d2p(picture.data[k].y[i]), w = 4 + 4 * name.length;
+    const inside = x >= 0 && y >= 0 && x <= full.xaxis._length && y <= full.yaxis._length;
+    if (!inside || kept.some(([a, b, v]) => Math.abs(a - x) < w + v && Math.abs(b - y) < 15)) return "";
+    kept.push([x, y, w]);
+    return name;
+  });
+  if (JSON.stringify(text) !== JSON.stringify(picture.data[k].text)) Plotly.restyle(picture, { text: [text] }, [k]);
+}
+
+/* paper is narrower than the screen: pictures are laid out again for it, and afterwards for the screen */
+const PAPER = 690; // pixels between the margins of a sheet
+const pictures = () => [...document.querySelectorAll(".js-plotly-plot")].filter((picture) => picture.offsetParent !== null);
+addEventListener("beforeprint", () => pictures().forEach((picture) => {
+  const share = picture.id === "portrait" ? 0.42 : picture.id === "history" ? 0.56 : 1;
+  Plotly.relayout(picture, { autosize: false, width: PAPER * share, height: picture.id === "diagram" ? 420 : picture.offsetHeight });
+}));
+addEventListener("afterprint", () => pictures().forEach((picture) => Plotly.relayout(picture, { autosize: true, width: null, height: null })));
 let clock = null;
 let started = false;
 

@@ -49,22 +49,6 @@ function draw(keep = true) {
   Plotly.react("diagram", traces(), layout({ xaxis: axis(data.names[$("x").value], range("xaxis")), yaxis: axis(data.names[$("y").value], range("yaxis")) }), options);
 }
 
-/* labels that would cover one another at this zoom are left out; the hover names every mark */
-function thin() {
-  const picture = $("diagram"), full = picture._fullLayout;
-  const k = picture.data.findIndex((t) => t.mode === "markers+text");
-  if (k < 0 || !full.xaxis) return;
-  const names = picture.data[k].customdata.map((c) => c[2]), kept = [];
-  const text = names.map((name, i) => {
-    const x = full.xaxis.d2p(picture.data[k].x[i]), y = full.yaxis.d2p(picture.data[k].y[i]), w = 4 + 4 * name.length;
-    const inside = x >= 0 && y >= 0 && x <= full.xaxis._length && y <= full.yaxis._length;
-    if (!inside || kept.some(([a, b, v]) => Math.abs(a - x) < w + v && Math.abs(b - y) < 15)) return "";
-    kept.push([x, y, w]);
-    return name;
-  });
-  if (JSON.stringify(text) !== JSON.stringify(picture.data[k].text)) Plotly.restyle(picture, { text: [text] }, [k]);
-}
-
 // ------------------------------------------------------------------ one orbit
 function nearest(branch, index) {
   const known = data.orbits[branch] ? Object.keys(data.orbits[branch]).map(Number) : [];

@@ -2,12 +2,18 @@
 function show(scene) {
   const tint = dark.matches ? "#6fb1ff" : "#0b3c6f", second = dark.matches ? "#ff9d5c" : "#b5531c", grey = "#8a8a8a";
   const { portrait, history, events } = scene;
-  const walls = (portrait.walls || []).map((w) => ({ type: "line", x0: w, x1: w, yref: "paper", y0: 0, y1: 1, line: { color: grey, width: 5 } }));
+  const walls = (portrait.walls || []).map((w) => ({ type: "line", x0: w, x1: w, yref: "paper", y0: 0, y1: 1, layer: "below", line: { color: grey, width: 5 } }));
+  // the letter of an impact stands inside, beside its wall
+  const inner = (e) => {
+    if (!(portrait.walls || []).some((w) => Math.abs(w - e.x) < 1e-6)) return "top center";
+    const leftmost = portrait.x.every((x) => (portrait.reversed ? x <= e.x + 1e-6 : x >= e.x - 1e-6));
+    return leftmost ? "middle right" : "middle left";
+  };
   Plotly.react("portrait", [
     { x: portrait.x, y: portrait.y, mode: "lines", line: { color: tint, width: 1.8 }, hoverinfo: "skip" },
-    { x: events.map((e) => e.x), y: events.map((e) => e.y), mode: "markers+text", text: events.map((e) => e.event), textposition: "top center",
+    { x: events.map((e) => e.x), y: events.map((e) => e.y), mode: "markers+text", text: events.map((e) => e.event), textposition: events.map(inner),
       marker: { size: 8, color: tint, symbol: "circle-open" }, hoverinfo: "text" },
-  ], layout({ shapes: walls, xaxis: axis(portrait.names[0], portrait.reversed ? { autorange: "reversed" } : {}), yaxis: axis(portrait.names[1]) }), options);
+  ], layout({ shapes: walls, xaxis: axis(portrait.names[0], { showgrid: false, ...(portrait.reversed ? { autorange: "reversed" } : {}) }), yaxis: axis(portrait.names[1]) }), options);
   const curves = Object.entries(history.curves).map(([name, y], i) => ({ x: history.x, y, name, mode: "lines",
     line: { color: i % 2 ? second : grey, width: 1.8, dash: i % 2 ? "solid" : "dash" } }));
   const sides = (history.walls || []).map((y) => ({ x: history.x, y, mode: "lines", line: { color: grey, width: 1 }, hoverinfo: "skip", showlegend: false }));

@@ -44,6 +44,8 @@ class Quantity:
         Whether 0 makes sense.
     default : str or float, optional
         Where neither it nor another of its group is given.
+    signed : bool
+        Whether it may be negative.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Quantity:
     group: str = ""
     zero: bool = False
     default: str | float | None = None
+    signed: bool = False
 
     @property
     def choice(self) -> str:
@@ -106,7 +109,10 @@ class Basis:
     def amounts_of(self, numbers: np.ndarray) -> np.ndarray:
         """The quantities, counted in their units, of numbers (..., P); shape (..., Q)."""
         constants = np.array([quantity.constant for quantity in self.quantities])
-        return constants / self.units * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = constants / self.units * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
+        usual = [q.default if isinstance(q.default, float) else np.nan for q in self.quantities]
+        return np.where(np.isnan(found), usual, found)  # the ratio of two zeros is what it is without them
 
     def path(self, place: int, amounts: np.ndarray) -> np.ndarray:
         """How the numbers follow quantity number `place` while the others stay, shape (2, P); see `orbits.machines.path`."""

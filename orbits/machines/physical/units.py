@@ -21,6 +21,7 @@ _KINDS = {
     "J": "energy",
     "m^2": "area",
     "s": "time",
+    "rad": "angle",
 }
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:[^\W\d]|%).*?|)\s*")
 
@@ -103,9 +104,17 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
     if factor is None:
         kind = _KINDS.get(quantity.unit, quantity.unit)
         other = next((name for known, name in _KINDS.items() if size(unit, known) is not None), None)
-        what = f"{unit!r} is the unit of a {other}" if other else f"the unit {unit!r} is not one of a {kind}"
-        raise QuantityError(f"{shown}: {what}, but {quantity.name} is a {kind}; {would}")
+        what = (
+            f"{unit!r} is the unit of {_with_article(other)}"
+            if other
+            else f"the unit {unit!r} is not one of {_with_article(kind)}"
+        )
+        raise QuantityError(f"{shown}: {what}, but {quantity.name} is {_with_article(kind)}; {would}")
     return _finite(quantity, number, shown, would), unit
+
+
+def _with_article(kind: str) -> str:
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
 def unit_of(quantity: Quantity) -> str:
@@ -148,6 +157,8 @@ def check_usual(quantity: Quantity, value: float, shown: str) -> None:
 def _finite(quantity: Quantity, value: float, shown: str, would: str) -> float:
     if not math.isfinite(value):
         raise QuantityError(f"{shown} is not finite; {would}")
+    if quantity.signed:
+        return value
     if value < 0.0 or (value == 0.0 and not quantity.zero):
         rule = "0 or above" if quantity.zero else "above 0"
         raise QuantityError(f"{shown} is out of range; give a value {rule}: {would}")

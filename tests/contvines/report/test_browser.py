@@ -301,6 +301,28 @@ def test_dark_colours_and_print(opened):
     opened.emulate_media(media="screen")
 
 
+@pytest.mark.parametrize("opened", EVERY, indirect=True)
+def test_rows_of_tables_fit_a_narrow_screen(opened):
+    opened.set_viewport_size({"width": 420, "height": 900})
+    opened.wait_for_timeout(300)
+    assert opened.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    right = opened.evaluate(
+        """() => Math.max(...[...document.querySelectorAll("table:not(#chosen) td")].map((cell) => cell.getBoundingClientRect().right))"""
+    )
+    assert right <= 420
+
+
+@pytest.mark.parametrize("opened", EVERY, indirect=True)
+def test_pictures_fit_the_paper(opened):
+    opened.emulate_media(media="print")
+    opened.evaluate("dispatchEvent(new Event('beforeprint'))")
+    wide = "Math.max(...[...document.querySelectorAll('.js-plotly-plot .main-svg')].map((svg) => svg.getBoundingClientRect().width))"
+    assert opened.evaluate(wide) <= 700  # pixels between the margins of a sheet of A4
+    opened.evaluate("dispatchEvent(new Event('afterprint'))")
+    opened.emulate_media(media="screen")
+    opened.wait_for_function(f"{wide} > 800")
+
+
 @pytest.mark.parametrize("name", EVERY)
 def test_every_page_is_small_and_has_no_addresses(name, request):
     text = request.getfixturevalue(name).read_text(encoding="utf-8")

@@ -113,3 +113,23 @@ def test_an_atlas_of_each_machine_is_the_atlas_of_that_machine():
             machine.changed(friction=friction), over="forcing", within=(0.8, 2.0), depth=1, **asked
         )
         assert made["share_LR"][i] == sum(a.share for a in graph.attractors if a.word == "LR") / 2
+
+
+def test_activation_in_a_survey_is_where_the_loci_of_the_chart_are(found):
+    """The points at which impacts begin, followed in the friction to another machine's, are that machine's activation."""
+    from orbits.design import Family
+
+    machine = found.seed.model
+    made = survey(
+        Family(machine, "LR", loose={"forcing": 1.2}), {"friction": [0.1, 0.13]}, over="forcing", within=(0.05, 2.0),
+        outcomes=("activation",), workers=1, depth=2, gaps=0,
+    )  # fmt: skip
+    met = 0
+    for column in made.columns.values():
+        for point in found.graph.special.values():
+            if abs(point.value - column[0]) < 1e-8:
+                locus = cv.locus(point, over="friction", within=(0.1, 0.13))
+                value, friction = locus.values[-1]
+                assert friction == 0.13 and abs(value - column[1]) < 1e-8
+                met += 1
+    assert met == 2

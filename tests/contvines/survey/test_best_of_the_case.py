@@ -1,0 +1,14 @@
+"""The best clearance of the worked case is that of a brute-force scan, here a small one; `tests/benchmarks/best.py` has the large one."""
+
+import numpy as np
+
+from tests.benchmarks.best import chosen, scanned
+
+
+def test_the_best_clearance_is_that_of_a_scan():
+    low, high, count = 13.0, 19.0, 13
+    choice = chosen(low, high, 4, depth=0)
+    places, peaks = scanned(low, high, count, depth=0)
+    least = int(np.nanargmin(peaks))
+    assert abs(choice.values["half_width"] - places[least]) <= places[1] - places[0]
+    assert choice.outcome <= peaks[least] * (1.0 + 1e-3)
