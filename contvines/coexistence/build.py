@@ -9,7 +9,6 @@ import numpy as np
 
 from ..continuation.settings import Settings
 from ..graph.automatic import new_run
-from ..graph.builder import begin, trace_pending, work
 from ..graph.graph import Graph
 from ..graph.run import Progress, Run
 from ..hints import hinting
@@ -17,6 +16,7 @@ from ..interrupts import listening
 from .census import Counted, census
 from .places import scattered, unasked
 from .population import Population, population_of
+from .roots import add_root
 from .windows import Windows
 
 FEW = 16  # starts at each of the further values
@@ -161,11 +161,7 @@ def join(run: Run, found: Sequence[Counted]) -> int:
         label = locate(run, counted)
         if label is None:
             try:
-                begin(run, counted.problem, counted.u, attractor.value)
-                if run.graph.complete:
-                    work(run)
-                else:  # `max_branches` limits what is followed from the roots, not the roots
-                    trace_pending(run, run.queue.pop())
+                add_root(run, counted.problem, counted.u, attractor.value)
             except ValueError as refusal:
                 run.tell(f"a start at {attractor.value:.6g} is left: {refusal}", attractor.value)
                 continue

@@ -16,6 +16,7 @@ from ..journal import NullJournal
 from ..problems.registry import rebuild
 from .census import Counted
 from .population import Population
+from .roots import add_root
 
 MOST = 10_000  # branches traced apart
 
@@ -55,25 +56,22 @@ class Windows:
         for counted in found:
             if counted.state is None:
                 continue
-            for problem, u, p in self._stable(counted):
+            for problem, u, p in self._stable(counted.state, counted.attractor.value):
                 if self.run.register.find(problem, u, p, True) is None:
-                    begin(self.run, problem, u, p)
-                    work(self.run)
+                    add_root(self.run, problem, u, p)
         return len(self.run.graph.branches) - before
 
-    def _stable(self, counted: Counted) -> list[tuple[Any, np.ndarray, float]]:
+    def _stable(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
         """A point of every stable stretch to which the cycles of one chaotic motion lead; kept in the journal."""
-        p = counted.attractor.value
         key = f"windows/{p!r}"
         known = self.run.journal.recall(key)
         parts = [] if known is None else [rebuild(description) for description in known["problems"]]
-        if known is not None and all(
-            part is not None for part in parts
-        ):  # functions of the user's may not be at hand
+        at_hand = all(part is not None for part in parts)  # functions of the user's may not be
+        if known is not None and at_hand:
             return [(problem, known[f"u{k}"], float(known["at"][k])) for k, problem in enumerate(parts)]
         self.run.tell(f"unstable cycles in the chaos at {self.population.parameter} = {p:.6g}", p)
         points = []
-        for problem, u in self.population.embedded(counted.state, p):
+        for problem, u in self.population.embedded(state, p):
             if self.run.register.find(problem, u, p) is None:
                 points += self._traced(problem, u, p)
         record: dict[str, Any] = {
@@ -92,7 +90,7 @@ class Windows:
         try:
             begin(self.apart, problem, u, p)
             work(self.apart)
-        except ValueError:  # it is real only within rounding
+        except ValueError:  # it is real within rounding only
             return []
         new = [branch for label, branch in self.apart.graph.branches.items() if label not in known]
         return [

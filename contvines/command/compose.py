@@ -116,7 +116,12 @@ def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
     """The automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
     import contvines
 
-    asked = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
+    asked = {
+        "depth": study.depth,
+        "virtual": study.virtual,
+        "settings": study.settings,
+        "bounds": study.bounds,
+    }
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 

@@ -1,10 +1,42 @@
-"""The axes that a user asks for, checked before any work."""
+"""The axes and bounds that a user asks for, checked before any work."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from contvines.command.study import Study
+
+
+def check_bounds(study: "Study", command: str) -> None:
+    """Refuse bounds on measures that the study's machine does not have, and intervals that are none.
+
+    Raises
+    ------
+    ValueError
+        With a sentence that names the measure and what would do.
+    """
+    if not study.bounds:
+        return
+    if command == "atlas":
+        raise ValueError(
+            "[continue] bounds: an atlas follows all that it meets to its end; leave them out, or use contvines diagram."
+        )
+    from contvines.command.compose import machine
+    from contvines.hints import did_you_mean
+    from orbits.cycles.measures import names
+
+    known = names(machine(study))
+    for name, (low, high) in study.bounds.items():
+        if name not in known:
+            raise ValueError(
+                f"[continue] bounds: there is no measure {name!r}{did_you_mean(name, known)}; "
+                f"choose one of {', '.join(known)}."
+            )
+        if not low < high:
+            raise ValueError(
+                f"[continue] bounds: {name} = [{low:g}, {high:g}] is no interval; "
+                f"low < high would do, -inf or inf where there is no bound."
+            )
 
 
 def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -> None:

@@ -150,6 +150,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
         "atlas": file.atlas,
         "chart": file.chart,
         "survey": file.survey,
+        "bounds": {name: (low, high) for name, (low, high) in go.bounds.items()},
         "machine": machine,
         "loose": {**machine.parameters, **given},
         "state": file.start.state,

@@ -168,11 +168,12 @@ def _run(
         run_diagram,
         say,
     )
-    from contvines.command.measures import check_axes
+    from contvines.command.measures import check_axes, check_bounds
     from contvines.store import Store
 
     study = checked_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
+    check_bounds(study, command)
     check_compared(compare, plot is not None)
     target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)

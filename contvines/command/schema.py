@@ -73,8 +73,11 @@ class StartSection(Section):
     guess: list[list[float]] | None = None
 
 
+Unbounded = Annotated[float, Field(allow_inf_nan=True)]
+
+
 class ContinueSection(Section):
-    """`[continue]`: the parameter, its interval and how far to go."""
+    """`[continue]`: the parameter, its interval and how far to go; measures within whose bounds branches stay."""
 
     parameter: str
     within: Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -85,6 +88,7 @@ class ContinueSection(Section):
     max_step: Annotated[float, Field(gt=1e-9, le=0.5)] | None = None
     max_points: Annotated[int, Field(ge=1)] | None = None
     max_branches: Annotated[int, Field(ge=1)] | None = None
+    bounds: dict[str, Annotated[list[Unbounded], Field(min_length=2, max_length=2)]] = {}
 
 
 class SweepSection(Section):

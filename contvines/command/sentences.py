@@ -32,6 +32,7 @@ WOULD_DO = {
     "max_step": "a number in (1e-9, 0.5], a share of the interval, for example 0.03",
     "max_points": "a whole number >= 1, for example 20000",
     "max_branches": "a whole number >= 1, for example 200",
+    "bounds": "two numbers for each measure, for example bounds = { B = [-inf, 3.0] }",
     "count": "a whole number >= 2 and <= 1000000, for example 400",
     "transient": "a whole number of forcing periods from 0 to 1000000, for example 200",
     "vary": 'names and their values, for example half_width = ["10 mm", "15 mm"]',

@@ -52,6 +52,7 @@ class Study:
     parameters : every parameter of the model at the start, by name.
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
+    bounds : (low, high) of measures at which branches end; infinite where there is none.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep, atlas : settings of the brute-force sweep and of the atlas.
     chart : second parameter and its interval, of a chart.
@@ -81,6 +82,7 @@ class Study:
     state: dict[str, float] | None = None
     quantities: dict[str, Any] | None = None
     survey: SurveySection = field(default_factory=SurveySection)
+    bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -98,6 +100,12 @@ class Study:
                 "depth": self.depth,
                 "virtual": self.virtual,
                 "settings": self.settings,
+                # as text: JSON has no infinity
+                **(
+                    {"bounds": {k: [repr(end) for end in v] for k, v in self.bounds.items()}}
+                    if self.bounds
+                    else {}
+                ),
             },
         }
 
@@ -297,6 +305,7 @@ def _study(
         chart=file.chart,
         quantities=quantities,
         survey=file.survey,
+        bounds={name: (low, high) for name, (low, high) in go.bounds.items()},
     )
 
 

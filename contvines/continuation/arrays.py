@@ -15,10 +15,11 @@ from .lengths import Metric
 
 def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -> float:
     """Largest entry of a correction, relative to scale + abs(unknown); infinity where it is not finite."""
-    part = step[:-1] / (metric.scale[:-1] + np.abs(u))
-    size = max(
-        float(np.maximum.reduce(np.abs(part))), abs(float(step[-1])) / (float(metric.scale[-1]) + abs(p))
-    )
+    part = np.abs(u)
+    part += metric.scale[:-1]
+    np.divide(step[:-1], part, out=part)
+    size = float(np.maximum.reduce(np.abs(part, out=part)))
+    size = max(size, abs(float(step[-1])) / (float(metric.scale[-1]) + abs(p)))
     return size if size - size == 0.0 else math.inf
 
 
@@ -29,7 +30,7 @@ def add(u: np.ndarray, step: np.ndarray) -> None:
 
 def remainder(border: np.ndarray, u: np.ndarray, p: float, target: float) -> float:
     """See lengths."""
-    return target - border[-1] * p - float(border[:-1] @ u)
+    return target - float(border[-1]) * p - float(border[:-1] @ u)
 
 
 def fix_parameter(border: np.ndarray) -> None:
@@ -47,7 +48,7 @@ def plane(
 ) -> float:
     """See lengths."""
     np.multiply(metric.weights, tangent, out=border)
-    return float(border[:-1] @ u) + border[-1] * p
+    return float(border[:-1] @ u) + float(border[-1]) * p
 
 
 def compare(
@@ -63,7 +64,7 @@ def compare(
     weighted = metric.weights * tangent
     norm = math.sqrt(float(weighted @ tangent))
     gap = u - guess_u
-    error = math.sqrt(float((metric.weights[:-1] * gap) @ gap) + metric.of_parameter * (p - guess) ** 2)
+    error = math.sqrt(float((gap * metric.weights[:-1]) @ gap) + metric.of_parameter * (p - guess) ** 2)
     return norm, float(weighted @ before) / norm, error
 
 
@@ -112,21 +113,24 @@ def extrapolate(
     u: np.ndarray,
 ) -> float:
     """See lengths."""
-    here, value = tangents[i - 1], values[i - 1]
+    here, value, point = tangents[i - 1], float(values[i - 1]), points[i - 1]
     if i >= 2:
         there = tangents[i - 2]
-        chord, bend = points[i - 1] - points[i - 2], here - there
-        change = value - values[i - 2]
+        chord, bend = point - points[i - 2], here - there
+        change = value - float(values[i - 2])
         turn = float((metric.weights * bend) @ bend)
-        d = math.sqrt(float((metric.weights[:-1] * chord) @ chord) + metric.of_parameter * change**2) * (
-            1.0 + turn / 24.0
-        )
+        square = float((metric.weights[:-1] * chord) @ chord) + metric.of_parameter * change**2
+        d = math.sqrt(square) * (1.0 + turn / 24.0)
         if d > 0.0 and turn < 1.0 and h < 4.0 * d:
             share = h / d
             a = h * (1.0 + 2.0 * share + share * share)
             b = h * (share + share * share)
             c = h * (3.0 * share + 2.0 * share * share) / d
-            u[:] = points[i - 1] + a * here[:-1] + b * there[:-1] - c * chord
-            return value + a * here[-1] + b * there[-1] - c * change
-    u[:] = points[i - 1] + h * here[:-1]
-    return value + h * here[-1]
+            chord *= -c
+            chord += point
+            way = a * here
+            way += np.multiply(there, b, out=bend)
+            np.add(chord, way[:-1], out=u)
+            return value - c * change + float(way[-1])
+    np.add(point, h * here[:-1], out=u)
+    return value + h * float(here[-1])

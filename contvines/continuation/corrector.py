@@ -77,7 +77,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
     if sweep > 1 and size > 2.0 * before and size > max(STALLED, 10.0 * noise):
         return p, size, -1
     add(u, step)
-    p += step[u.shape[0]]
+    p += float(step[u.shape[0]])
     if size <= max(min(SMALL, tolerance), noise):
         return p, size, 1
     if sweep > 0:
@@ -87,7 +87,8 @@ def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
             return p, size, 1
         if size <= STALLED and ratio > 0.3 and residual < 1e-9:
             return p, size, 1
-        if size <= min(tolerance, 30.0 * noise) and ratio > 0.1:
+        # corrections that are noise do not shrink, whatever the tolerance
+        if size <= 30.0 * noise and ratio > 0.1:
             return p, size, 1
     return p, size, 0
 

@@ -144,7 +144,7 @@ def _march(
     engine.control[source.MAX_STEP] = longest
     # an interpreted loop is faster with Python's own numbers
     control: Any = engine.control if engine.problem.kernels.compiled else engine.control.tolist()
-    with engine.section:
+    with engine.section, np.errstate(all="ignore"):
         filled, h, status = engine.bound.march(
             engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch
         )

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Nearing
+from .blur import blurred
 from .borders import find_border
-from .determinant import DeterminantTest
+from .determinant import DeterminantTest, passes, turned
 from .limits import one_sided
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
@@ -57,7 +58,8 @@ class Examiner:
         problem = engine.problem
         self.kind = engine.detection
         # of problems without scales of their own, machines, branches of this sort are not known
-        self.exchanges = problem.scales is not None and self.kind != "none"
+        self.scaled = problem.scales is not None
+        self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
         self.many = isinstance(problem, Nearing) and problem.many
         self.symmetries = [
@@ -92,6 +94,13 @@ class Examiner:
         discarded = False
         crossings: list[Located] = []
         before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
+        # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
+        rounded = self.scaled and int(after[0] - before[0]) % 2 != turned(a, b)
+        if abs(int(after[0] - before[0])) == 1 and self.scaled:
+            # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
+            one_fold = len(folds) == 1 and a.sign * b.sign > 0.0
+            if one_fold or (rounded and not passes(segment, 0.5, 0.5 + BESIDE)):
+                after = np.array([before[0], *after[1:]])
         for column, name in enumerate(NAMES):
             low, high = sorted((int(before[column]), int(after[column])))
             for k in range(low + 1, high + 1):
@@ -101,15 +110,15 @@ class Examiner:
                     discarded = True
                     continue
                 if name != "plus":
-                    crossings.append(self._located(root, self._kind(name), k))
-                elif abs(test(root.point)) > REACHED:
+                    crossings.append(blurred(segment, self._located(root, self._kind(name), k), test))
+                elif abs(test(root.point)) > REACHED or self._complex(root.point):
                     continue  # two real multipliers met and left the axis; none of them was at the boundary
                 elif not _near(root.position, [e.position for e in folds] + met):
                     if self._turns_back(segment, root):
                         folds.append(self._located(root, "fold", 0))
                     elif self._regular(root.point):
                         folds.append(self._located(root, "astray", 0))
-                    else:
+                    elif not rounded or passes(segment, root.position):
                         crossings.append(self._located(root, "branch-point", k))
         for fold in folds:
             crossings += self._around(segment, fold, before, after)
@@ -149,10 +158,10 @@ class Examiner:
         if rough is None:
             return None
         count = counts(self.engine.spectrum(rough.point.row[None, :]), self.kind)[0, 0]
-        if (
-            max(abs(self._multiplier("plus", max(int(count), 1))(rough.point)), abs(test(rough.point)))
-            > REACHED
-        ):
+        inner = abs(self._multiplier("plus", max(int(count), 1))(rough.point))
+        if abs(test(rough.point)) > REACHED or (self.kind != "real" and inner > REACHED):
+            return None
+        if self._complex(rough.point):
             return None
         root = locate_singular(segment, test, rough.position) or rough
         return self._located(root, "branch-point", 0)
@@ -177,6 +186,10 @@ class Examiner:
                         event = self._located(root, self._kind(name), k)
                         found.append(event._replace(position=start + length * root.position))
         return found
+
+    def _complex(self, point: Solved) -> bool:
+        """Whether it was a pair that passed the axis, where only branch points are looked for."""
+        return self.kind == "real" and bool(np.abs(self.engine.spectrum(point.row)).min() > REACHED)
 
     def _kind(self, name: str) -> str:
         if name == "minus":
@@ -252,7 +265,8 @@ class Examiner:
                 width=min([0.2, *(0.4 * gap for gap in others)]),
             )
             for event in group:
-                result.append(event if root is None else self._located(root, event.kind, event.index))
+                found = event if root is None else self._located(root, event.kind, event.index)
+                result.append(blurred(segment, found, self._multiplier("plus", event.index)))
         return result
 
     def _determinant(self, segment: Segment) -> Root | None:

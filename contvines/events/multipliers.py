@@ -19,8 +19,8 @@ LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbou
 def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
     """How many multipliers are past the circle: real > 1, real < -1, complex pairs outside; shape (n, 3).
 
-    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part; where only branch points are looked
-    for ("real"), the first of these.
+    For flows: real eigenvalues > 0, nothing, complex pairs with positive real part. Where only branch points are looked for
+    ("real"): eigenvalues with positive real part, so that a double one, which rounding makes a pair or two, counts twice either way.
     """
     result = np.zeros((len(spectrum), 3), dtype=np.int64)
     if spectrum.size <= FEW:
@@ -39,7 +39,7 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
             upper & (np.abs(spectrum) > 1.0 + PAST),
         )
     elif kind == "real":
-        columns = (real & (spectrum.real > PAST),)
+        columns = (spectrum.real > PAST,)
     elif kind == "flow":
         columns = (real & (spectrum.real > PAST), np.zeros_like(real), upper & (spectrum.real > PAST))
     else:
@@ -52,9 +52,11 @@ def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
 
 def _past(one: complex, kind: str) -> int | None:
     """The column of `counts` to which a multiplier belongs."""
+    if kind == "real":
+        return 0 if one.real > PAST else None
     if one.imag == 0.0:
         if one.real > (1.0 + PAST if kind == "map" else PAST):
-            return 0 if kind in ("map", "flow", "real") else None
+            return 0 if kind in ("map", "flow") else None
         return 1 if kind == "map" and one.real < -1.0 - PAST else None
     if one.imag > 0.0 and ((kind == "map" and abs(one) > 1.0 + PAST) or (kind == "flow" and one.real > PAST)):
         return 2
@@ -66,6 +68,8 @@ def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> 
     own: list[complex] = spectrum.tolist()
     if name == "pair":
         values = [abs(one) if kind == "map" else one.real for one in own if one.imag > 0.0]
+    elif kind == "real":
+        values = [one.real for one in own]
     else:
         values = [-one.real if name == "minus" else one.real for one in own if one.imag == 0.0]
     if len(values) < k:

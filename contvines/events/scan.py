@@ -111,7 +111,7 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
                 else:
                     pairs += im > 0.0 and re > PAST
             elif kind == REAL:
-                plus += im == 0.0 and re > PAST
+                plus += re > PAST
         before_that, before = before, damping
         if kind == MAP:
             damping = -math.log(outermost) if outermost > 0.0 else np.inf

@@ -93,7 +93,7 @@ def _past(re: np.ndarray, im: np.ndarray, kind: int) -> tuple[np.ndarray, np.nda
         outermost = np.fmax.reduce(modulus, axis=1, initial=-np.inf)
         return counts, np.where(outermost > 0.0, -np.log(outermost), np.inf)
     if kind in (FLOW, REAL):
-        counts[0] = np.count_nonzero(single & (re > PAST), axis=1)
+        counts[0] = np.count_nonzero((single | (kind == REAL)) & (re > PAST), axis=1)
     if kind == FLOW:
         counts[2] = np.count_nonzero((im > 0.0) & (re > PAST), axis=1)
         return counts, -np.fmax.reduce(re, axis=1, initial=-np.inf)

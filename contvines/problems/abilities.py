@@ -102,6 +102,13 @@ class Provable(Protocol):
 
 
 @runtime_checkable
+class Blurred(Protocol):
+    """Tells by how much rounding of its linearisation moves a raw eigenvalue."""
+
+    def blur(self, work: Any) -> float: ...
+
+
+@runtime_checkable
 class Nearing(Protocol):
     """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`."""
 

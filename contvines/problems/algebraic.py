@@ -12,6 +12,7 @@ from .callables import CallableProblem
 from .colouring import Colouring
 from .conditions import Conditions
 from .derivatives import Differentiated
+from .functions import readonly
 from .images import image_map, images_of, smallest_image
 from .nearness import NEAREST
 from .outputs import Outputs
@@ -21,7 +22,7 @@ from .protocol import Seed, Symmetry
 from .registry import addresses, find_callables
 from .scales import given_scale
 from .simulated import SimulatedFlow
-from .spectra import WATCHED, reference_of, vectors_of, watched, without_roundoff
+from .spectra import WATCHED, reference_of, rounding, vectors_of, watched, without_roundoff
 
 ALL_ZERO = np.zeros(NEAREST, dtype=complex)
 
@@ -189,7 +190,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
 
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, Any, np.ndarray]:
         """F, dF/du, dF/dp."""
-        f = self.functions
+        f, u = self.functions, readonly(u)
         if self.preconditioner is not None:
             self.inverse = self.preconditioner(u, self.values.at(p))
         if self.conditions is not None:
@@ -223,6 +224,13 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         if self.conditions is not None:
             return self.conditions.eigenvalues(work.jacobian)
         return without_roundoff(np.linalg.eigvals(work.jacobian))
+
+    def blur(self, work: Any) -> float:
+        """By how much rounding moves a raw eigenvalue."""
+        if self.functions.structure == "operator":
+            return 0.0
+        rate, matrix = 1.0 if self.scales is None else self.scales.rate, work.jacobian
+        return rounding(matrix[: self.node, : self.node], self.sizes()[1][: self.node]) / rate
 
     def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
         """Eigenvectors of dF/du as columns, in the order of eigenvalues that are known (inverse iteration where it is sparse)."""

@@ -23,8 +23,8 @@ class DenseWork(NamedTuple):
     """F, F_u, F_p, and room for the bordered matrix with its right-hand sides.
 
     F_u and F_p are parts of ``system``, whose last row is zero. ``image`` is the solution of a third right-hand side where one is
-    watched, in units of the scales: it tells how near the matrix is to a singular one. ``flat``, ``column``, ``inner``, ``first`` and
-    ``diagonal`` are views.
+    watched, in units of the scales: it tells how near the matrix is to a singular one. ``flat``, ``last``, ``column``, ``inner``,
+    ``first``, ``second``, ``image`` and ``diagonal`` are views. Solutions take the place of the right-hand sides.
     """
 
     residual: np.ndarray
@@ -33,9 +33,11 @@ class DenseWork(NamedTuple):
     system: np.ndarray
     flat: np.ndarray
     matrix: np.ndarray
+    last: np.ndarray
     diagonal: np.ndarray
     sides: np.ndarray
     first: np.ndarray
+    second: np.ndarray
     sizes: np.ndarray
     rows: np.ndarray
     column: np.ndarray
@@ -58,15 +60,17 @@ def dense_workspace(n: int, watched: bool = False) -> DenseWork:
         system=system,
         flat=system.T.reshape(-1),
         matrix=matrix,
+        last=matrix[-1],
         diagonal=matrix.T.reshape(-1)[:: size + 1],
         sides=sides,
         first=sides[:n, 0],
+        second=sides[:n, 1],
         sizes=np.zeros((size, size), order="F"),
         rows=rows,
         column=rows[:, None],
         inner=rows[:n],
-        image=np.zeros(size),
-        order=np.arange(size),
+        image=sides[:, -1],
+        order=np.arange(size, dtype=np.int32),
         ones=np.ones(size * size),
         parts=np.zeros(n),
     )
@@ -113,27 +117,26 @@ def bordered(
     sides, rows = work.sides, work.rows
     scales = data.scales
     units = None if scales is None else scales.vector
-    with np.errstate(all="ignore"):
-        matrix = _equilibrated(work, border, units)
-        # F and -n: the solution is -x
-        np.divide(work.residual, work.inner, out=work.first)
-        last = float(rows[size])
-        sides[size, 0], sides[size, 1] = -n / last, 1.0 / last
-        if sides.shape[1] > 2:
-            np.divide(data.side, rows, out=sides[:, 2])
-        _, pivots, solution, singular = FACTORISE_AND_SOLVE(matrix, sides, overwrite_a=1)
-        if not singular:
-            odd = np.count_nonzero(work.diagonal < 0.0) + np.count_nonzero(pivots != work.order)
-            sign = -1.0 if odd % 2 else 1.0
-        else:
-            solution, sign = _least(_equilibrated(work, border, units), sides), 0.0
-        np.negative(solution[:, 0], out=step)
-        tangent[:] = solution[:, 1]
-        if units is not None:
-            step *= units
-            tangent *= units
-        if sides.shape[1] > 2:
-            work.image[:] = solution[:, 2]
+    matrix = _equilibrated(work, border, units)
+    # F and -n: the solution is -x
+    np.divide(work.residual, work.inner, out=work.first)
+    work.second[:] = 0.0
+    last = float(rows[size])
+    sides[size, 0], sides[size, 1] = -n / last, 1.0 / last
+    if sides.shape[1] > 2:
+        np.divide(data.side, rows, out=work.image)
+    _, pivots, _, singular = FACTORISE_AND_SOLVE(matrix, sides, overwrite_a=1, overwrite_b=1)
+    if not singular:
+        odd = np.count_nonzero(work.diagonal < 0.0) + np.count_nonzero(pivots != work.order)
+        sign = -1.0 if odd % 2 else 1.0
+    else:
+        sides[:], sign = _least(_equilibrated(work, border, units), sides), 0.0
+    if scales is None or units is None:
+        np.negative(sides[:, 0], out=step)
+        tangent[:] = sides[:, 1]
+    else:
+        np.multiply(sides[:, 0], scales.negative, out=step)
+        np.multiply(sides[:, 1], units, out=tangent)
     return sign
 
 
@@ -143,7 +146,8 @@ def _least(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
         return np.full(sides.shape, np.nan)
     left, values, right = np.linalg.svd(matrix)
     values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
-    return right.T @ ((left.T @ sides) / values[:, None])
+    with np.errstate(all="ignore"):
+        return right.T @ ((left.T @ sides) / values[:, None])
 
 
 def _equilibrated(work: DenseWork, border: np.ndarray, units: np.ndarray | None) -> np.ndarray:
@@ -151,10 +155,10 @@ def _equilibrated(work: DenseWork, border: np.ndarray, units: np.ndarray | None)
     matrix, rows = work.matrix, work.rows
     if units is None:
         matrix[:] = work.system
-        matrix[-1] = border
+        work.last[:] = border
     else:
         np.multiply(work.system, units, out=matrix)
-        np.multiply(border, units, out=matrix[-1])
+        np.multiply(border, units, out=work.last)
     np.abs(matrix, out=work.sizes)
     np.maximum.reduce(work.sizes, axis=1, out=rows)
     if np.count_nonzero(rows) != len(rows):

@@ -92,6 +92,7 @@ class Differentiated:
             value = self.checked_value(u, p)
             cost = min(cost, thread_time() - begin)
         self.noise, self.errors, self.complex_step = np.zeros(n), np.zeros(n), False
+        self.exact = np.zeros(n)  # errors of a given Jacobian
         self.grain = np.zeros(n)
         self.parameter_lengths: dict[str, float] = {}
         self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
@@ -179,7 +180,7 @@ class Differentiated:
         """df/du, shape (n, n), as an array, or as it was given if that is sparse or a LinearOperator."""
         n = len(u)
         if self.given_matrix is not None:
-            self.errors = np.zeros(n)
+            self.errors = self.exact
             return as_matrix(self.given_matrix.raw(u, p), n)
         if self.sparsity is not None and not self.rows:
             return self._coloured(self.sparsity, u, p)

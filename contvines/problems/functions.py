@@ -16,6 +16,13 @@ class NotEvaluable(ArithmeticError):
     """A user's function could not be evaluated; the message is a sentence with the function's own words."""
 
 
+def readonly(u: np.ndarray) -> np.ndarray:
+    """The array as a user's function sees it: it cannot be changed."""
+    view = u.view()
+    view.setflags(write=False)
+    return view
+
+
 class UserFunction:
     """f(u, p) of a user: sees a read-only u, and what it returns is copied.
 
@@ -39,10 +46,8 @@ class UserFunction:
         NotEvaluable
             If f raises anything but an interrupt.
         """
-        view = u.view()
-        view.setflags(write=False)
         try:
-            return self.f(view, self.parameters.at(p))
+            return self.f(readonly(u) if u.flags.writeable else u, self.parameters.at(p))
         except Exception as error:
             hint = ""
             if isinstance(error, ValueError) and "read-only" in str(error):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from scipy.linalg import matrix_balance
 
 REAL = (
     1e-9  # an imaginary part below this part of the largest eigenvalue is roundoff: a double real eigenvalue
@@ -17,6 +20,21 @@ def without_roundoff(values: np.ndarray) -> np.ndarray:
     values = np.asarray(values, dtype=complex)
     tiny = np.abs(np.imag(values)) <= REAL * np.abs(values).max(initial=0.0)
     return np.where(tiny, np.real(values) + 0.0j, values)
+
+
+def rounding(matrix: Any, units: np.ndarray) -> float:
+    """By how much rounding of the entries of a matrix moves its eigenvalues, if these are well conditioned.
+
+    Half a unit in the last place of the largest sum of a row, in the units of the unknowns or as they are, or, of an array, as LAPACK
+    balances it: each is a similarity, so the smallest counts. Entries of stiff fields (D/h^2) are much larger than the eigenvalues
+    next to the axis, whose digits they take.
+    """
+    sizes = abs(matrix)
+    sums = [float((sizes @ units / units).max()), float(np.asarray(sizes.sum(axis=1)).max())]
+    if isinstance(matrix, np.ndarray):
+        balanced = np.asarray(matrix_balance(matrix, permute=False)[0])
+        sums.append(float(np.abs(balanced).sum(axis=1).max()))
+    return 2.0**-53 * min(sums)
 
 
 def vectors_of(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:

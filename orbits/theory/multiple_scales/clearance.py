@@ -57,8 +57,8 @@ class TunedBackbone:
 class BestClearance:
     """The largest half-width that is still entered at resonance; fields as of `TunedBackbone`.
 
-    `reduction` is ``q/q_lin``: what is left of the linear peak. `interior` is false where the maximum lies at the end of the
-    attracting part (`SlowFlow.symmetry_limit`), because damping of its own makes up most of the oscillator's.
+    `reduction` is ``q/q_lin``: what is left of the linear peak. `interior` is false where the ratio has no maximum inside the attracting
+    part and its largest value, at an end, is taken.
     """
 
     velocity: float
@@ -99,7 +99,7 @@ def tuned_backbone(flow: SlowFlow, velocity: ArrayLike | None = None) -> TunedBa
 
 
 def best_clearance(flow: SlowFlow) -> BestClearance:
-    """The maximum of ``b/q_lin`` on the attracting part of the manifold.
+    """The maximum of ``b/q_lin`` inside the attracting part of the manifold, from where it falls to either side.
 
     Parameters
     ----------
@@ -114,14 +114,15 @@ def best_clearance(flow: SlowFlow) -> BestClearance:
     _check(flow)
     places = np.linspace(float(flow.activation.velocity), float(flow.symmetry_limit.velocity), PLACES)
     force, slope = _held(flow, places)[0::3]
-    least = int(np.argmin(force))
-    low, high = max(least - 1, 0), min(least + 1, PLACES - 1)
-    interior = slope[low] < 0.0 < slope[high]
-    best: Any = (
-        brentq(lambda b: float(_held(flow, np.asarray(b))[3]), places[low], places[high], xtol=1e-15)
-        if interior
-        else float(places[least])
-    )
+    turns = np.flatnonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
+    interior = turns.size > 0
+    if interior:
+        k = int(turns[np.argmin(force[turns])])
+        best: Any = brentq(
+            lambda b: float(_held(flow, np.asarray(b))[3]), places[k], places[k + 1], xtol=1e-15
+        )
+    else:
+        best = places[int(np.argmin(force))]
     found = tuned_backbone(flow, best)
     return BestClearance(
         float(best), float(found.amplitude), float(found.ratio), float(found.frequency), bool(interior)

@@ -4,7 +4,8 @@ from itertools import islice
 
 import pytest
 
-from tests.contvines.problems.fuzz import suitable
+import contvines as cv
+from tests.contvines.problems.fuzz import System, suitable
 
 
 @pytest.mark.parametrize(("seed", "system"), list(islice(suitable(0), 12)), ids=lambda value: str(value)[:6])
@@ -17,3 +18,18 @@ def test_an_unknown_that_rounding_has_moved_from_zero_has_no_scale():
     seed, system = next(iter(suitable(5058)))
     assert seed == 5058
     assert system.wrong() == []
+
+
+def test_a_double_eigenvalue_that_rounding_parts_is_no_event():
+    # det F_u is the same all along and both eigenvalues relative to the start's are 1; a pair or two real ones, by rounding
+    assert System(5131).wrong() == []
+
+
+def test_rounding_of_a_badly_conditioned_matrix_is_no_branch_point():
+    # x = -3 / (3 p^2 + p), hidden behind matrices whose entries grow like x while their determinant is 3 p^2 + p
+    p0 = -1.0 / 6.0
+    system = System(5592)
+    u0 = system.unknowns(-3.0 / (3.0 * p0**2 + p0), p0)
+    graph = cv.diagram(cv.AlgebraicProblem(system.F, u0, p0, scale=[500.0, 1000.0]), within=(-0.3, -0.0004))
+    assert {s.kind for s in graph.special.values()} == {"end"}
+    assert len(graph) == 1

@@ -230,11 +230,11 @@ def test_a_start_far_from_any_solution_is_refused():
         cv.diagram(problem, within=(0.0, 2.0))
 
 
-def noisy(sigma):
+def noisy(sigma, draw=0):
     """p = u^2 with noise that does not repeat: a hash of the argument."""
 
     def F(u, p):
-        number = 43758.5453 * np.sin(1e7 * u[0] + 3e7 * p)
+        number = 43758.5453 * np.sin((1e7 + 17 * draw) * u[0] + 3e7 * p)
         return [p - u[0] ** 2 + sigma * (2.0 * (number - np.floor(number)) - 1.0)]
 
     return F
@@ -243,15 +243,23 @@ def noisy(sigma):
 @pytest.mark.parametrize(
     "F",
     [lambda u, p, s=s: [np.round((p - u[0] ** 2) / s) * s] for s in (1e-8, 1e-6, 1e-5)]
-    + [noisy(1e-8), noisy(1e-6)],
-    ids=["stairs 1e-8", "stairs 1e-6", "stairs 1e-5", "noise 1e-8", "noise 1e-6"],
+    + [noisy(1e-8), noisy(1e-6), *(noisy(1e-5, draw) for draw in range(4))],
+    ids=[
+        "stairs 1e-8",
+        "stairs 1e-6",
+        "stairs 1e-5",
+        "noise 1e-8",
+        "noise 1e-6",
+        *(f"noise 1e-5, {k}" for k in range(4)),
+    ],
 )
 def test_stated_errors_are_those_that_noise_allows(F):
-    """The fold of p = u^2 at 0; both sides of it are reached."""
+    """The fold of p = u^2 at 0, and nothing beside it; both sides of it are reached."""
     graph = cv.diagram(cv.AlgebraicProblem(F, [1.0], 1.0), within=(-1.0, 1.5), depth=0)
     assert all("end of the interval" in said for said in graph["B1"].ended)
     (fold,) = graph.of_kind("fold")
     assert abs(fold.value) <= fold.location_error < 3e-4
+    assert not graph.of_kind("branch-point")
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.01, 0.001])

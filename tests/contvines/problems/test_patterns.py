@@ -108,6 +108,7 @@ def test_oscillations_of_a_brusselator_on_a_line():
     points = graph.of_kind("hopf")
     assert [point.value for point in points] == pytest.approx(exact, rel=1e-10)
     for point, wave, b in zip(points, waves, exact):
+        assert abs(point.value - b) <= point.location_error < 1e-10
         square = (b - 1.0 - D * wave) * (-(A**2) - D * wave) + A**2 * b
         assert point.frequency == pytest.approx(np.sqrt(square), rel=1e-8)
     assert not graph.of_kind("branch-point")

@@ -1,0 +1,25 @@
+"""A root of its own on a graph that has others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..graph.builder import begin, trace_pending, work
+from ..graph.run import Run
+
+
+def add_root(run: Run, problem: Any, u: np.ndarray, p: float) -> None:
+    """Trace a solution with all that leaves it; alone where `max_branches`, which limits no roots, is reached.
+
+    Raises
+    ------
+    ValueError
+        If it is no start; see :func:`contvines.graph.builder.begin`.
+    """
+    begin(run, problem, u, p)
+    if run.graph.complete:
+        work(run)
+    else:
+        trace_pending(run, run.queue.pop())

@@ -1,0 +1,309 @@
+"""Is every attractor that brute force finds on the atlas? The brute force is `witness.c`, which shares nothing with the package.
+
+``python -m tests.contvines.coexistence.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
+``python -m tests.contvines.coexistence.truth frequency``      the coupled machine, 40 frequencies, two forcings
+``python -m tests.contvines.coexistence.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``)
+"""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import contvines as cv
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+from orbits import Absorber, Cavity, Coupled
+
+TWO_PI = 2.0 * np.pi
+SAME = 2e-6  # difference of phases and velocities of impacts
+SIGMAS = 3.0
+NEAR = 0.01  # of the interval: so near an attractor of the atlas must be named that does not recur
+
+
+@dataclass
+class Met:
+    """What the witness has met at one value: (periods, impacts, starts, impacts' wall, phase and B) of each attractor."""
+
+    value: float
+    attractors: list[tuple[int, int, int, np.ndarray]]
+    stuck: int
+    wandering: int
+    chaotic: int
+
+
+@dataclass
+class Tally:
+    """What of it is on an atlas, and how the starts' shares compare."""
+
+    met: int = 0
+    missing: int = 0
+    share: float = 0.0
+    missing_share: float = 0.0
+    unnamed: int = 0
+    compared: int = 0
+    apart: int = 0
+
+    def __add__(self, other: Tally) -> Tally:
+        return Tally(*(a + b for a, b in zip(vars(self).values(), vars(other).values(), strict=True)))
+
+    def __str__(self) -> str:
+        return (
+            f"{self.met - self.missing} of {self.met} attractors, {1.0 - self.missing_share / max(self.share, 1e-300):.4%} of starts, "
+            f"{self.unnamed} wandering values without a name; {self.apart} of {self.compared} shares beyond {SIGMAS:g} sigma"
+        )
+
+
+@cache
+def compiled() -> str:
+    """Path of the compiled witness."""
+    target = Path(tempfile.mkdtemp()) / "witness"
+    source = Path(__file__).with_name("witness.c")
+    subprocess.run(["gcc", "-O3", "-o", str(target), str(source), "-lm"], check=True)
+    return str(target)
+
+
+def witness(
+    machine: Any,
+    over: str,
+    values: Sequence[float],
+    starts: int,
+    seed: int = 1,
+    transient: float = 200.0,
+    tries: int = 5,
+) -> list[Met]:
+    """Starts drawn at random from the box of the machine's own, simulated until they recur."""
+    lines = [f"{int(isinstance(machine, Coupled))} {starts} {seed}"]
+    box = machine.population(over).box
+    lines += [" ".join(map(repr, _numbers(machine, over, float(p), box(p)))) for p in values]
+    text = subprocess.run(
+        [compiled(), str(transient), "1e-8", str(tries)],
+        input="\n".join(lines),
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    rows = iter(text.splitlines())
+    met = []
+    for row, p in zip(rows, values, strict=False):
+        count, stuck, wandering, chaotic = map(int, row.split()[2:])
+        found = []
+        for _ in range(count):
+            cells = next(rows).split()
+            periods, hits, _, number = map(int, cells[:4])
+            found.append((periods, hits, number, np.array(cells[6:], dtype=float).reshape(-1, 3)))
+        met.append(Met(float(p), found, stuck, wandering, chaotic))
+    return met
+
+
+def _numbers(machine: Any, over: str, p: float, box: np.ndarray) -> list[float]:
+    """A line for the witness; the formulas are those of the machine's documentation."""
+    of = {
+        n: float(x)
+        for n, x in zip(machine.parameter_names, machine.vector_at(over, p, {over: p}), strict=True)
+    }
+    rate = float(box[2, 1])
+    if isinstance(machine, Coupled):
+        names = ("forcing", "frequency", "damping", "mass_ratio", "restitution", "friction", "gravity")
+        return [of.get("excitation", 0.0), *(of[n] for n in names), rate, float(box[3, 1])]
+    weight = (1.0 + of["mass_ratio"]) * of["gravity"]
+    if isinstance(machine, Absorber):
+        r, a = of["restitution"], weight * of["friction"]
+        return [of["amplitude"], r, r, a, a, 0.0, of["frequency"], 1.0, 1.0, rate]
+    level, along = weight * math.cos(of["slope"]), weight * math.sin(of["slope"])
+    frictions = [level * of["friction_left"], level * of["friction_right"]]
+    restitutions = [of["restitution_left"], of["restitution_right"]]
+    distances = [of["distance_left"], of["distance_right"]]
+    return [of["amplitude"], *restitutions, *frictions, along, of["frequency"], *distances, rate]
+
+
+def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any = print) -> Tally:
+    """Look for everything that was met on a stable real branch of a graph."""
+    tally, engines = Tally(), {}
+    low, high = graph.within
+    for here in met:
+        stable = [
+            b
+            for b in graph
+            if b.real
+            and any(first - 1e-9 <= here.value <= last + 1e-9 for first, last in b.stable_intervals())
+        ]
+        total = sum(n for _, _, n, _ in here.attractors) + here.stuck + here.wandering
+        known = [row for b in stable for row in _impacts_on(b, here.value, graph.within, engines)]
+        resting = {str(b.description.get("word", "")) for b in stable}
+        for periods, hits, number, row in here.attractors:
+            share = number / total
+            on = (
+                any(_same(row, one, mirror) for one in known)
+                if hits
+                else any(not set(w) & set("LR") for w in resting)
+            )
+            tally += Tally(1, not on, share, 0.0 if on else share)
+            if not on:
+                say(
+                    f"missing at {here.value:.8g}: {hits} impacts in {periods} periods, share {share:.4f} of the starts"
+                )
+        named = any(a.kind in ("chaotic", "quasi-periodic", "slow", "chatter") and abs(a.value - here.value) < NEAR * (high - low)
+                    for a in graph.attractors)  # fmt: skip
+        if here.wandering and not named:
+            share = here.wandering / total
+            tally += Tally(unnamed=1)
+            say(f"not named near {here.value:.8g}: share {share:.4f} of the starts wanders")
+    return tally
+
+
+def shares(machine: Any, over: str, met: Sequence[Met], starts: int, mirror: bool, say: Any = print) -> Tally:
+    """Compare the package's shares with the witness's."""
+    population, tally = machine.population(over), Tally()
+    for here in met:
+        motions, index, _ = population.settle(population.starts(starts, 99, here.value), here.value)
+        own = [(m, int(np.sum(index == k))) for k, m in enumerate(motions) if m.problem is not None]
+        total = sum(n for _, _, n, _ in here.attractors) + here.stuck + here.wandering
+        for periods, hits, number, row in here.attractors:
+            if hits:
+                ours = sum(
+                    n
+                    for m, n in own
+                    if m.kind == "periodic" and _same(row, _impacts(m.problem.orbit(m.u, here.value)), mirror)
+                )
+            else:
+                ours = sum(n for m, n in own if m.kind == "sliding" and m.periods == periods)
+            one, other = number / total, ours / starts
+            error = math.sqrt(
+                max(one, 1 / total) * (1 - one) / total + max(other, 1 / starts) * (1 - other) / starts
+            )
+            beyond = abs(one - other) > SIGMAS * max(error, 1e-12)
+            tally += Tally(compared=1, apart=beyond)
+            if beyond:
+                say(
+                    f"shares at {here.value:.8g}: {one:.4f} and {other:.4f} ({hits} impacts in {periods} periods)"
+                )
+    return tally
+
+
+def listed_twice(graph: cv.Graph) -> list[str]:
+    """Attractors that stand twice at one value."""
+    seen: dict[tuple, int] = {}
+    for a in graph.attractors:
+        if a.branch is not None:
+            key = (a.value, a.starts, a.branch, a.word, a.periods)
+            seen[key] = seen.get(key, 0) + 1
+    return [f"{word} on {label} at {value}" for (value, _, label, word, _), n in seen.items() if n > 1]
+
+
+def _impacts_on(branch: Any, p: float, within: tuple[float, float], engines: dict) -> Iterator[np.ndarray]:
+    """Impacts of all orbits of a branch at a value."""
+    engine = engines.setdefault(branch.label, Engine(branch.problem, within, Settings()))
+    gaps = branch.values - p
+    for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
+        t = gaps[i] / (gaps[i] - gaps[i + 1])
+        solved = engine.at_value(branch.points[i] * (1.0 - t) + branch.points[i + 1] * t, p)
+        if solved is not None:
+            yield _impacts(branch.problem.orbit(solved.u, p))
+
+
+def _impacts(orbit: Any) -> np.ndarray:
+    """Wall (1 left, -1 right), phase and B of every impact, shape (n, 3)."""
+    rows = [
+        (1.0 if letter == "L" else -1.0, node[0], node[1])
+        for letter, node in zip(orbit.word.events, orbit.nodes, strict=True)
+        if letter in "LR"
+    ]
+    return np.array(rows).reshape(-1, 3)
+
+
+def _same(one: np.ndarray, other: np.ndarray, mirror: bool) -> bool:
+    """Whether two lists of impacts are one cycle, or mirror images."""
+    image = other * [-1.0, 1.0, -1.0] + [0.0, np.pi, 0.0]
+    return _alike(one, other) or (mirror and _alike(one, image))
+
+
+def _alike(one: np.ndarray, other: np.ndarray) -> bool:
+    if len(one) != len(other):
+        return False
+    phases = np.abs((one[:, None, 1] - other[None, :, 1] + np.pi) % TWO_PI - np.pi)
+    gaps = np.maximum(phases, np.abs(one[:, None, 2] - other[None, :, 2]))
+    gaps[one[:, None, 0] != other[None, :, 0]] = np.inf
+    nearest = gaps.argmin(axis=1)
+    return bool(len(set(nearest)) == len(one) and gaps.min(axis=1).max(initial=0.0) < SAME)
+
+
+def drawn(kind: str, i: int) -> tuple[Any, str, tuple[float, float]]:
+    """The i-th machine of a kind, its parameter and interval."""
+    g = np.random.default_rng(7000 + i)
+    both = {"gravity": g.uniform(0.05, 0.5), "mass_ratio": 0.006, "frequency": g.uniform(0.7, 1.4)}
+    if kind == "absorber":
+        machine = Absorber(restitution=g.uniform(0.3, 0.95), friction=g.uniform(0.02, 0.6), **both)
+        return machine, "amplitude", (0.2, 1.3)
+    if kind == "cavity":
+        r, mu = g.uniform(0.3, 0.95, 2), g.uniform(0.02, 0.6, 2)
+        sides = {
+            "restitution_left": r[0],
+            "restitution_right": r[1],
+            "friction_left": mu[0],
+            "friction_right": mu[1],
+        }
+        return Cavity(**sides, slope=g.uniform(-0.3, 0.3), **both), "amplitude", (0.2, 1.3)
+    of = {"forcing": g.uniform(1, 4), "damping": g.uniform(0.3, 1.5), "mass_ratio": g.uniform(0.004, 0.02)}
+    contacts = {
+        "restitution": g.uniform(0.4, 0.9),
+        "friction": g.uniform(0.05, 0.6),
+        "gravity": g.uniform(0.1, 0.4),
+    }
+    return Coupled(**of, **contacts), "frequency", (0.97, 1.03)
+
+
+def studied(
+    machine: Any, over: str, within: tuple[float, float], values: Sequence[float], count: int, **options: Any
+) -> Tally:
+    """An atlas beside the witness; a line of what they have in common."""
+    begin = time.process_time()
+    graph = cv.atlas(machine, over=over, within=within, **options)
+    seconds = time.process_time() - begin
+    mirror = not isinstance(machine, Cavity)
+    met = witness(machine, over, values, count, tries=4 if isinstance(machine, Coupled) else 5)
+    tally = on_atlas(graph, met, mirror) + shares(machine, over, met, count, mirror)
+    twice = listed_twice(graph)
+    print(f"{tally}; {len(graph)} branches in {seconds:.1f} s; listed twice: {twice or 'none'}", flush=True)
+    return tally
+
+
+def main() -> None:
+    """One of the runs in this module's docstring."""
+    what = sys.argv[1] if len(sys.argv) > 1 else "paper"
+    tally = Tally()
+    if what == "paper":
+        middles = 0.2 + 1.1 * (np.arange(60) + 0.5) / 60
+        for friction in (0.5, 0.05):
+            machine = Absorber(restitution=0.76, friction=friction, gravity=0.211, mass_ratio=0.006)
+            tally += studied(machine, "amplitude", (0.2, 1.3), list(middles), 2000)
+    elif what == "frequency":
+        for forcing in (2.47, 3.3):
+            machine = Coupled(
+                forcing=forcing, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
+            )
+            values = np.linspace(0.9705, 1.0295, 40)
+            tally += studied(machine, "frequency", (0.97, 1.03), list(values), 200, depth=0, starts=64)
+    else:
+        for i in range(int(sys.argv[2]) if len(sys.argv) > 2 else 20):
+            machine, over, (low, high) = drawn(what, i)
+            values = low + (high - low) * np.sort(np.random.default_rng(i).random(6))
+            few = {"depth": 0, "starts": 64, "values": 8} if what == "coupled" else {"depth": 1}
+            tally += studied(
+                machine, over, (low, high), list(values), 200 if what == "coupled" else 1000, **few
+            )
+    print(tally)
+
+
+if __name__ == "__main__":
+    main()
