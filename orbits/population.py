@@ -76,6 +76,9 @@ class Population:
         """The machine's name and settings."""
         return self.model.settings()
 
+    across = 200
+    """Starts across and up in a picture of basins where no number is given."""
+
     @property
     def brief(self) -> tuple[int, int]:
         """Values, and starts at each, of a brief look."""

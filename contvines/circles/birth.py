@@ -86,7 +86,7 @@ def born(point: SpecialPoint) -> Birth:
         unit * (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)
         for unit, part in ((1.0, np.real(q)), (1j, np.imag(q)))
     )
-    frame = Frame(left, size, max(abs(p), 1e-3))
+    frame = Frame(left, size, max(abs(p), 1e-3), p)
     turns = float(np.angle(full)) / (2.0 * np.pi)
     return Birth(p, found.value, growth, turns, vector, frame, centre, float(np.abs(np.vdot(left, image))))
 

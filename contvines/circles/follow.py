@@ -10,20 +10,14 @@ import numpy as np
 from ..branches.special_point import SpecialPoint
 from ..hints import hinting
 from ..interrupts import listening
+from ..problems.registry import without_problem
+from .along import Reach, followed
 from .averages import rotation_number
 from .birth import Birth, born
 from .circle import Circle, Circles
-from .invariance import Curve, Frame, first_harmonic, solve
+from .invariance import Curve, between
 from .section import Section, section_of
 
-FEWEST, MOST = 17, 129  # points of a circle
-SMOOTH = 1e-7  # the last harmonics of a circle that has enough points, relative to the first
-TORN = 3e-3  # ... beyond which it has broken
-FIRST, GROWTH, SLOWEST = (
-    0.04,
-    1.35,
-    1.02,
-)  # first amplitude relative to the last one, factors from one to the next
 REACH = (
     0.5  # amplitude, relative to the size of the section, to which circles are followed where no end is given
 )
@@ -59,7 +53,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
             f"{point.label} is a point of kind {point.kind}; invariant circles are born at Neimark-Sacker points"
         )
     if point.problem is None:
-        raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+        raise ValueError(without_problem(point.label))
     if count < 1:
         raise ValueError(f"count = {count} must be a whole number of at least 1")
     birth = born(point)
@@ -74,7 +68,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         return section_of(point.problem, p)
 
     largest = REACH * birth.frame.size if to is None else birth.amplitude(to)
-    found, ended = _followed(section, birth, largest, to, side, count, point.parameter)
+    found, ended = followed(section, birth, Reach(largest, to, side, count, point.parameter))
     about = section(point.value)
     made = tuple(_circle(section, curve, birth) for curve in found)
     beyond = _beyond(section, found, birth) if found else {}
@@ -93,94 +87,12 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     )
 
 
-# ---------------------------------------------------------------------- from circle to circle
-def _followed(
-    section: Callable[[float], Section],
-    birth: Birth,
-    largest: float,
-    to: float | None,
-    side: float,
-    count: int,
-    name: str,
-) -> tuple[list[Curve], str]:
-    """Circles of growing amplitude, and why there are no more."""
-    amplitude = FIRST * largest
-    found: list[Curve] = []
-    factor, points = GROWTH, FEWEST
-    while len(found) < count:
-        guess = _guess(found, birth, amplitude, points)
-        curve = _smooth(section, guess, birth.frame, amplitude)
-        if curve is None or curve.tail > TORN:
-            factor = 1.0 + 0.5 * (factor - 1.0)
-            if not found:
-                amplitude *= 0.5
-                if amplitude < 1e-4 * FIRST * largest:
-                    raise ValueError(
-                        "no circle was found beside the point; the normal form may not hold there"
-                    )
-                continue
-            if factor < SLOWEST:
-                why = "it cannot be followed any further" if curve is None else "it is no longer smooth"
-                return found, f"the circle breaks near {name} = {found[-1].value:.8g}: {why}"
-            amplitude = factor * abs(first_harmonic(found[-1], birth.frame))
-            continue
-        if to is not None and (curve.value - to) * side >= 0.0:
-            last = solve(section, curve._replace(value=to), birth.frame, None)
-            if last is not None:
-                found.append(last)
-            return found, f"reaches {name} = {to:.8g}"
-        found.append(curve)
-        points = len(curve.points)
-        if to is None and amplitude >= largest:
-            return found, f"has half the size of the motion at {name} = {curve.value:.8g}"
-        amplitude *= factor
-        factor = min(GROWTH, 1.0 + 1.5 * (factor - 1.0))
-        if to is None:
-            amplitude = min(amplitude, largest)
-    return found, f"stopped after {count} circles at {name} = {found[-1].value:.8g}"
-
-
-def _guess(found: list[Curve], birth: Birth, amplitude: float, count: int) -> Curve:
-    """The next circle from the last two: harmonics are linear in the amplitude, rotation and parameter in its square."""
-    if not found:
-        return birth.curve(amplitude, count)
-    last = found[-1].finer(count)
-    r = abs(first_harmonic(last, birth.frame))
-    if len(found) == 1:
-        before = birth.curve(0.0, count)
-        share, bend = amplitude / r - 1.0, (amplitude / r) ** 2 - 1.0
-    else:
-        before = found[-2].finer(count)
-        r0 = abs(first_harmonic(before, birth.frame))
-        share, bend = (amplitude - r) / (r - r0), (amplitude**2 - r**2) / (r**2 - r0**2)
-    return Curve(
-        last.points + share * (last.points - before.points),
-        last.rotation + bend * (last.rotation - before.rotation),
-        last.value + bend * (last.value - before.value),
-    )
-
-
-def _smooth(
-    section: Callable[[float], Section], guess: Curve, frame: Frame, amplitude: float
-) -> Curve | None:
-    """The circle through as many points as it needs."""
-    curve: Curve | None = guess
-    while curve is not None:
-        curve = solve(section, curve, frame, amplitude)
-        if curve is None or curve.tail < SMOOTH or len(curve.points) >= MOST:
-            return curve
-        curve = curve.finer(min(MOST, 2 * len(curve.points) - 1))
-    return None
-
-
 # ---------------------------------------------------------------------- by simulation
 def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> Circle:
     here = section(curve.value)
     centre = curve.points.mean(axis=0)
     radius = float(np.sqrt(np.mean(np.sum((curve.points - centre) ** 2, axis=1))))
-    between = 2.0 * np.pi * (np.arange(2 * len(curve.points)) + 0.5) / (2 * len(curve.points))
-    images = np.array([here.step(x) for x in curve.at(between)])
-    replay = float(np.abs(images - curve.at(between + 2.0 * np.pi * curve.rotation)).max())
+    replay = between(here, curve)
     stable = _attracts(here, curve, birth, centre)
     simulated = _simulated(here, curve, birth, centre, radius) if stable else None
     if stable and simulated is None:  # a displacement shrank for a while, and yet the circle is left
@@ -212,11 +124,11 @@ def _displacements(
     logs = np.empty(count)
     for i in range(count):
         x = here.step(x)
+        if not np.isfinite(x).all():
+            return logs[:i]
         z = complex((x - centre) @ birth.frame.left.conj())
         place = angles[0] + (np.angle(z) - angles[0]) % (2.0 * np.pi)
         logs[i] = np.log(max(abs(z), 1e-300) / np.interp(place, angles, np.abs(own)))
-        if not np.isfinite(logs[i]):
-            return logs[:i]
     return logs
 
 

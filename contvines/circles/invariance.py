@@ -16,9 +16,13 @@ import numpy as np
 
 from .section import Section, slopes
 
-STEP = 1e-6  # of differences of the simulated map, relative to the size of the section
+STEP = 1e-6  # of differences of the simulated map, relative to the size of the section and of the parameter
+INSIDE = 0.01  # ... and at most, relative to the size of the circle and to the distance from its birth
+LEAST = 1e-13  # ... and at least
 SWEEPS = 15
 SOLVED = 1e-10  # residual, relative to the size of the circle
+ROUNDED = 1e-11  # ... of a small circle, relative to the size of the section, where it shrinks no more
+ROUGH = 1e-4  # ... but relative to the size of the circle at most
 
 
 class Frame(NamedTuple):
@@ -30,11 +34,14 @@ class Frame(NamedTuple):
         Typical size of the section's coordinates.
     unit : float
         Typical size of the parameter.
+    origin : float
+        Where the circles are born.
     """
 
     left: np.ndarray
     size: float
     unit: float
+    origin: float
 
 
 class Curve(NamedTuple):
@@ -73,13 +80,38 @@ class Curve(NamedTuple):
         return self._replace(points=self.at(phases))
 
 
+class Condition(NamedTuple):
+    """Which circle of a family is looked for: normal . (amplitude of the first harmonic, rotation number, parameter) = target."""
+
+    normal: tuple[float, float, float]
+    target: float
+
+
+def of_amplitude(amplitude: float) -> Condition:
+    """The circle whose first harmonic has an amplitude."""
+    return Condition((1.0, 0.0, 0.0), amplitude)
+
+
+def at_value(value: float) -> Condition:
+    """The circle at a parameter value."""
+    return Condition((0.0, 0.0, 1.0), value)
+
+
+def between(section: Section, curve: Curve) -> float:
+    """By how much the images of a circle miss it, between the points at which it was solved."""
+    count = 2 * len(curve.points)
+    phases = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    images = np.array([section.step(x) for x in curve.at(phases)])
+    return float(np.abs(images - curve.at(phases + 2.0 * np.pi * curve.rotation)).max())
+
+
 def first_harmonic(curve: Curve, frame: Frame) -> complex:
     """Of the displacement along the critical plane."""
     return complex(frame.left.conj() @ curve.harmonics[1])
 
 
 def solve(
-    section: Callable[[float], Section], guess: Curve, frame: Frame, amplitude: float | None
+    section: Callable[[float], Section], guess: Curve, frame: Frame, condition: Condition
 ) -> Curve | None:
     """The invariant circle near a curve; None where Newton's method does not find one.
 
@@ -89,8 +121,7 @@ def solve(
         Parameter value -> section.
     guess : Curve
     frame : Frame
-    amplitude : float or None
-        Of the first harmonic; None: at the parameter value of the guess.
+    condition : Condition
     """
     n, d = guess.points.shape
     k = np.fft.fftfreq(n, 1.0 / n)
@@ -100,23 +131,29 @@ def solve(
     phases = 2.0 * np.pi * np.arange(n) / n
     first = np.exp(-1j * phases) / n
     points, rho, p = guess.points.copy(), guess.rotation, guess.value
-    h, radius = STEP * frame.size, max(abs(first_harmonic(guess, frame)), 1e-300)
+    normal, target = condition
+    length = np.linalg.norm(np.array(normal) * (frame.size, 1.0, frame.unit)) / frame.size
+    radius = max(abs(first_harmonic(guess, frame)), 1e-300)
+    h = max(min(STEP * frame.size, INSIDE * radius), LEAST * frame.size)
+    width = max(min(STEP * frame.unit, INSIDE * abs(guess.value - frame.origin)), LEAST * frame.unit)
     last = np.inf
     for _ in range(SWEEPS):
-        here, beside = section(p), section(p + STEP * frame.unit)
-        before = section(p - STEP * frame.unit)
+        here, beside = section(p), section(p + width)
+        before = section(p - width)
         images = np.array([here.step(x) for x in points])
         turned = (
             np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ fourier
         )  # values at the phases that come next
         shifted = np.real(turned @ points)
         z = complex(first @ (points @ frame.left.conj()))
-        ends = np.array([z.imag, 0.0 if amplitude is None else z.real - amplitude])
+        apart = normal[0] * z.real + normal[1] * rho + normal[2] * p - target
+        ends = np.array([z.imag, apart / length])
         sides = np.concatenate([(images - shifted).reshape(-1), ends])
         if not np.isfinite(sides).all():
             return None
         error = float(np.abs(sides).max()) / radius
-        if error < SOLVED:
+        rounded = error * radius < ROUNDED * frame.size and error < ROUGH and error > 0.25 * last
+        if error < SOLVED or rounded:
             return Curve(points, float(rho), float(p), error)
         if not error < 2.0 * last:
             return None
@@ -133,13 +170,11 @@ def solve(
         )
         matrix[:size, size] = -np.real(turning).reshape(-1)
         moved = [np.array([other.step(x) for x in points]) for other in (beside, before)]
-        matrix[:size, size + 1] = ((moved[0] - moved[1]) / (2.0 * STEP * frame.unit)).reshape(-1)
+        matrix[:size, size + 1] = ((moved[0] - moved[1]) / (2.0 * width)).reshape(-1)
         along: Any = np.outer(first, frame.left.conj()).reshape(-1)
         matrix[size, :size] = along.imag
-        if amplitude is None:
-            matrix[size + 1, size + 1] = 1.0
-        else:
-            matrix[size + 1, :size] = along.real
+        matrix[size + 1, :size] = normal[0] / length * along.real
+        matrix[size + 1, size:] = normal[1] / length, normal[2] / length
         if not np.isfinite(matrix).all():
             return None
         try:

@@ -139,7 +139,7 @@ def basins(
     over: str | None = None,
     at: float | None = None,
     plane: Sequence[str] | None = None,
-    points: int | tuple[int, int] = 200,
+    points: int | tuple[int, int] | None = None,
     within: Mapping[str, tuple[float, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     saddles: Graph | None = None,
@@ -155,8 +155,8 @@ def basins(
     at : float
     plane : two names, optional
         Coordinates of the plane; by default the last two of ``population.names`` among position and velocity.
-    points : int or (int, int)
-        Across and up.
+    points : int or (int, int), optional
+        Across and up; by default ``population.across``: 200, of machines on a page 60.
     within : mapping, optional
         Ranges of the coordinates; by default the machine's box.
     fixed : mapping, optional
@@ -190,6 +190,7 @@ def basins(
         raise ValueError(
             f"plane = {across!r}, {up!r}: choose two different coordinates of {', '.join(names)}"
         )
+    points = population.across if points is None else points
     columns, rows = (points, points) if isinstance(points, int) else points
     if not (columns >= 2 and rows >= 2 and columns * rows <= MOST):
         raise ValueError(f"points = {columns} x {rows}: give at least 2 each way, and at most {MOST} in all")

@@ -68,6 +68,9 @@ class MapPopulation:
         """The map's name."""
         return {"name": self.problem.name}
 
+    across = 200
+    """Starts across and up in a picture of basins where no number is given."""
+
     @property
     def brief(self) -> tuple[int, int]:
         """Values, and starts at each, of a brief look."""

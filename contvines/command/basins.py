@@ -14,10 +14,15 @@ def basins(
     plane: Annotated[
         tuple[str, str] | None,
         typer.Option(
-            "--plane", metavar="X Y", help="The two coordinates of the starts; by default w w_rate."
+            "--plane",
+            metavar="X Y",
+            help="The two coordinates of the starts; by default the first position and its rate.",
         ),
     ] = None,
-    points: Annotated[int, typer.Option("--points", help="Starts across and up.")] = 200,
+    points: Annotated[
+        int | None,
+        typer.Option("--points", help="Starts across and up; by default 200, of machines on a page 60."),
+    ] = None,
     saddles: Annotated[
         Path | None,
         typer.Option(

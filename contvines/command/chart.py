@@ -7,6 +7,7 @@ import typer
 
 from contvines.command.options import TrustOption
 from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
+from contvines.command.stored import refuse_detached
 
 
 def chart(
@@ -41,6 +42,9 @@ def chart(
     check_place(target)
     graph, over, within = _diagram(file, over, within, trust, quiet)
     check(within, plot, target, file)
+    refuse_detached(
+        graph, (label for label, point in graph.special.items() if point.kind not in ("end", "user"))
+    )
     fingerprint = _fingerprint(graph, over, within, virtual)
     found: Any = None
     if target.exists():
@@ -56,11 +60,20 @@ def chart(
         from contvines.command.run import interruptible
         from contvines.loci.charting import chart as make
 
-        with Store.attach(target, fingerprint, {"chart": [over, *within]}) as store:
-            note = f"all finished points are kept in {target}; the same command goes on from there"
-            with interruptible(note), shown(quiet=quiet) as progress:
-                found = make(graph, over, within, virtual=virtual, journal=store, progress=progress)
-            store.tidy()
+        note = f"all finished points are kept in {target}; the same command goes on from there"
+        begun = False
+        try:
+            with Store.attach(target, fingerprint, {"chart": [over, *within]}) as store:
+                with interruptible(note), shown(quiet=quiet) as progress:
+                    try:
+                        found = make(graph, over, within, virtual=virtual, journal=store, progress=progress)
+                    finally:
+                        begun = store.records > 0
+                store.tidy()
+        except ValueError:
+            if not begun:  # refused before any work: nothing is left behind
+                target.unlink(missing_ok=True)
+            raise
     tell(found, target, plot, quiet)
 
 

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from contvines.command.options import FileArgument, TrustOption
+from contvines.command.stored import refuse_detached
 
 
 def circle(
@@ -38,6 +39,7 @@ def circle(
         raise ValueError(
             f"{file}: {label} is no label of it; its Neimark-Sacker points are {known or 'none'}."
         )
+    refuse_detached(graph, [label])
     found = special[label].circles(to)
     if json:
         import json as text

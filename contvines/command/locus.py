@@ -7,6 +7,7 @@ import typer
 
 from contvines.command.options import FileArgument, TrustOption
 from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
+from contvines.command.stored import refuse_detached
 
 OverOption = Annotated[str, typer.Option("--over", metavar="NAME", help="The second parameter.")]
 WithinOption = Annotated[
@@ -47,6 +48,7 @@ def locus(
         raise ValueError(
             f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
         )
+    refuse_detached(graph, [label])
     from contvines.command.progress import shown
     from contvines.loci.charting import chart_of_one
 

@@ -1,5 +1,6 @@
 """What is said of a stored graph when it is loaded."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,17 @@ def say_what_lacks(graph: Any) -> None:
         if branch.problem is None and branch.description.get("factory"):
             typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
             return
+
+
+def refuse_detached(graph: Any, labels: Iterable[str]) -> None:
+    """Special points whose problem is not at hand, before work starts: a sentence that says why, and what would do."""
+    from contvines.problems.registry import without_problem
+
+    for label in labels:
+        point = graph.special[label]
+        if point.problem is None:
+            branch = graph.branches.get(point.branch)
+            raise ValueError(without_problem(label, None if branch is None else branch.description))
 
 
 def say_unfinished(file: Path) -> None:

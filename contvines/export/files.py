@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 FORMATS = ("csv", "json", "graphml", "mat")
 
 
-def export(graph: "Graph", to: str, path: str | Path) -> Path:
-    """Write a graph in one of `FORMATS`.
+def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
+    """Write a graph in one of `FORMATS`; None: the one that the name ends in.
 
     csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
     unknowns, multipliers, word, periods, and every measure that a branch of the graph has; what is not defined
@@ -32,6 +32,12 @@ def export(graph: "Graph", to: str, path: str | Path) -> Path:
         If the format is not known, the place cannot be written, or it holds a file of another kind.
     """
     writers = {"csv": _csv, "json": _json, "graphml": _graphml, "mat": _mat}
+    if to is None:
+        to = Path(path).suffix.lstrip(".").lower()
+        if to not in writers:
+            raise ValueError(
+                f"{path}: a file for other programs ends in .{', .'.join(FORMATS)}; or name the format, to='csv'."
+            )
     if to not in writers:
         raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
     path = Path(path)

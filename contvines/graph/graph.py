@@ -231,9 +231,7 @@ class Graph:
         ValueError
             If there is no such format, or the place cannot be written.
         """
-        from pathlib import Path
-
-        return above("export")(self, to or Path(path).suffix.lstrip(".").lower(), path)
+        return above("export")(self, to, path)
 
     def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""

@@ -25,6 +25,7 @@ HELPERS: tuple[Any, ...] = (
     probing.pair_of,
     probing.tests,
     probing.slopes_along,
+    probing.frozen,
     source.close,
     source.renew,
 )

@@ -16,6 +16,7 @@ from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..journal import NullJournal
 from ..problems.protocol import Problem
+from ..problems.registry import without_problem
 from .chart import Chart
 from .codimension_two import find
 from .coefficients_at import coefficients
@@ -97,7 +98,7 @@ class Charting:
     def add_special(self, point: SpecialPoint) -> None:
         """Queue the locus of a special point of the graph."""
         if point.problem is None:
-            raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+            raise ValueError(without_problem(point.label))
         value = point.problem.parameters.get(self.over)
         if value is None:
             begin(point.problem, point.kind, point.u, point.value, self.over)  # says why

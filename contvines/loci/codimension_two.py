@@ -8,7 +8,7 @@ from .conditions import References, Test, own_conditions, test_of
 from .kinds import TOUCH, Look, looks
 from .layout import FLIP, FOLD, MARGIN, PAIR
 from .locus import Locus
-from .plane import Place, Plane
+from .plane import CLOSE, Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
 from .starts import SINGULAR
@@ -21,6 +21,9 @@ CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a sol
 APART = 1e-5  # a pair is complex if its imaginary part exceeds this
 DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 FEW = 4  # places at which a border is asked whether its equations are singular
+NOISY = 1e-7  # corrections below this may no longer shrink where a test is a coefficient; their size is the point's error
+ROUGHLY = 1e-6  # corrections below this no longer shrink where a test has a few digits only
+VANISHED = 1e-6  # of what it is at the ends of its segment: a coefficient that is zero
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
 
 
@@ -63,11 +66,15 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
             if look in costly:  # first with a few digits
                 rough = test_of(look, problem, at, rough=True)
                 assert rough is not None
-                near = solved(plane, problem, at, look.kind, rough, guess, gap)
-                if near is None:
-                    continue
-                guess, gap = Place(near.u, *near.value), 0.1 * gap
-            point = solved(plane, problem, at, look.kind, test, guess, gap)
+                near = solved(plane, problem, at, look.kind, rough, guess, gap, ROUGHLY)
+                if near is not None:
+                    guess, gap = Place(near.u, *near.value), 0.1 * gap
+            close = NOISY if look in costly else CLOSE
+            point = solved(plane, problem, at, look.kind, test, guess, gap, close)
+            if point is not None and look in costly:
+                left = _evaluated(plane, Place(point.u, *point.value), [(look, test)])[0]
+                if not abs(left) <= VANISHED * max(abs(a), abs(b)):
+                    continue  # it changes its sign through infinity, where one more multiplier is critical
             if point is not None and not set(point.margins) - set(problem.masked):
                 if look is TOUCH:
                     point.coefficients = touching_form(plane, Place(point.u, *point.value), problem.index)
@@ -128,12 +135,19 @@ def _gap(locus: LocusProblem, a: Place, b: Place) -> float:
 
 
 def solved(
-    plane: Plane, locus: LocusProblem, at: References, kind: str, test: Test, guess: Place, reach: float
+    plane: Plane,
+    locus: LocusProblem,
+    at: References,
+    kind: str,
+    test: Test,
+    guess: Place,
+    reach: float,
+    close: float = CLOSE,
 ) -> PlanePoint | None:
     """The point where a test vanishes on a locus; None if Newton's method does not find it near the guess."""
     conditions = [*own_conditions(plane, locus, at), test]
     try:
-        result = plane.refined(conditions, guess, reach, locus.unfolded)
+        result = plane.refined(conditions, guess, reach, locus.unfolded, close)
     except (ValueError, np.linalg.LinAlgError):
         return None
     if result is None:

@@ -90,7 +90,7 @@ def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False
     if look.test == "pair":
         return lambda x: x.pair(at.reference)[0]
     if look.test == "second-pair":
-        return None if np.isnan(at.second) else lambda x: x.pair(at.second)[0]
+        return None if np.isnan(at.second) else lambda x: x.other_pair(at.reference, at.second)
     if look.test == "touch":
         return lambda x: slope_along_branch(x, plus, locus.index)
     if look.test == "double":

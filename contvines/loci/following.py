@@ -22,6 +22,7 @@ from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
+from ..problems.registry import without_problem
 from .layout import BRANCH, MARGIN
 from .locus import Locus, Turn
 from .problem import LocusProblem
@@ -75,7 +76,7 @@ def locus(
     if point.kind in ("end", "user"):
         raise ValueError(f"{point.label} is no special point of the motion ({point.kind}); it has no locus")
     if point.problem is None:
-        raise ValueError(f"{point.label} has no problem attached; use graph.attach(problem) first")
+        raise ValueError(without_problem(point.label))
     within = check_interval(within)
     point = regular_side(point)
     assert point.problem is not None

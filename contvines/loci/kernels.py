@@ -15,8 +15,8 @@ Dynamical Equilibria, 2000, chapters 3 and 4). With borders b and c, M = [[F_u, 
     pair             m1 m2 - 1 for the multipliers of a pair, l1 + l2 for eigenvalues of a flow
 
 Every solve is one elimination of the problem's own kernel with b in the place of F_p. What is left are two (at branch points
-three) directions in which F = 0 holds to first order; the tests are differentiated along these alone, by differences: the
-tests themselves stay exact, so nothing of the location is lost. The borders are renewed at each accepted point: c becomes the
+three) directions in which F = 0 holds to first order; the tests are differentiated along these alone, by differences, and not
+again where Newton's method has hardly moved: the tests themselves stay exact, so nothing of the location is lost. The borders are renewed at each accepted point: c becomes the
 null vector, b the left one.
 
 This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
@@ -60,6 +60,8 @@ from .layout import (
     SMALL,
     SOLUTIONS,
     SPARE,
+    STATE,
+    STEEP,
     TRIAL,
     TRIAL_F,
     UNIT,
@@ -67,7 +69,7 @@ from .layout import (
     B,
     C,
 )
-from .probing import pair_of, slopes_along, tests
+from .probing import frozen, pair_of, slopes_along, tests
 
 # the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
 linearise: Any = None
@@ -160,7 +162,7 @@ def locus_bordered(data, work, border, target, step, tangent):
     base = work[BASE]
     F, Q, solutions, directions = work[BASE_F], work[BASE_Q], work[SOLUTIONS], work[DIRECTIONS]
     borders, lines, residuals, slopes = work[BORDERS], work[LINES], work[RESIDUAL], work[SLOPES]
-    small, scales = work[SMALL], work[SCALES]
+    small, scales, steep = work[SMALL], work[SCALES], work[STEEP]
     n, last = F.shape[0], work[POINT].shape[0] - 1
     count = last - n  # tests; there are as many directions, and the one along the locus
     for i in range(n):
@@ -178,11 +180,12 @@ def locus_bordered(data, work, border, target, step, tangent):
             directions[k, i] = 0.0
     directions[AT_P, n] = 1.0
     directions[AT_Q, last] = 1.0
+    pivots = 0.0  # which direction is expressed by the others
     if data[KIND] == BRANCH:
         for k in range(4):
             directions[k, n + 1] = solutions[k, n]
     else:
-        # the one with the largest part in the condition is expressed by the others
+        # the one with the largest part in the condition
         pivot, largest = 1, -1.0
         for k in range(1, 4):
             part = abs(solutions[k, n])
@@ -206,7 +209,9 @@ def locus_bordered(data, work, border, target, step, tangent):
         for k in range(pivot, 3):
             for i in range(last + 1):
                 directions[k, i] = directions[k + 1, i]
+        pivots = 1.0 * pivot
     total = count + 1
+    known = frozen(work, pivots)
     slopes_along(data, work, directions[0], slopes)
     across = 0.0
     for i in range(last + 1):
@@ -217,9 +222,10 @@ def locus_bordered(data, work, border, target, step, tangent):
     small[count, 3] = target - across
     small[count, 4] = 1.0
     for column in range(total):
-        slopes_along(data, work, directions[1 + column], slopes)
+        if not known:
+            slopes_along(data, work, directions[1 + column], steep[column])
         for k in range(count):
-            small[k, column] = slopes[k]
+            small[k, column] = steep[column, k]
         along = 0.0
         for i in range(last + 1):
             along += border[i] * directions[1 + column, i]
@@ -275,6 +281,7 @@ def locus_inspect(data, U, q, work, row):
     borders, solutions, reference = work[BORDERS], work[SOLUTIONS], work[REFERENCE]
     kind, multipliers = data[KIND], data[MULTIPLIERS]
     n = work[BASE_F].shape[0]
+    work[STATE][0] = -1.0  # slopes belong to the borders
     if kind != BRANCH:  # there e is measured along b
         renew(data, work, borders[B], borders[C], solutions[NULL])
     if kind == FLIP:

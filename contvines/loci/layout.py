@@ -29,8 +29,12 @@ FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW, UNIT = range(8)
     SMALL,
     MASKED,
     ROWS,
-) = range(22)
+    FROZEN,
+    STEEP,
+    STATE,
+) = range(25)
 
 STEP = 1e-7  # of the differences, relative to the scales of unknowns and parameters
+STILL = 1e-7  # relative distance within which slopes are not worked out again
 AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS

@@ -13,6 +13,7 @@ from .probing import pair_of
 from .problem import LocusProblem
 
 STEP = 1e-5  # of central differences of the conditions, relative to the unknowns
+ITERATIONS, HALVINGS = 16, 4  # of Newton's method
 CLOSE = 1e-9  # corrections below this no longer shrink: roundoff of the conditions
 
 
@@ -70,6 +71,18 @@ class Plane:
         pair_of(self.row, self.m, self.flow, reference, found)
         return float(found[0]), float(found[1])
 
+    def other_pair(self, reference: float, second: float) -> float:
+        """The test of the complex pair nearest to a second reference, of those that are not the one nearest to the first; see ``pair_of``."""
+        upper = self.spectrum[self.spectrum.imag > 0.0]
+        if len(upper) < 2:
+            return np.nan
+        tests = 2.0 * upper.real if self.flow else np.abs(upper) ** 2 - 1.0
+        places = np.abs(upper) ** 2 if self.flow else upper.real
+        unit = 1.0 + abs(reference) if self.flow else 1.0
+        own = int(np.argmin(np.abs(tests) + 0.1 * np.abs(places - reference) / unit))
+        rest = [i for i in range(len(upper)) if i != own]
+        return float(tests[min(rest, key=lambda i: abs(places[i] - second))])
+
     def two_nearest(self, place: float) -> float:
         """Sum of the two multipliers nearest to a place of the real axis, less twice that place."""
         spectrum = self.spectrum
@@ -90,7 +103,12 @@ class Plane:
         return self.first.solve(-self.first.slope, b, c)[1]
 
     def refined(
-        self, conditions: Sequence[Callable[[Plane], float]], guess: Place, reach: float, unfolded: bool
+        self,
+        conditions: Sequence[Callable[[Plane], float]],
+        guess: Place,
+        reach: float,
+        unfolded: bool,
+        close: float = CLOSE,
     ) -> tuple[Place, float] | None:
         """Newton's method for F = 0 and the conditions; (place, last correction), or None.
 
@@ -102,11 +120,13 @@ class Plane:
             Largest distance from the guess, relative to the scales of the unknowns, at which the solution is still meant.
         unfolded : bool
             F = 0 is asked for up to one multiple of the left null vector.
+        close : float
+            Corrections below this no longer shrink: roundoff of the conditions.
         """
         u, p, q = np.array(guess.u), guess.p, guess.q
         scale = self.locus.sizes_at(u, p, q)
-        last = np.inf
-        for _ in range(12):
+        last, change, halvings = np.inf, np.zeros(len(u) + 2), 0
+        for _ in range(ITERATIONS):
             if not self.at(Place(u, p, q)) < 1e300:
                 return None
             line, second = self.first, self.second
@@ -121,7 +141,13 @@ class Plane:
             values = np.array([f(self) for f in conditions])
             slopes = np.array([self._slope(conditions, here, d, scale) for d in directions])
             if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
-                return None
+                # beyond the end of what a condition can be asked for (a pair that has become real): half the way
+                halvings += 1
+                if halvings > HALVINGS or not change.any():
+                    return None
+                change = 0.5 * change
+                u, p, q = u - change[:-2], p - float(change[-2]), q - float(change[-1])
+                continue
             rows, right = [slopes[1:].T], [-values - slopes[0]]
             if not unfolded:
                 rows.append(np.array([[solved[1][1], solved[2][1], g]]))
@@ -135,12 +161,13 @@ class Plane:
             size = float((np.abs(change) / scale).max())
             if not size < 10.0 * max(reach, 1e-3):
                 return None
+            change[-2:] = dp, dq
             u, p, q = u + change[:-2], p + float(dp), q + float(dq)
-            if size < 1e-14 or (size < CLOSE and size > 0.3 * last):
+            if size < 1e-14 or (size < close and size > 0.3 * last):
                 last = size
                 break
             last = size
-        if last > CLOSE:
+        if last > close:
             return None
         far = np.append(np.abs(u - guess.u), [abs(p - guess.p), abs(q - guess.q)]) / scale
         if far.max() > reach or not self.at(Place(u, p, q)) < 1e-6:

@@ -17,6 +17,7 @@ from .layout import (
     FLIP_C,
     FLOW,
     FOLD,
+    FROZEN,
     KIND,
     LINES,
     MARGIN,
@@ -29,7 +30,9 @@ from .layout import (
     SHIFTED,
     SOLUTIONS,
     SPARE,
+    STATE,
     STEP,
+    STILL,
     TRIAL,
     TRIAL_F,
     TRIAL_Q,
@@ -159,3 +162,21 @@ def slopes_along(data, work, direction, slopes):
     tests(data, work, shifted[:n], data[UNIT] * shifted[n], q, slopes)
     for k in range(count):
         slopes[k] = (slopes[k] - values[k]) / h
+
+
+def frozen(work, pivots):
+    """Whether the slopes along the directions are those of the last call, because the point has hardly moved; keeps the point if not.
+
+    Slopes are known to about STEP; a point that has moved less than STILL has them to that accuracy.
+    """
+    point, kept, scales, state = work[POINT], work[FROZEN], work[SCALES], work[STATE]
+    still = state[0] == pivots
+    for i in range(point.shape[0]):
+        if still and not abs(point[i] - kept[i]) < STILL * max(scales[i], abs(point[i])):
+            still = False
+    if still:
+        return True
+    state[0] = pivots
+    for i in range(point.shape[0]):
+        kept[i] = point[i]
+    return False

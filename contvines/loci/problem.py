@@ -44,6 +44,9 @@ class Work(NamedTuple):
     small: np.ndarray
     masked: np.ndarray
     rows: np.ndarray
+    frozen: np.ndarray
+    steep: np.ndarray
+    state: np.ndarray
 
 
 class LocusProblem(ProblemDefaults):
@@ -192,6 +195,9 @@ class LocusProblem(ProblemDefaults):
             small=np.zeros((3, 5)),
             masked=np.array(self.masked, np.int64).reshape(-1),
             rows=self.rows,
+            frozen=np.zeros(self.dimension + 1),
+            steep=np.zeros((3, max(tests, 2))),
+            state=np.full(1, -1.0),
         )
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:

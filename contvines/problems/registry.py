@@ -179,6 +179,6 @@ def without_problem(label: str, description: Mapping[str, Any] | None = None) ->
             "problem and call graph.attach(problem), or load the file with trust=True (--trust) if you trust its maker"
         )
     return (
-        f"{label} has no problem attached: its graph was saved from a Python callable that has no importable name; "
-        "attach one with graph.attach(problem) first"
+        f"{label} has no problem attached: its graph was saved from functions that cannot be imported by a name (lambdas, or "
+        "functions of a script that is itself run); put them into a module of their own, or attach the problem with graph.attach(problem)"
     )

@@ -188,7 +188,8 @@ def run(
         parser.add_argument("folder", nargs="?", type=Path, default=Path("pictures"), help="output folder")
         parser.add_argument("--width", type=float, help="inches, such as 3.4 for a column of a journal")
         given = parser.parse_args()
-        folder, wanted = given.folder, given.width
+        folder = Path(given.folder)
+        wanted = given.width
     folder.mkdir(parents=True, exist_ok=True)
     with styled():
         width = wanted

@@ -67,6 +67,8 @@ class DeclaredPopulation:
         """The machine's page and settings."""
         return self.machine.settings()
 
+    across = 60  # starts each way in a picture of basins where no number is given
+
     @property
     def brief(self) -> tuple[int, int]:
         """Values, and starts at each, of a brief look."""

@@ -21,6 +21,7 @@ The contract, in words
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields
 from types import ModuleType
@@ -73,6 +74,16 @@ class Model(Varying):
             cls.limits = {entry.name: entry.limits for entry in cls.table}
         if "node_names" in vars(cls):
             cls.node = len(cls.node_names)
+
+    def __new__(cls, *values: Any, **options: Any) -> Self:
+        """A machine; a name that it does not have is refused with those that it has."""
+        known = [entry.name for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
+        for name in options:
+            if name not in known:
+                close = difflib.get_close_matches(name, known, n=1)
+                hint = f" (did you mean {close[0]!r}?)" if close else ""
+                raise TypeError(f"{cls.__name__} has no parameter {name!r}{hint}; it has {', '.join(known)}")
+        return super().__new__(cls)
 
     def __post_init__(self) -> None:
         for entry in self.settable:

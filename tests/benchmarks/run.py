@@ -23,6 +23,7 @@ from . import case, scripts
 from .auto import Auto
 from .flights import MODELS, Flights
 from .floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
+from .loci import REPETITIONS, ratios
 from .ours import Core, Diagram, PublicAPI
 from .starts import Starts
 
@@ -230,6 +231,23 @@ def show(title, names, columns, cell):
         print(name.ljust(width) + "".join(f"{cell(name, column):>12}" for column in columns))
 
 
+def two_parameters(rounds, repetitions):
+    """Print what a point of a locus costs, in processor time and in points of its branch."""
+    seconds, times, exponents = ratios(rounds, repetitions)
+    lengths = [2 * count for count in repetitions]
+    columns = [f"l={l}" for l in lengths]
+    of = dict(zip(columns, lengths))
+    show(
+        "microseconds per point of a locus",
+        seconds,
+        columns,
+        lambda kind, c: number(seconds[kind][of[c]], 1e6),
+    )
+    show("times a point of its branch", times, columns, lambda kind, c: number(times[kind][of[c]]))
+    if exponents:
+        print("exponent from l=32: " + ", ".join(f"{slope:.2f} {kind}" for kind, slope in exponents.items()))
+
+
 def number(value, scale=1.0):
     """Three digits, or a dash."""
     if value is None:
@@ -283,6 +301,8 @@ def main(arguments=None):
     for study, size in sizes.items():
         times = table["whole diagram, a point"][study] / table["compiled loop, a point"][study]
         print(f"{study}: {size}; {times:.0f} times the compiled loop")
+
+    two_parameters(3, REPETITIONS[:2] if options.quick else REPETITIONS)
 
     times = many_starts(rounds, 2000 if options.quick else 10_000)
     show(

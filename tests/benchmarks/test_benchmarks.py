@@ -7,6 +7,7 @@ from tests.benchmarks import case, run, scripts
 from tests.benchmarks.auto import Auto
 from tests.benchmarks.flights import MODELS, Flights
 from tests.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
+from tests.benchmarks.loci import WITHIN, Loci
 from tests.benchmarks.ours import Core, PublicAPI
 from tests.benchmarks.starts import Starts, places
 
@@ -80,6 +81,29 @@ def test_a_batch_goes_where_the_plain_simulator_goes():
     assert set(shares) >= {"LR"} and sum(shares.values()) == pytest.approx(1.0)
     times = run.many_starts(1, 16)
     assert list(times) == ["one batch", "one by one", "basin", "census"] and min(times.values()) > 0.0
+
+
+@pytest.mark.parametrize("times", [1, 17])
+def test_folds_of_words_written_many_times_are_their_closed_form(times):
+    r, _, g, eps, omega = case.PARAMS[1:]
+    fold = Loci(times, "symmetric").locus("fold", 20.0)
+    R, b = (1.0 - r) / (1.0 + r), 0.5 * np.pi
+    for amplitude, friction in fold.values:  # C^2 = (1 - pi beta/2)^2 + (R beta + H)^2 is least
+        H = 0.5 * np.pi * (1.0 + eps) * friction * g / omega**2
+        assert amplitude == pytest.approx((R + b * H) / np.hypot(R, b), abs=1e-11)
+    assert fold.branch.range == pytest.approx(WITHIN)
+
+
+def test_loci_of_a_word_written_17_times_are_those_of_the_word():
+    once, many = Loci(1, "asymmetric"), Loci(17, "asymmetric")
+    for kind in once.starts:
+        found = [runs.locus(kind, 40.0).at(0.3) for runs in (once, many)]
+        assert len(found[0]) == 1 and found[1] == pytest.approx(found[0], abs=1e-10)
+
+
+def test_ratios_of_loci_are_counted():
+    seconds, times, exponents = run.ratios(1, (1,))
+    assert set(seconds) == set(times) == {"fold", "period-doubling", "velocity-graze"} and not exponents
 
 
 def test_auto_where_it_is_installed():

@@ -57,3 +57,12 @@ def test_short_forms_are_one_line_and_tell_the_truth():
     for thing in (graph, graph["B1"], graph["EP1"]):
         assert "\n" not in repr(thing) and len(repr(thing)) < 140
         assert "<table" in thing._repr_html_()
+
+
+def test_a_misspelt_parameter_of_a_machine_has_a_hint():
+    from orbits import Absorber, Coupled
+
+    with pytest.raises(TypeError, match=r"Absorber has no parameter 'frction' \(did you mean 'friction'\?\)"):
+        Absorber(restitution=0.76, frction=0.5, gravity=0.211)
+    with pytest.raises(TypeError, match=r"Coupled has no parameter 'forcng' \(did you mean 'forcing'\?\)"):
+        Coupled(forcng=2.0)

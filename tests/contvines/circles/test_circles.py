@@ -9,6 +9,7 @@ import contvines as cv
 from contvines.circles.averages import rotation_number
 from contvines.command.cli import app
 from orbits import Coupled
+from tests.contvines.loci.systems import R, generalized_henon, generalized_henon_at
 
 ANGLE, TWIST = 1.1, 0.4
 SHEAR = np.array([[1.3, 0.4], [-0.2, 0.8]])
@@ -176,3 +177,65 @@ def test_command_line(coupled, tmp_path, monkeypatch):
     assert (tmp_path / "circle.png").exists()
     bad = CliRunner().invoke(app, ["circle", "response.vines", "LP7"])
     assert "its Neimark-Sacker points are NS1" in str(bad.exception)
+
+
+def iterated(al, be, v, count):
+    """Returns of the generalized Henon map at R = -0.1, shape (count, 2); cut off where they run away."""
+    found = np.empty((count, 2))
+    for i in range(count):
+        v = [v[1], al - be * v[0] - v[1] ** 2 - 0.1 * v[0] * v[1]]
+        found[i] = v
+        if abs(v[1]) > 5.0:
+            return found[:i]
+    return found
+
+
+def test_circles_near_a_resonance_end_at_a_homoclinic_orbit_as_iteration_does():
+    """Beside R1 of the generalized Henon map: fixed point x^2 (1 - R) + x (1 + be) = al, R1 at x = 2 / (R - 2)."""
+    al = generalized_henon_at(2.0)[2] + 0.03
+    x = -1.0 + np.sqrt(1.0 + al)  # where be = 1 + R x, too
+    problem = generalized_henon([x, x], al, 1.0 + R * x - 3e-4)
+    graph = cv.diagram(problem, over="be", within=(1.07, 1.09), depth=0)
+    (point,) = graph.of_kind("neimark-sacker")
+    assert point.value == pytest.approx(1.0 + R * x, abs=1e-12)
+    found = point.circles()
+    last = found[-1]
+    assert "beside which the motion lingers" in found.ended and last.rotation < 0.5 * found.rotation
+    assert last.tail < 3e-3 and max(circle.replay for circle in found.circles) < 1e-4
+    # iteration stays on a closed curve before the last circle, and runs away beyond it
+    before = found[len(found) // 2]
+    assert before.value < last.value
+    there = iterated(al, before.value, [x + 1e-3, x], 60_000)
+    assert len(there) == 60_000
+    dense = before.at(np.linspace(0.0, 2.0 * np.pi, 20_001))
+    distance = [np.hypot(*(dense - place).T).min() for place in there[-50:]]
+    assert max(distance) < 1e-4
+    beyond = iterated(al, last.value + 1e-4, [x + 1e-3, x], 60_000)
+    assert len(beyond) < 60_000
+
+
+def test_circles_that_live_within_a_billionth_of_the_frequency():
+    """Beside a motion with two turns that nearly graze a wall multipliers change by e^(1.3 10^6 dp): the circle attracts, rotates as simulated."""
+    machine = Coupled(
+        forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
+    )
+    guess = [
+        [-1.2723456, 0.9264669, -1.0548038, -0.4321126],
+        [-0.0940424, 0.2211511, -0.8076203, 0.8003431],
+        [1.2728325, 0.4523528, 0.6277291, 0.9466513],
+        [3.1143277, -2.0706451, 0.7504652, -0.8528377],
+        [5.0384505, 0.7013409, -1.0678695, -0.4067179],
+        [5.9666226, 0.4881245, -0.9697267, 0.6019907],
+        [7.7491497, 0.8244664, 0.7958716, 0.8107879],
+        [9.8453054, -2.3747859, 0.3016632, -1.0901773],
+    ]
+    orbit = machine.orbit("LttRLtLR", periods=2, guess=guess, frequency=0.9915406276)
+    graph = cv.diagram(orbit, over="frequency", within=(0.99154, 0.991541), depth=0)
+    point = min(graph.of_kind("neimark-sacker"), key=lambda found: abs(found.value - 0.9915406276))
+    assert point.criticality == "supercritical"
+    found = point.circles()
+    assert "1/3, at which motions lock" in found.ended
+    first = found[0]
+    assert first.stable and first.simulated == pytest.approx(first.rotation, abs=1e-6)
+    assert 0.0 < point.value - first.value < 1e-8 and first.replay < 1e-9
+    assert first.radius == pytest.approx(first.predicted, rel=0.15)

@@ -50,8 +50,12 @@ def test_the_frame_and_the_csv_file_agree(graph, tmp_path):
 
 def test_the_name_chooses_the_format(graph, tmp_path):
     assert graph.export(tmp_path / "g.json").read_text().startswith("{")
-    with pytest.raises(ValueError, match="no such format"):
+    with pytest.raises(
+        ValueError, match=r"g.doc: a file for other programs ends in .csv, .json, .graphml, .mat"
+    ):
         graph.export(tmp_path / "g.doc")
+    with pytest.raises(ValueError, match="no such format"):
+        graph.export(tmp_path / "g.csv", to="doc")
 
 
 def test_notebooks_show_tables(graph):

@@ -17,6 +17,7 @@ import pytest
 import contvines as cv
 from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
+from tests.contvines.loci.systems import generalized_henon, generalized_henon_at
 
 
 class Expansion:
@@ -67,22 +68,14 @@ def chain(A, m):
 
 
 def test_generalized_henon_at_its_double_multipliers():
-    R = -0.1
-    problem = cv.MapProblem(
-        lambda x, p: np.array([x[1], p.al - p.be * x[0] - x[1] ** 2 + R * x[0] * x[1]]),
-        [-0.1, -0.1],
-        {"al": 0.0, "be": 0.5},
-        parameter="be",
-    )
+    problem = generalized_henon()
     graph = cv.diagram(problem, over="be", within=(0.1, 1.5), depth=0)
     locus = cv.locus(graph["NS1"], over="al", within=(-1.2, 3.0), bounds=(0.1, 1.5))
     points = {point.kind: point for _, point in find(locus)}
     with mp.workdps(40):
         r = mp.mpf("-0.1")
         for kind, m in (("resonance-1-1", 1), ("resonance-1-2", -1)):
-            x = 2 * m / (r - 2)  # trace r x - 2 x = 2 m, determinant be - r x = 1
-            be = 1 + r * x
-            al = x + be * x + x * x - r * x * x
+            x, be, al = generalized_henon_at(2 * m, r)
             point = points[kind]
             assert point.value == pytest.approx((float(be), float(al)), abs=1e-9)
 

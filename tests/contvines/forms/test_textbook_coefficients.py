@@ -11,6 +11,7 @@ import pytest
 import contvines as cv
 from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
+from tests.contvines.loci.systems import R, generalized_henon, generalized_henon_at
 
 
 class Planar:
@@ -115,13 +116,7 @@ def test_ricker_with_a_delay_at_its_resonances():
 
 def test_generalized_henon_at_its_resonances():
     # x' = y, y' = al - be x - y^2 + R x y (Gonchenko's map): determinant be - R x = 1, trace R x - 2 x = 2 cos t at x = y
-    R = -0.1
-    problem = cv.MapProblem(
-        lambda x, p: np.array([x[1], p.al - p.be * x[0] - x[1] ** 2 + R * x[0] * x[1]]),
-        [-0.1, -0.1],
-        {"al": 0.0, "be": 0.5},
-        parameter="be",
-    )
+    problem = generalized_henon()
     graph = cv.diagram(problem, over="be", within=(0.1, 1.5), depth=0)
     locus = cv.locus(graph["NS1"], over="al", within=(-0.5, 3.0), bounds=(0.1, 1.5))
     points = {point.kind: point for _, point in find(locus)}
@@ -130,9 +125,7 @@ def test_generalized_henon_at_its_resonances():
             if kind not in points:
                 continue
             r = mp.mpf(str(R))
-            x = mp.mpf(trace) / (r - 2)
-            be = 1 + r * x
-            al = x + be * x + x * x - r * x * x
+            x, be, al = generalized_henon_at(mp.mpf(trace), r)
             assert points[kind].value == pytest.approx((float(be), float(al)), abs=1e-9)
 
             def f(v, be=be, al=al, r=r):

@@ -6,6 +6,7 @@ import pytest
 
 import contvines as cv
 from contvines.loci.codimension_two import find
+from tests.contvines.loci.systems import generalized_henon, generalized_henon_at
 
 
 def points(problem, over, within, second, span, label, bounds=None):
@@ -62,18 +63,9 @@ def test_delayed_logistic_with_a_source():
 
 
 def test_generalized_henon_resonances():
-    # x' = y, y' = al - be x - y^2 + R x y: trace 2 y - R y ... in closed form at R = -0.1
-    R = -0.1
-
-    def ghm(x, p):
-        return np.array([x[1], p.al - p.be * x[0] - x[1] ** 2 + R * x[0] * x[1]])
-
-    problem = cv.MapProblem(ghm, [-0.1, -0.1], {"al": 0.0, "be": 0.5}, parameter="be")
-    _, found = points(problem, "be", (0.1, 1.5), "al", (-0.5, 3.0), "NS1")
+    _, found = points(generalized_henon(), "be", (0.1, 1.5), "al", (-0.5, 3.0), "NS1")
     for kind, trace in (("resonance-1-3", -1.0), ("resonance-1-2", -2.0)):
-        x = trace / (R - 2.0)  # trace = -2 x + R x
-        be = 1.0 + R * x  # determinant = be - R x = 1
-        al = x + be * x + x**2 - R * x**2
+        _, be, al = generalized_henon_at(trace)
         assert nearest(found, kind, (be, al))[1:] == pytest.approx((be, al), abs=1e-10)
 
 

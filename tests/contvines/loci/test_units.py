@@ -9,6 +9,7 @@ import contvines as cv
 from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
 from orbits.machines.physical import physical
+from tests.contvines.loci.systems import generalized_henon
 from tests.contvines.loci.test_absorber_loci import closed_form
 
 powers = st.floats(-6.0, 6.0).map(lambda exponent: 10.0**exponent)
@@ -17,11 +18,7 @@ powers = st.floats(-6.0, 6.0).map(lambda exponent: 10.0**exponent)
 def henon(U, P, Q):
     """The generalized Henon map, a Neimark-Sacker locus with resonances 1:2, 1:3 and 1:4; be in units of P, al of Q, x of U."""
 
-    def f(x, p):
-        y, be, al = x / U, p.be / P, p.al / Q
-        return U * np.array([y[1], al - be * y[0] - y[1] ** 2 - 0.1 * y[0] * y[1]])
-
-    problem = cv.MapProblem(f, np.array([-0.1, -0.1]) * U, {"al": 0.1 * Q, "be": 0.5 * P}, parameter="be")
+    problem = generalized_henon(al=0.1, units=(U, P, Q))
     graph = cv.diagram(problem, over="be", within=(0.1 * P, 1.5 * P), depth=0)
     locus = cv.locus(graph["NS1"], over="al", within=(-0.5 * Q, 3.0 * Q), bounds=(0.1 * P, 1.5 * P))
     points = [point for _, point in find(locus)]

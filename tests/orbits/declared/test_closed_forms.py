@@ -92,28 +92,36 @@ def test_fold_of_the_impact_oscillator_with_a_gap():
     assert specials(graph, "fold") == pytest.approx([exact], abs=1e-10)
 
 
-def test_fold_and_flip_of_the_bouncing_ball():
-    """Once per period the ball leaves with g T/2 and lands with -g T/2, so the table moves with (1 - e)/(1 + e) g T/2 there.
+@pytest.mark.parametrize(
+    ("n", "g", "e", "W"), [(1, 0.1, 0.8, 1.0), (2, 0.07, 0.63, 1.3), (3, 0.05, 0.7, 0.8)]
+)
+def test_fold_and_flip_of_the_bouncing_ball(n, g, e, W):
+    """Once in n periods the ball leaves with g T/2 and lands with -g T/2, so the table moves with w = (1 - e)/(1 + e) g T/2 there.
 
-    Fold: A W equals that. Flip: A W^2 cos f = 2 g (1 + e^2)/(1 + e)^2 with A W sin f still that.
+    Fold: A W = w. Flip: A W^2 cos f = 2 g (1 + e^2)/(1 + e)^2 with A W sin f = -w still.
     """
     machine = page("bouncing_ball")
-    g, e = 0.1, 0.8
-    needed = (1 - e) / (1 + e) * g * math.pi
-    flip = math.hypot(needed, 2 * g * (1 + e**2) / (1 + e) ** 2)
-    orbit = machine.attractor({"y": 0.1, "v": 0.33, "phase": -0.8}, amplitude=0.05)
-    graph = cv.diagram(orbit, over="amplitude", within=(0.01, 0.12), depth=0)
+    speed = g * math.pi * n / W
+    needed = (1 - e) / (1 + e) * speed / W
+    flip = math.hypot(needed, 2 * g * (1 + e**2) / (1 + e) ** 2 / W**2)
+    amplitude = 0.5 * (needed + flip)
+    phase = -math.asin(needed / amplitude)
+    guess = [[phase, amplitude * math.cos(phase), speed]]
+    numbers = {"amplitude": amplitude, "gravity": g, "restitution": e, "frequency": W}
+    orbit = machine.orbit("B", n, guess, **numbers)
+    assert orbit.stable
+    graph = cv.diagram(orbit, over="amplitude", within=(0.5 * needed, 1.5 * flip), depth=0)
     assert specials(graph, "fold") == pytest.approx([needed], abs=1e-10)
     assert specials(graph, "period-doubling") == pytest.approx([flip], abs=1e-10)
 
 
-def test_den_hartogs_onset_of_sticking():
+@pytest.mark.parametrize(("W", "f"), [(0.8, 0.3), (0.62, 0.45)])
+def test_den_hartogs_onset_of_sticking(W, f):
     """Turns at +-x0 half a period apart: x0^2 = (F/(1 - W^2))^2 - (f S/(W (1 + C)))^2, C, S = cos, sin(pi/W).
 
     At a turn the shaking beats friction while x0 W^2 > f.
     """
     machine = page("den_hartog")
-    W, f = 0.8, 0.3
     C, S = math.cos(math.pi / W), math.sin(math.pi / W)
     exact = abs(1 - W**2) * math.hypot(f / W**2, f * S / (W * (1 + C)))
     start = machine.attractor(frequency=W, friction=f)
@@ -124,13 +132,15 @@ def test_den_hartogs_onset_of_sticking():
     assert graph["B1"].description["word"] == "tt"
 
 
-def test_grazing_of_the_elastic_stop():
+@pytest.mark.parametrize(("F", "D", "gap"), [(0.5, 0.05, 1.0), (0.3, 0.02, 1.4), (0.8, 0.12, 0.9)])
+def test_grazing_of_the_elastic_stop(F, D, gap):
     """The linear motion touches the stop where its amplitude F/|1 - W^2 + 2 i D W| is the gap."""
     machine = page("elastic_stop")
-    D, F = 0.05, 0.5
-    square = np.roots([1.0, 4 * D**2 - 2.0, 1.0 - F**2])
-    graph = cv.diagram(machine.attractor(frequency=1.5), over="frequency", within=(1.0, 1.6), depth=0)
-    assert specials(graph, "switch-graze")[-1] == pytest.approx(math.sqrt(square.max()), abs=1e-10)
+    square = np.roots([1.0, 4 * D**2 - 2.0, 1.0 - (F / gap) ** 2])
+    exact = math.sqrt(square.max())
+    start = machine.attractor(frequency=1.15 * exact, forcing=F, damping=D, gap=gap)
+    graph = cv.diagram(start, over="frequency", within=(0.95 * exact, 1.3 * exact), depth=0)
+    assert specials(graph, "switch-graze")[-1] == pytest.approx(exact, abs=1e-10)
 
 
 @pytest.mark.parametrize("frequency", [0.4, 0.8, 1.7, 2.6])

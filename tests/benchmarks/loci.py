@@ -1,0 +1,116 @@
+"""A point of a locus beside a point of the branch on which it begins, by processor time.
+
+Both through the public API, with the same largest step; long runs less short ones, so that what is done once counts in neither. The
+words are written many times over: the symmetric motion with two impacts for the fold, the asymmetric one, followed beyond its
+borders, for the period doubling and the velocity graze. An odd number of repetitions keeps a multiplier -1 what it is.
+"""
+
+import statistics
+import time
+
+import numpy as np
+
+import contvines as cv
+from orbits.words import Word
+
+from . import case
+from .ours import MACHINE, AsWritten
+
+REPETITIONS = (1, 17, 65, 257)  # l = 2, 34, 130, 514
+STEP = 1e-3
+SPANS = {"symmetric": (0.2, 0.7), "asymmetric": (0.727, 1.0)}
+KINDS = {"symmetric": ("fold",), "asymmetric": ("period-doubling", "velocity-graze")}
+OVER, WITHIN = "friction", (0.1, 0.9)
+
+
+class Uncrossed(AsWritten):
+    """Orbits that are not followed to other words at their borders."""
+
+    def beyond(self, *arguments, **options):
+        """Nothing."""
+        return []
+
+
+def written(times, symmetric):
+    """The motion with two impacts written `times` times over."""
+    if symmetric:
+        u, _, _ = case.start(2 * times)
+        value = case.start(2)[1]
+    else:
+        seed = MACHINE.symmetric_orbit(amplitude=0.7)
+        graph = cv.diagram(seed, over="amplitude", within=(0.69, 0.8), depth=1)
+        branch = next(branch for branch in graph if branch.seed == "SB1")
+        u, value = branch.points[-1], float(branch.values[-1])
+        u = (u.reshape(-1, 2) + [[[2.0 * np.pi * k, 0.0]] for k in range(times)]).ravel()
+    found = Uncrossed(MACHINE, Word.parse("LR").repeat(times), times, "amplitude", case.PARAMS)
+    found.u0, found.p0 = u, value
+    return found
+
+
+class Loci:
+    """A branch and the loci of its special points, at one length of the word."""
+
+    def __init__(self, times, sort):
+        self.problem, self.within = written(times, sort == "symmetric"), SPANS[sort]
+        graph = self.graph(1.0)
+        self.starts = {kind: graph.of_kind(kind)[0] for kind in KINDS[sort]}
+
+    def settings(self, longer):
+        """Of a run with steps `longer` times as long."""
+        return {"max_step": STEP * longer, "first_step": 0.5 * STEP * longer, "max_points": 1_000_000}
+
+    def graph(self, longer):
+        """The branch as a diagram."""
+        return cv.diagram(
+            self.problem, within=self.within, depth=0, virtual=True, settings=self.settings(longer)
+        )
+
+    def branch(self, longer):
+        """Number of points of the branch."""
+        return sum(len(branch) for branch in self.graph(longer))
+
+    def locus(self, kind, longer):
+        """The locus of a kind."""
+        return cv.locus(
+            self.starts[kind], over=OVER, within=WITHIN, virtual=True, settings=self.settings(longer)
+        )
+
+    def runs(self):
+        """name -> callable of the step's factor that returns a number of points."""
+        found = {"branch": self.branch}
+        for kind in self.starts:
+            found[kind] = lambda longer, kind=kind: len(self.locus(kind, longer))
+        return found
+
+
+def seconds_per_point(run):
+    """Processor seconds of a point, those of a short run taken off."""
+    marks, points = [time.process_time()], []
+    for longer in (1.0, 4.0):
+        points.append(run(longer))
+        marks.append(time.process_time())
+    return ((marks[1] - marks[0]) - (marks[2] - marks[1])) / (points[0] - points[1])
+
+
+def ratios(rounds, repetitions=REPETITIONS):
+    """{kind: {l: seconds}}, {kind: {l: times a point of its branch}}, {kind: exponent of growth from l = 32 on}; all in turns."""
+    seconds, times = {}, {}
+    for count in repetitions:
+        for sort in SPANS:
+            runs = Loci(count, sort).runs()
+            found = {name: [] for name in runs}
+            for _ in range(rounds):
+                for name, run in runs.items():
+                    found[name].append(seconds_per_point(run))
+            middle = {name: statistics.median(values) for name, values in found.items()}
+            base = middle.pop("branch")
+            for name, value in middle.items():
+                seconds.setdefault(name, {})[2 * count] = value
+                times.setdefault(name, {})[2 * count] = value / base
+    exponents = {}
+    for name, found in seconds.items():
+        lengths = [l for l in found if l >= 32]
+        if len(lengths) > 1:
+            slope = np.polyfit(np.log(lengths), np.log([found[l] for l in lengths]), 1)[0]
+            exponents[name] = float(slope)
+    return seconds, times, exponents

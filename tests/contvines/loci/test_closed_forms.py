@@ -1,0 +1,342 @@
+"""Charts of textbook systems whose loci and points of codimension two have closed forms: all of them are found, and no others.
+
+Where there is no closed form (points at which a Lyapunov coefficient vanishes) the value is solved anew in 30 digits.
+"""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.loci.codimension_two import find
+from contvines.loci.coefficients_at import coefficients
+from tests.contvines.forms.test_critical import Bend, polar
+from tests.contvines.forms.test_textbook_coefficients import Planar, lyapunov
+from tests.contvines.loci.systems import R, generalized_henon
+
+
+def chart_of(problem, over, within, second, span, bounds=None):
+    graph = cv.diagram(problem, over=over, within=within, depth=0)
+    return cv.chart(graph, over=second, within=span, bounds=bounds or within, regions=False)
+
+
+def these(chart, expected, abs=1e-9):
+    """The chart's points are those expected, {kind: [(p, q), ...]}, and no others."""
+    assert {kind: len(values) for kind, values in expected.items()} == {
+        kind: len(chart.of_kind(kind)) for kind in {point.kind for point in chart.points.values()}
+    }
+    for kind, values in expected.items():
+        found = sorted(point.value for point in chart.of_kind(kind))
+        for value, exact in zip(found, sorted(tuple(map(float, pair)) for pair in values)):
+            assert value == pytest.approx(exact, abs=abs), kind
+
+
+def flat(f, point):
+    """(p, q) of the generalized Hopf point next to one that was found: trace and first Lyapunov coefficient vanish."""
+
+    def system(x, y, p, q):
+        A = Planar(lambda v: f(v, p, q), [x, y]).matrix()
+        return [*f([x, y], p, q), A[0, 0] + A[1, 1], lyapunov(lambda v: f(v, p, q), [x, y])]
+
+    with mp.workdps(30):
+        exact = mp.findroot(system, [mp.mpf(float(c)) for c in (*point.u, *point.value)], tol=1e-18)
+    return exact[2], exact[3]
+
+
+def test_stirred_tank_ab():
+    """Uppal, Ray and Poore's tank, demo ab of AUTO: u1' = -u1 + p1 (1 - u1) e^u2, u2' = -u2 + 14 p1 (1 - u1) e^u2 - p3 u2.
+
+    Equilibria have u1 = k u2 with k = (1 + p3) / 14. Folds: u2 (1 - k u2) = 1; cusp: u2 = 2; trace zero: (1 + p3) (u2 - 1) (1 - k u2) = 1.
+    """
+
+    def f(u, p1, p3, exp=np.exp):
+        rate = p1 * (1 - u[0]) * exp(u[1])
+        return [-u[0] + rate, -u[1] + 14 * rate - p3 * u[1]]
+
+    problem = cv.AlgebraicProblem(
+        lambda u, p: np.array(f(u, p.p1, p.p3)),
+        [0.0, 0.0],
+        {"p1": 0.0, "p3": 2.0},
+        parameter="p1",
+        spectrum="flow",
+    )
+    graph = cv.diagram(problem, over="p1", within=(0.0, 0.2), depth=0)
+    # printed by AUTO at p3 = 2
+    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([0.0889318, 0.105739], abs=5e-7)
+    assert graph.of_kind("hopf")[0].value == pytest.approx(0.130900, abs=5e-7)
+    chart = cv.chart(graph, over="p3", within=(0.6, 2.9), bounds=(0.01, 0.4), regions=False)
+    for locus in chart.loci.values():
+        for (p1, p3), u in zip(locus.values, locus.branch.points):
+            k, y = (1 + p3) / 14, u[1]
+            assert p1 == pytest.approx(k * y / (1 - k * y) * np.exp(-y), abs=1e-11)
+            zero = y * (1 - k * y) - 1 if locus.kind == "fold" else (1 + p3) * (y - 1) * (1 - k * y) - 1
+            assert zero == pytest.approx(0.0, abs=1e-9)
+    (bautin,) = chart.of_kind("generalized-hopf")
+    doubles = []  # (1 + p3) (u2 - 1) = u2 on folds: u2^3 = 14 (u2 - 1)^2
+    for y in np.roots([1.0, -14.0, 28.0, -14.0]):
+        exact = mp.findroot(lambda v: v**3 - 14 * (v - 1) ** 2, mp.mpf(y))
+        p1, p3 = (exact - 1) * mp.exp(-exact), 1 / (exact - 1)
+        doubles += [(p1, p3)] if 0.6 < p3 < 2.9 else []
+    these(
+        chart,
+        {
+            "cusp": [(np.exp(-2.0), 2.5)],
+            "bogdanov-takens": doubles,
+            "generalized-hopf": [flat(lambda u, p1, p3: f(u, p1, p3, mp.exp), bautin)],
+        },
+    )
+
+
+def test_fitzhugh_nagumo():
+    """v' = v - v^3/3 - w + I, w' = (v + 0.7 - b w) / 4: folds v^2 = 1 - 1/b, Hopf v^2 = 1 - b/4 up to b = 2; cusp b = 1, v = 0."""
+
+    def f(u, I, b):
+        return [u[0] - u[0] ** 3 / 3 - u[1] + I, (u[0] + 7 * u[0] ** 0 / 10 - b * u[1]) / 4]
+
+    def current(v, b):
+        return (v + 0.7) / b - v + v**3 / 3
+
+    v0, b0 = -1.4, 1.5
+    problem = cv.AlgebraicProblem(
+        lambda u, p: np.array([u[0] - u[0] ** 3 / 3 - u[1] + p.I, (u[0] + 0.7 - p.b * u[1]) / 4]),
+        [v0, (v0 + 0.7) / b0],
+        {"I": current(v0, b0), "b": b0},
+        parameter="I",
+        spectrum="flow",
+    )
+    chart = chart_of(problem, "I", (-1.0, 2.0), "b", (0.6, 3.0), (-2.0, 3.0))
+    for locus in chart.loci.values():
+        for (input_, b), u in zip(locus.values, locus.branch.points):
+            assert input_ == pytest.approx(current(u[0], b), abs=1e-11)
+            square = 1 - 1 / b if locus.kind == "fold" else 1 - b / 4
+            assert u[0] ** 2 == pytest.approx(square, abs=1e-9)
+    v = np.sqrt(0.5)
+    expected = {"cusp": [(0.7, 1.0)], "bogdanov-takens": [(current(v, 2.0), 2.0), (current(-v, 2.0), 2.0)]}
+    bautin = chart.of_kind("generalized-hopf")
+    if bautin:
+        expected["generalized-hopf"] = [flat(f, point) for point in bautin]
+    these(chart, expected)
+
+
+def test_predator_and_prey_in_discrete_time():
+    """x' = r x (1 - x) - x y, y' = d x y (Danca, Codreanu and Bako 1997): trace 2 - r/d, determinant r - 2 r/d at x = 1/d.
+
+    Neimark-Sacker r = d/(d - 2), period doubling r = 3 d/(3 - d), exchange with y = 0 at r = d/(d - 1); resonances 1:4 (5, 5/2), 1:3 (7, 7/3), 1:2 (9, 9/4).
+    """
+    problem = cv.MapProblem(
+        lambda x, p: np.array([p.r * x[0] * (1 - x[0]) - x[0] * x[1], p.d * x[0] * x[1]]),
+        [1 / 2.4, 4 * (1 - 1 / 2.4) - 1],
+        {"r": 4.0, "d": 2.4},
+        parameter="r",
+    )
+    graph = cv.diagram(problem, over="r", within=(1.2, 14.0), depth=0)
+    closed = {
+        "neimark-sacker": lambda d: d / (d - 2),
+        "period-doubling": lambda d: 3 * d / (3 - d),
+        "branch-point": lambda d: d / (d - 1),
+    }
+    found = []
+    for kind, form in closed.items():
+        (point,) = graph.of_kind(kind)
+        locus = cv.locus(point, over="d", within=(2.2, 2.8), bounds=(1.1, 60.0))
+        for r, d in locus.values:
+            assert r == pytest.approx(form(d), rel=1e-11)
+        found += [(kind, p.kind, *p.value) for _, p in find(locus)]
+    pair = sorted(p[1:] for p in found if p[0] == "neimark-sacker")
+    exact = [
+        ("resonance-1-2", 9.0, 9 / 4),
+        ("resonance-1-3", 7.0, 7 / 3),
+        ("resonance-1-4", 5.0, 2.5),
+    ]
+    assert [p[0] for p in pair] == [e[0] for e in exact]
+    for p, e in zip(pair, exact):
+        assert p[1:] == pytest.approx(e[1:], abs=1e-9)
+    assert [p[1] for p in found if p[0] == "period-doubling"] == ["resonance-1-2"]
+    assert not [p for p in found if p[0] == "branch-point"]
+
+
+def test_zero_hopf_of_roessler():
+    """x' = -y - z, y' = x + a y, z' = b x - c z + x z at rest, a = 0.4: l^3 + (c - a) l^2 + (1 + b - a c) l + c - a b.
+
+    Exchange of equilibria c = a b; Hopf (c - a) (1 + b - a c) = c - a b; both at b = 1, c = a.
+    """
+    a = 0.4
+    problem = cv.AlgebraicProblem(
+        lambda u, p: np.array([-u[1] - u[2], u[0] + a * u[1], p.b * u[0] - p.c * u[2] + u[0] * u[2]]),
+        [0.0, 0.0, 0.0],
+        {"b": 0.8, "c": 0.8},
+        parameter="c",
+        spectrum="flow",
+    )
+    graph = cv.diagram(problem, over="c", within=(0.1, 2.2), depth=0)
+    closed = {
+        "hopf": lambda c, b: (c - a) * (1 + b - a * c) - c + a * b,
+        "branch-point": lambda c, b: c - a * b,
+    }
+    for kind, form in closed.items():
+        for point in graph.of_kind(kind):
+            locus = cv.locus(point, over="b", within=(0.5, 1.3), bounds=(0.05, 3.0))
+            assert len(locus) > 4
+            assert [form(c, b) for c, b in locus.values] == pytest.approx([0.0] * len(locus), abs=1e-11)
+            points = [(p.kind, *p.value) for _, p in find(locus)]
+            inside = bool(min(abs(locus.values[:, 0] - a)) < 0.2)
+            assert [p[0] for p in points if p[0] == "zero-hopf"] == ["zero-hopf"] * inside
+            for p in points:
+                if p[0] == "zero-hopf":
+                    assert p[1:] == pytest.approx((a, 1.0), abs=1e-9)
+
+
+def test_double_hopf_of_two_oscillators():
+    """Two rotations, sheared: growth p + q - 1 and p - 2 q + 1/2, so both vanish at p = q = 1/2; cubic damping with known ratios."""
+    rng = np.random.default_rng(4)
+    S = np.eye(4) + 0.3 * rng.standard_normal((4, 4))
+    back = np.linalg.inv(S)
+    P = np.array([[-0.5, 0.3], [0.2, -0.8]])
+
+    def f(u, p):
+        y = back @ u
+        r = (y[0] * y[0] + y[1] * y[1], y[2] * y[2] + y[3] * y[3])
+        one = p.p + p.q - 1 + P[0, 0] * r[0] + P[0, 1] * r[1]
+        two = p.p - 2 * p.q + 0.5 + P[1, 0] * r[0] + P[1, 1] * r[1]
+        return S @ np.array(
+            [
+                one * y[0] - y[1],
+                y[0] + one * y[1],
+                two * y[2] - 1.7 * y[3],
+                1.7 * y[2] + two * y[3],
+            ]
+        )
+
+    problem = cv.AlgebraicProblem(f, np.zeros(4), {"p": -1.0, "q": 0.3}, parameter="p", spectrum="flow")
+    graph = cv.diagram(problem, over="p", within=(-1.5, 1.5), depth=0)
+    assert sorted(point.value for point in graph.of_kind("hopf")) == pytest.approx([0.1, 0.7], abs=1e-11)
+    for point in graph.of_kind("hopf"):
+        locus = cv.locus(point, over="q", within=(0.0, 0.9), bounds=(-2.0, 2.0))
+        (met,) = [p for _, p in find(locus)]
+        assert met.kind == "double-hopf" and met.value == pytest.approx((0.5, 0.5), abs=1e-9)
+        found = coefficients(met)
+        ratios = sorted([found["theta"], found["delta"]])
+        assert ratios == pytest.approx(sorted([P[0, 1] / P[1, 1], P[1, 0] / P[0, 0]]), abs=1e-7)
+
+
+def test_generalized_period_doubling_at_a_known_place():
+    """w -> -(1 + p + q^2) w + (q - p) w^3 + 0.7 w^5 in x = 1 + sinh w: c and the flip vanish together at p = q = 0."""
+
+    def f(x, p):
+        w = np.arcsinh(x - 1)
+        return 1 + np.sinh(-(1 + p.p + p.q**2) * w + (p.q - p.p) * w**3 + 0.7 * w**5)
+
+    problem = cv.MapProblem(f, [1.0], {"p": -0.2, "q": 0.3}, parameter="p")
+    graph = cv.diagram(problem, over="p", within=(-0.5, 0.3), depth=0)
+    locus = cv.locus(graph["PD1"], over="q", within=(-0.4, 0.5), bounds=(-0.6, 0.4))
+    for p, q in locus.values:
+        assert p == pytest.approx(-q * q, abs=1e-12)
+    found = [(point.kind, *point.value, coefficients(point)) for _, point in find(locus)]
+    # c = q - p = q + q^2 on the locus
+    assert [kind for kind, *_ in found] == ["generalized-period-doubling"]
+    assert found[0][1:3] == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert found[0][3] == pytest.approx({"c": 0.0, "d": 0.7}, abs=1e-8)
+
+
+def test_chenciner_at_a_known_place():
+    """z -> e^(0.9 i) z (1 + p + q/3 + (q - 2 p) r^2 - r^4) in bent coordinates: p = q = 0, second coefficient -1 (r^2 counts twice, squared 4)."""
+    bend = Bend(2, 3)
+
+    def f(x, p):
+        z = bend.back(x)
+        r = z[0] * z[0] + z[1] * z[1]
+        m = 1 + p.p + p.q / 3 + (p.q - 2 * p.p) * r - r * r
+        return np.array(bend(polar(*polar(z[0], z[1], (m, 0.0)), (np.cos(0.9), np.sin(0.9)))))
+
+    problem = cv.MapProblem(f, [0.0, 0.0], {"p": -0.2, "q": 0.3}, parameter="p")
+    graph = cv.diagram(problem, over="p", within=(-0.4, 0.3), depth=0)
+    locus = cv.locus(graph["NS1"], over="q", within=(-0.5, 0.6), bounds=(-0.5, 0.4))
+    for p, q in locus.values:
+        assert p == pytest.approx(-q / 3, abs=1e-11)
+    found = [(point.kind, *point.value, coefficients(point)) for _, point in find(locus)]
+    assert [kind for kind, *_ in found] == ["chenciner"]
+    assert found[0][1:3] == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert found[0][3]["d2"] == pytest.approx(-4.0, abs=1e-7)
+
+
+def test_fold_flip_and_double_multiplier_of_the_generalized_henon_map():
+    """Trace r x - 2 x, determinant be - r x: flip be = 2 x - 1; multipliers 1 and -1 at x = 0, be = -1, al = 0; -1 twice at x = 2 / (2 - r)."""
+    x = 0.4
+    be = 2 * x - 1
+    problem = generalized_henon([x, x], x + be * x + x * x - R * x * x, be + 0.2)
+    problem = problem.against("al")
+    graph = cv.diagram(problem, over="al", within=(-0.2, 1.5), depth=0)
+    locus = cv.locus(graph.of_kind("period-doubling")[0], over="be", within=(-1.6, 1.2), bounds=(-2.0, 3.0))
+    for (al, be), u in zip(locus.values, locus.branch.points):
+        assert be == pytest.approx(2 * u[0] - 1, abs=1e-11)
+        assert al == pytest.approx(u[0] * (1 + be) + u[0] ** 2 * (1 - R), abs=1e-11)
+    found = {point.kind: point.value for _, point in find(locus)}
+    y = 2 / (2 - R)
+    assert found["fold-flip"] == pytest.approx((0.0, -1.0), abs=1e-9)
+    exact = (y * 2 * y + y * y * (1 - R), 2 * y - 1)
+    assert found["resonance-1-2"] == pytest.approx(exact, abs=1e-9)
+
+
+def mixed(g, n, seed):
+    """The map or rates g(y, first, second) in sheared coordinates, with first = p + q - 1 and second = p - 2 q + 1/2; both vanish at p = q = 1/2."""
+    S = np.eye(n) + 0.3 * np.random.default_rng(seed).standard_normal((n, n))
+    back = np.linalg.inv(S)
+    return lambda u, p: S @ np.array(g(back @ u, p.p + p.q - 1, p.p - 2 * p.q + 0.5)), S
+
+
+def turned(y, size, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return [size * (c * y[0] - s * y[1]), size * (s * y[0] + c * y[1])]
+
+
+def square(y):
+    return y[0] * y[0] + y[1] * y[1]
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "g", "along"),
+    [
+        (
+            "double-neimark-sacker",
+            4,
+            lambda y, a, b: [
+                *turned(y[:2], 1 + a - square(y[:2]) + 0.3 * square(y[2:]), 0.8),
+                *turned(y[2:], 1 + b + 0.2 * square(y[:2]) - square(y[2:]), 2.3),
+            ],
+            ("neimark-sacker",),
+        ),
+        (
+            "flip-neimark-sacker",
+            3,
+            lambda y, a, b: [
+                -(1 + a) * y[0] + y[0] ** 3,
+                *turned(y[1:], 1 + b + 0.2 * y[0] ** 2 - square(y[1:]), 1.9),
+            ],
+            ("neimark-sacker", "period-doubling"),
+        ),
+        (
+            "fold-neimark-sacker",
+            3,
+            lambda y, a, b: [
+                y[0] - a - y[0] ** 2 - square(y[1:]) / 2,
+                *turned(y[1:], 1 + b + 0.4 * y[0] - square(y[1:]), 1.9),
+            ],
+            ("fold",),
+        ),
+    ],
+)
+def test_two_conditions_of_a_map_at_once(kind, n, g, along):
+    f, S = mixed(g, n, 7)
+    start = np.zeros(n)
+    if kind == "fold-neimark-sacker":  # y0^2 = -a = 0.9 at p = -0.2, q = 0.3
+        start = S @ np.array([np.sqrt(0.9), 0.0, 0.0])
+    problem = cv.MapProblem(f, start, {"p": -0.2, "q": 0.3}, parameter="p")
+    graph = cv.diagram(problem, over="p", within=(-0.6, 1.2), depth=0)
+    for name in along:
+        points = graph.of_kind(name)
+        assert points
+        for point in points:
+            locus = cv.locus(point, over="q", within=(0.0, 0.9), bounds=(-2.0, 2.0))
+            found = [(met.kind, *met.value) for _, met in find(locus)]
+            assert [which for which, *_ in found] == [kind]
+            assert found[0][1:] == pytest.approx((0.5, 0.5), abs=1e-9)
