@@ -111,7 +111,7 @@ class Examiner:
                     continue
                 if name != "plus":
                     crossings.append(blurred(segment, self._located(root, self._kind(name), k), test))
-                elif abs(test(root.point)) > REACHED or self._complex(root.point):
+                elif abs(test(root.point)) > REACHED or self._complex(segment, root.point):
                     continue  # two real multipliers met and left the axis; none of them was at the boundary
                 elif not _near(root.position, [e.position for e in folds] + met):
                     if self._turns_back(segment, root):
@@ -161,7 +161,7 @@ class Examiner:
         inner = abs(self._multiplier("plus", max(int(count), 1))(rough.point))
         if abs(test(rough.point)) > REACHED or (self.kind != "real" and inner > REACHED):
             return None
-        if self._complex(rough.point):
+        if self._complex(segment, rough.point):
             return None
         root = locate_singular(segment, test, rough.position) or rough
         return self._located(root, "branch-point", 0)
@@ -187,9 +187,16 @@ class Examiner:
                         found.append(event._replace(position=start + length * root.position))
         return found
 
-    def _complex(self, point: Solved) -> bool:
+    def _complex(self, segment: Segment, point: Solved) -> bool:
         """Whether it was a pair that passed the axis, where only branch points are looked for."""
-        return self.kind == "real" and bool(np.abs(self.engine.spectrum(point.row)).min() > REACHED)
+        if self.kind != "real":
+            return False
+        near, ends = (
+            self.engine.spectrum(row) for row in (point.row, np.array([segment.a.row, segment.b.row]))
+        )
+        one = near[np.argmin(np.abs(near))]
+        unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
+        return bool(abs(one) > REACHED * unit)
 
     def _kind(self, name: str) -> str:
         if name == "minus":

@@ -88,3 +88,16 @@ def test_fields_of_unlike_sizes_keep_their_sizes():
     found = in_fields(mixed)
     assert found[::2] == pytest.approx(np.full(15, np.sqrt((small**2).mean())))
     assert found[1::2] == pytest.approx(np.full(15, np.sqrt((large**2).mean())))
+
+
+@pytest.mark.parametrize(("unit", "row"), [(1.0, 1.0), (1e9, 1e9), (1e9, 1e-9)])
+def test_a_pair_that_passes_the_axis_is_no_branch_point(unit, row):
+    """Eigenvalues p +- i on the zero solution: F_u is nowhere singular."""
+
+    def F(v, q):
+        x, y, p = v[0] / unit, v[1] / unit, q / 1e-9
+        size = x * x + y * y
+        return row * np.array([p * x - y - x * size, x + p * y - y * size])
+
+    graph = cv.diagram(cv.AlgebraicProblem(F, [0.0, 0.0], -1e-9), within=(-1e-9, 1e-9))
+    assert {s.kind for s in graph.special.values()} == {"end"}
