@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import LinearOperator, splu
 
 import contvines as cv
 from contvines.problems.factors import BandFactors, Method, SuperLUFactors
@@ -176,3 +176,33 @@ def test_banded_factors_are_those_of_numpy():
         )
         assert factors.sign == SuperLUFactors(sp.csc_matrix(matrix), "COLAMD").sign
         assert factors.sign == np.linalg.slogdet(matrix)[0]
+
+
+def test_without_a_matrix_from_the_start_through_the_fold():
+    """Bratu on a square of 25 unknowns: GMRES with a preconditioner finds the fold, the points and the stability of the sparse problem."""
+    n = 5
+    F, jacobian, derivative = bratu_2d(n)
+    N = n * n
+    laplace = jacobian(np.zeros(N), 0.0)
+    nearly = splu(laplace)
+
+    def operator(u, p):
+        slope = p * np.exp(u)
+        return LinearOperator((N, N), matvec=lambda x: laplace @ x + slope * np.ravel(x), dtype=float)
+
+    def preconditioner(u, p):
+        return LinearOperator((N, N), matvec=nearly.solve, dtype=float)
+
+    graphs = []
+    for given in ({"jacobian": jacobian}, {"jacobian": operator, "preconditioner": preconditioner}):
+        problem = cv.AlgebraicProblem(
+            F, np.zeros(N), 0.0, derivative=derivative, spectrum="flow", leading=3, **given
+        )
+        graphs.append(cv.diagram(problem, within=(0.0, 8.0), bounds={f"u{N // 2}": (None, 2.0)}))
+    folds = [graph.of_kind("fold")[0] for graph in graphs]
+    assert folds[1].value == pytest.approx(folds[0].value, rel=1e-12)
+    branches = [graph["B1"] for graph in graphs]
+    assert branches[1].values == pytest.approx(branches[0].values, rel=1e-8)
+    assert np.array_equal(branches[0].stable, branches[1].stable)
+    assert branches[0].stable.any() and not branches[0].stable.all()
+    assert not graphs[1].of_kind("branch-point")
