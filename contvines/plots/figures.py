@@ -32,10 +32,11 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     import matplotlib as mpl
     from matplotlib.style import context
 
-    default = mpl.rcParamsDefault
+    default: Any = mpl.rcParamsDefault
     # reading the backend would choose one, which imports pyplot
-    names = [name for name in mpl.rcParams if not name.startswith("backend") and name in default]
-    own = {name: mpl.rcParams[name] for name in names if mpl.rcParams[name] != default[name]}
+    settings: Any = mpl.rcParams
+    names = [name for name in settings if not name.startswith("backend") and name in default]
+    own = {name: settings[name] for name in names if settings[name] != default[name]}
     chosen: list[Any] = ["default", HOUSE, own]
     if style is not None:
         chosen.append(dict(style) if isinstance(style, Mapping) else style)

@@ -8,7 +8,7 @@ from orbits.cycles.cycle import Cycle
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of, states_of
 
-PER_PERIOD = 60  # instants of a forcing period at which motions are compared
+PER_PERIOD = 200  # instants of a forcing period at which motions are compared
 
 
 def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:

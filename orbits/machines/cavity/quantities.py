@@ -6,10 +6,10 @@ so that the half-width scales the whole cavity.
 
 from __future__ import annotations
 
-from orbits.machines.absorber.quantities import GAUGES as GAUGES
-from orbits.machines.absorber.quantities import QUANTITIES as SHAKEN
-from orbits.machines.absorber.quantities import SCALES as SCALES
-from orbits.machines.absorber.quantities import completed as completed_shaken
+from orbits.machines.cavity.shaken_quantities import GAUGES as GAUGES
+from orbits.machines.cavity.shaken_quantities import QUANTITIES as SHAKEN
+from orbits.machines.cavity.shaken_quantities import SCALES as SCALES
+from orbits.machines.cavity.shaken_quantities import completed as completed_shaken
 from orbits.machines.physical.quantities import Quantity, QuantityError
 
 _SIDES = {"restitution": (0.01, 1.0), "friction": (1e-6, 2.0)}

@@ -1,0 +1,49 @@
+"""The shaken cavity's quantities in SI units: C = A/b, g~ = g/(b omega_0^2), Omega = 2 pi f/omega_0.
+
+There is no oscillator in it; its natural frequency only says what Omega = 1 means and may be left out. Energies are those of the
+absorber, per kilogram of it where its mass is not given.
+"""
+
+from __future__ import annotations
+
+import math
+
+from orbits.machines.physical.quantities import Quantity
+
+SCALES = ("half_width", "natural_rate", "absorber_mass")
+"""b [m], omega_0 [rad/s], m [kg]."""
+
+_TURN = 1.0 / (2.0 * math.pi)
+
+QUANTITIES = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("amplitude", "m", "8 mm", {"amplitude": 1, "half_width": 1}, (1e-9, 10.0), "the amplitude of the cavity's motion", zero=True),
+        Quantity("half_width", "m", "15 mm", {"half_width": 1}, (1e-5, 2.0), "the clearance to either side"),
+        Quantity("frequency", "Hz", "8 Hz", {"frequency": 1, "natural_rate": 1}, (1e-3, 1e5), "the frequency of the shaking", _TURN),
+        Quantity("natural_frequency", "Hz", "8 Hz", {"natural_rate": 1}, (1e-2, 1e5), "a natural frequency", _TURN),
+        Quantity("restitution", "", "0.6", {"restitution": 1}, (0.01, 1.0), "a coefficient of restitution"),
+        Quantity("friction", "", "0.1", {"friction": 1}, (1e-6, 2.0), "a coefficient of friction", zero=True),
+        Quantity("gravity", "m/s^2", "9.81 m/s^2", {"gravity": 1, "half_width": 1, "natural_rate": 2}, (1e-6, 500.0), "a gravity", zero=True, default="9.81 m/s^2"),
+        Quantity("mass_ratio", "", "0.01", {"mass_ratio": 1}, (1e-6, 0.5), "the absorber's share of the oscillator's mass", zero=True, default=0.0, group="oscillator_mass"),
+        Quantity("oscillator_mass", "kg", "3.8 kg", {"absorber_mass": 1, "mass_ratio": -1}, (1e-6, 1e9), "the oscillator's mass", group="oscillator_mass"),
+        Quantity("absorber_mass", "kg", "32 g", {"absorber_mass": 1}, (1e-9, 1e9), "the absorber's mass", default="1 kg"),
+    )
+}  # fmt: skip
+
+GAUGES = {
+    "length": Quantity("length", "m", "1 mm", {"half_width": 1}, (0, 1), ""),
+    "area": Quantity("area", "m^2", "1 mm^2", {"half_width": 2}, (0, 1), ""),
+    "velocity": Quantity("velocity", "m/s", "1 mm/s", {"half_width": 1, "natural_rate": 1}, (0, 1), ""),
+    "energy": Quantity("energy", "J", "1 mJ", {"absorber_mass": 1, "half_width": 2, "natural_rate": 2}, (0, 1), ""),
+    "time": Quantity("time", "s", "1 s", {"natural_rate": -1}, (0, 1), ""),
+}  # fmt: skip
+"""What one dimensionless unit of each kind of measure is."""
+
+
+def completed(given: dict[str, float]) -> dict[str, float]:
+    """The quantities [SI] with what follows from them: Omega = 1 where no natural frequency is given."""
+    found = dict(given)
+    if "frequency" in given:
+        found.setdefault("natural_frequency", given["frequency"])
+    return found
