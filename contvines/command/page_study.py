@@ -16,7 +16,7 @@ from contvines.command.schema import (
     SurveySection,
     SweepSection,
 )
-from contvines.command.sentences import did_you_mean, sentence_of, together
+from contvines.command.sentences import did_you_mean, sentences_of, together
 
 
 class PageSection(Section):
@@ -74,7 +74,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
     try:
         file = PageStudyFile.model_validate(data)
     except ValidationError as error:
-        raise ValueError(together([sentence_of(e, data) for e in error.errors()])) from None
+        raise ValueError(together(sentences_of(error, data))) from None
     page, _, name = file.model.name.partition(":")
     if not name:
         raise ValueError(

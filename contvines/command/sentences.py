@@ -1,6 +1,7 @@
 """Refusals as sentences that name the field, the value and what would do."""
 
-from typing import Any
+import re
+from typing import Any, get_args
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
@@ -9,10 +10,6 @@ from contvines.command.schema import (
     EXCITATION,
     MODEL_SECTIONS,
     PARAMETERS,
-    ContinueSection,
-    StartSection,
-    SurveySection,
-    SweepSection,
 )
 from contvines.hints import did_you_mean
 from orbits.machines.catalogue import NAMES, model_class
@@ -45,6 +42,9 @@ WOULD_DO = {
     "starts": "a whole number of starts from 1 to 1000, for example 4",
     "max_period": "a whole number of forcing periods from 1 to 256, for example 16",
 }
+UNION = re.compile(
+    r"constrained-\w+|(list|dict)\[.*\]"
+)  # types as pydantic names them in the place of an error
 MOST = 20  # sentences in one refusal
 SECTIONS = {
     "model": 'name = "absorber" and its parameters',
@@ -53,8 +53,32 @@ SECTIONS = {
 }
 
 
-def would_do(key: str, machine: Any = None) -> str:
+# of names that mean another thing in one of the sections
+WOULD_DO_IN = {
+    ("atlas", "values"): "a whole number of values from 1 to 10000, for example 16, or a list of values",
+    ("atlas", "starts"): "a whole number of starts from 1 to 10000000, for example 256",
+    ("atlas", "scan"): "a whole number of further values from 0 to 1000000; 0: none",
+}
+
+
+def _section_models() -> dict[str, type[BaseModel]]:
+    """The model of every section but `[model]`, by its name in a study."""
+    found = {}
+    for name, entry in schema.StudySections.model_fields.items():
+        kinds = [entry.annotation, *get_args(entry.annotation)]
+        found[entry.alias or name] = next(
+            k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)
+        )
+    return found
+
+
+_SECTION_MODELS = _section_models()
+
+
+def would_do(key: str, machine: Any = None, section: str = "") -> str:
     """What would do for a field: a parameter of the machine of that name, or a field of the study."""
+    if (section, key) in WOULD_DO_IN:
+        return WOULD_DO_IN[section, key]
     if machine in NAMES and key in PARAMETERS[machine]:
         return schema.would_do(model_class(machine).parameter(key))
     return WOULD_DO.get(key, "another value")
@@ -70,6 +94,15 @@ def refusal_of(machine: str, section: str, key: str, value: Any) -> str | None:
             {**error.errors()[0], "loc": (section, key), "input": value}, {"model": {"name": machine}}
         )
     return None
+
+
+def sentences_of(refused: ValidationError, data: dict[str, Any]) -> list[str]:
+    """Everything that pydantic refuses, a sentence each; of a field that may be one of several types, one."""
+    found = {}
+    for error in refused.errors():
+        loc = tuple(part for part in error["loc"] if not (isinstance(part, str) and UNION.fullmatch(part)))
+        found.setdefault((loc, loc == error["loc"] and error["type"]), {**error, "loc": loc})
+    return [sentence_of(error, data) for error in found.values()]
 
 
 def sentence_of(error: Any, data: dict[str, Any]) -> str:
@@ -88,14 +121,15 @@ def sentence_of(error: Any, data: dict[str, Any]) -> str:
         if kind == "missing":
             return f"the section [{section}] is missing; it holds {SECTIONS[section]}."
         if kind == "extra_forbidden":
-            hint = did_you_mean(section, [*SECTIONS, "sweep", "survey"])
-            known = ", ".join(f"[{s}]" for s in [*SECTIONS, "sweep", "survey"])
+            sections = ["model", *_SECTION_MODELS]
+            hint = did_you_mean(section, sections)
+            known = ", ".join(f"[{s}]" for s in sections)
             return f"{section} = {_show(value)}: no such section{hint}; a study has {known}."
         return f"{section} = {_show(value)} is not a section; write [{section}] on a line of its own, its keys below."
     key = _cut(str(loc[1]))
     place = f"[{section}] {key}" + "".join(f"[{i}]" for i in loc[2:])
     model = data.get("model")
-    would = would_do(key, model.get("name") if isinstance(model, dict) else None)
+    would = would_do(key, model.get("name") if isinstance(model, dict) else None, section)
     if kind == "missing":
         return f"[{section}] {key} is missing; {would} would do."
     if kind == "extra_forbidden":
@@ -119,16 +153,10 @@ def sentence_of(error: Any, data: dict[str, Any]) -> str:
 
 
 def _fields(section: str, data: dict[str, Any]) -> list[str]:
-    models: dict[str, type[BaseModel]] = {
-        "start": StartSection,
-        "continue": ContinueSection,
-        "sweep": SweepSection,
-        "survey": SurveySection,
-    }
     if section == "model":
         name = data.get("model", {}).get("name")
         return list(MODEL_SECTIONS.get(name, MODEL_SECTIONS[NAMES[0]]).model_fields)
-    return list(models[section].model_fields)
+    return list(_SECTION_MODELS[section].model_fields)
 
 
 def unknown_field(section: str, key: str, value: Any, known: list[str]) -> str:

@@ -27,7 +27,7 @@ from contvines.command.schema import (
 )
 from contvines.command.sentences import (
     refusal_of,
-    sentence_of,
+    sentences_of,
     together,
     unknown_field,
     would_do,
@@ -164,7 +164,7 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     try:
         file = StudyFile.model_validate(data)
     except ValidationError as error:
-        raise StudyError(together([sentence_of(e, data) for e in error.errors()])) from None
+        raise StudyError(together(sentences_of(error, data))) from None
     return _resolve(file, Path(path))
 
 
@@ -174,7 +174,7 @@ def _physical(data: dict[str, Any], path: Path) -> Study:
     try:
         file = StudySections.model_validate(plain)
     except ValidationError as error:
-        raise StudyError(together([*wrong, *(sentence_of(e, data) for e in error.errors())])) from None
+        raise StudyError(together([*wrong, *sentences_of(error, data)])) from None
     if machine is None and not wrong:
         wrong = ["the section [model] is missing; it holds the machine's name and its quantities."]
     if machine is None:

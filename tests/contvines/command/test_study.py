@@ -114,6 +114,13 @@ def test_coupled_studies_have_their_own_parameters():
         ({"start": None}, ["[start] is missing"]),
         ({"continue_": None}, ["[continue] is missing"]),
         ({"contnue": {"depth": 2}}, ["contnue", "no such section", "did you mean 'continue'"]),
+        ({"atlas": {"starts": -1}}, ["[atlas] starts = -1", "from 1 to 10000000"]),
+        ({"atlas": {"strts": 3}}, ["[atlas] strts = 3", "did you mean 'starts'"]),
+        ({"atlas": {"values": 0}}, ["[atlas] values = 0 is out of range", "or a list of values"]),
+        (
+            {"chart": {"paramter": "friction"}},
+            ["[chart] paramter", "did you mean 'parameter'", "[chart] within is missing"],
+        ),
         ({"start__periods": 0}, ["[start] periods = 0", "whole number from 1 to 4096"]),
         ({"start__periods": 100_000}, ["[start] periods = 100000", "whole number from 1 to 4096"]),
         ({"model__gravity": 1e300}, ["[model] gravity = 1e+300", "from 0 to 1e6"]),
