@@ -118,8 +118,8 @@ def test_coupled_studies_have_their_own_parameters():
         ({"atlas": {"strts": 3}}, ["[atlas] strts = 3", "did you mean 'starts'"]),
         ({"atlas": {"values": 0}}, ["[atlas] values = 0 is out of range", "or a list of values"]),
         (
-            {"chart": {"paramter": "friction"}},
-            ["[chart] paramter", "did you mean 'parameter'", "[chart] within is missing"],
+            {"chart": {"parameter": "friction", "within": [0.1, 0.5], "depht": 2}},
+            ["[chart] depht = 2", "known are parameter, within"],
         ),
         ({"start__periods": 0}, ["[start] periods = 0", "whole number from 1 to 4096"]),
         ({"start__periods": 100_000}, ["[start] periods = 100000", "whole number from 1 to 4096"]),
