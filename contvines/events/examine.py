@@ -194,7 +194,9 @@ class Examiner:
         near, ends = (
             self.engine.spectrum(row) for row in (point.row, np.array([segment.a.row, segment.b.row]))
         )
-        one = near[np.argmin(np.abs(near))]
+        one = near[
+            np.argmin(np.abs(near.real))
+        ]  # the one that passes; another may be next to nothing all along
         unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
         return bool(abs(one) > REACHED * unit)
 

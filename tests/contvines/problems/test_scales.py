@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.problems.scales import in_fields
 from tests.contvines.problems.demos import equilibria as eq
-from tests.contvines.problems.demos import maps
+from tests.contvines.problems.demos import listed, maps
 from tests.contvines.problems.demos.demo import NUMBERS
 
 CASES = {
@@ -101,3 +101,10 @@ def test_a_pair_that_passes_the_axis_is_no_branch_point(unit, row):
 
     graph = cv.diagram(cv.AlgebraicProblem(F, [0.0, 0.0], -1e-9), within=(-1e-9, 1e-9))
     assert {s.kind for s in graph.special.values()} == {"end"}
+
+
+def test_nor_is_it_beside_an_eigenvalue_that_is_next_to_nothing():
+    """The feedback system adaptx in units of 1e-9: one real eigenvalue is 1e-10 of the others, and F_u is singular nowhere."""
+    (demo,) = (demo for demo in listed.DEMOS if demo.name == "adaptx")
+    found = points(demo.equations, np.array(demo.u), demo.p, demo.within, 1e-9, 1.0, 1.0)
+    assert {row[0] for row in found} == {"end"}
