@@ -157,12 +157,13 @@ class Watch(Examiner):
         found = self.examine(segment, real=real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
-        # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back wherever rounding has it
+        # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = ROUNDING * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
             e
             for e in found
-            if e.kind != "astray" and not (e.kind == "fold" and abs(e.point.p - origin.p) <= flat)
+            if e.kind != "astray"
+            and not (e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= flat)
         ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]

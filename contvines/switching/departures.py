@@ -16,6 +16,7 @@ MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where fo
 SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
 ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
+ASIDE = (0.0, 1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
 
 
@@ -65,8 +66,8 @@ def null_vectors(
     The tangent of the branch itself is excluded by the last row. Usually there is one; several (up to four) where several
     multipliers cross at once; none where (u, p) is not a branch point.
     """
-    engine.residual(u, p)
     border = engine.weights * tangent
+    _evaluate(engine, u, p, border)
     rng = np.random.default_rng(3)
     found: list[np.ndarray] = []
     first = 0.0
@@ -86,6 +87,22 @@ def null_vectors(
             break
         found.append(_oriented(engine, engine.unit(image)))
     return found[:KERNEL]
+
+
+def _evaluate(engine: Engine, u: np.ndarray, p: float, border: np.ndarray) -> None:
+    """Evaluate the equations at a branch point, or so little beside it that the matrix can be inverted.
+
+    By chance it may be singular to the last bit, and its inverse infinite.
+    """
+    side = np.append(engine.row_sizes, 0.0)
+    for near in _aside(engine, u):
+        engine.residual(near, p)
+        if np.isfinite(engine.apply_inverse(border, side)).all():
+            return
+
+
+def _aside(engine: Engine, u: np.ndarray) -> list[np.ndarray]:
+    return [u + part * np.maximum(np.abs(u), engine.scale[:-1]) for part in ASIDE]
 
 
 def _oriented(engine: Engine, vector: np.ndarray) -> np.ndarray:
@@ -223,6 +240,15 @@ def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved 
     return far < 3.5 * close
 
 
+def _origin(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
+    """The branch point with its row, if need be of a point beside it; see `_evaluate`."""
+    border = engine.weights * tangent
+    target = float(border @ engine.join(u, p))
+    solved = (engine.polish(near, p, border, target) for near in _aside(engine, u))
+    found = next((point for point in solved if point is not None), None)
+    return None if found is None else found._replace(u=np.array(u, dtype=float))
+
+
 def _depart(
     engine: Engine,
     u: np.ndarray,
@@ -266,7 +292,7 @@ def _depart(
                 slope = (4.0 * (near.p - behind.p) - 0.5 * (ahead.p - back.p)) / (3.0 * amplitude)
             curvature = (4.0 * narrow - wide) / 3.0
             chord = engine.join(ahead.u, ahead.p) - (z if back is None else engine.join(back.u, back.p))
-            origin = engine.polish(u, p, engine.weights * tangent, float(engine.weights * tangent @ z))
+            origin = _origin(engine, u, p, tangent)
             if origin is None:
                 return None
             origin = origin._replace(tangent=engine.unit(chord if back is not None else direction), sign=0.0)

@@ -9,6 +9,7 @@ import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from contvines.switching.departures import departures, null_vectors
+from orbits import Absorber
 
 
 def engine_of(f, n):
@@ -114,3 +115,25 @@ def test_symmetry_class_of_a_branch_point():
         (point,) = graph.of_kind(kind)
         assert point.mirror == (mirror is not None)
         assert sum(graph["B2"].values == 1.0) == points
+
+
+def test_a_matrix_that_is_singular_to_the_last_bit():
+    """By chance that of the elimination is, at this symmetry breaking with these steps; the branch that leaves was lost.
+
+    Symmetric LR breaks at beta = (2 pi - 4 R H)/(pi^2 - 4), C^2 = (1 - pi beta/2)^2 + (R beta + H)^2, with R = (1 - r)/(1 + r) and
+    H = pi a/2.
+    """
+    r, friction, gravity = 0.6198998017488868, 0.30984321600220044, 0.054285101460721324
+    machine = Absorber(restitution=r, friction=friction, gravity=gravity)
+    within = (0.1061932614806999, 0.9061932614806999)
+    R, H = (1.0 - r) / (1.0 + r), 0.5 * np.pi * friction * gravity
+    beta = (2.0 * np.pi - 4.0 * R * H) / (np.pi**2 - 4.0)
+    breaking = np.hypot(1.0 - 0.5 * np.pi * beta, R * beta + H)
+    for steps in ({}, {"max_step": 0.02}, {"first_step": 5e-4}):
+        orbit = machine.symmetric_orbit(0.5061932614806999)
+        graph = cv.diagram(orbit, over="amplitude", within=within, depth=1, settings=steps)
+        point = graph["SB1"]
+        assert point.value == pytest.approx(breaking, rel=1e-12)
+        assert point.criticality == "supercritical"
+        side = next(branch for branch in graph if branch.seed == "SB1")
+        assert not side.problem.symmetric and side.stable[1:-1].all()

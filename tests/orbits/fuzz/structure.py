@@ -41,7 +41,9 @@ def _branch(branch: Any, tally: Tally) -> None:
     marked = {i for i, _ in branch.marks}
     flips = np.flatnonzero(branch.stable[1:] != branch.stable[:-1])
     loose = [int(i) for i in flips if not {i, i + 1} & marked]
-    if loose:
+    if loose and not branch.real:
+        tally.count("virtual branches that change their stability without a point")
+    elif loose:
         tally.find(
             "stability",
             f"{branch.label} changes its stability at {branch.values[loose[0]]:.9g} without a point",
