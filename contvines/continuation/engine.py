@@ -273,7 +273,7 @@ class Engine:
             return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
         if margins.ndim == 1:
-            return np.float64(min((value for value in margins.tolist() if value == value), default=np.inf))
+            return np.asarray(min((value for value in margins.tolist() if value == value), default=np.inf))
         if margins.shape[-1] > 16:
             smallest = np.fmin.reduce(margins, axis=-1)
         else:  # few columns, many rows

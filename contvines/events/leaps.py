@@ -31,19 +31,18 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     if segment.length <= SHORTEST:
         return None
     stop = next((i for i, e in enumerate(found) if e.ends_branch), len(found))
-    if not (any(_inexact(segment, e) for e in found[: stop + 1]) or _unaccounted(segment, found, stop)):
+    if not (any(inexact(segment, e) for e in found[: stop + 1]) or _unaccounted(segment, found, stop)):
         return None
     ends = (segment.a.p, segment.b.p)
     return Located(0.0, "", 0, segment.a, ends, 0.0, Role.LEAP)
 
 
-def _inexact(segment: Segment, event: Located) -> bool:
+def inexact(segment: Segment, event: Located) -> bool:
+    """Whether a special point could not be located as well as those are that exist."""
     unit = segment.engine.parameter_unit(event.point.p)
     size = segment.engine.size(event.point.u)
-    inexact = max(INEXACT, NOISY * segment.engine.noise)
-    return (
-        event.kind == "astray" or event.error > 10.0 * inexact * unit or event.point.residual > inexact * size
-    )
+    least = max(INEXACT, NOISY * segment.engine.noise)
+    return event.kind == "astray" or event.error > 10.0 * least * unit or event.point.residual > least * size
 
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:

@@ -13,7 +13,7 @@ from ..continuation.engine import Solved
 from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
 from .examine import ROUNDING, Examiner, changes
-from .leaps import leap
+from .leaps import inexact, leap
 from .located import Located, Role
 from .multipliers import LIMIT, balance, counts, nearest_to_circle
 from .scan import (
@@ -162,7 +162,8 @@ class Watch(Examiner):
         found = [
             e
             for e in found
-            if e.kind != "astray"
+            # what cannot be located is no special point: the segment leads on to another branch
+            if not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= flat)
         ]
         bracket = (origin.p, first.p)
@@ -271,7 +272,8 @@ class Watch(Examiner):
         stability is lost, though not at its ends.
         """
         if bits & MEETING:
-            bits &= ~DAMPED  # a branch that comes back to a symmetry is marginal there: no point to cut it at
+            # a branch that comes back to a symmetry is marginal there: no point to cut it at
+            bits &= ~(DAMPED | TWICE)
         side = np.sign(segment.a.tangent[-1]) / self.engine.parameter_unit(segment.a.p)
         tests = {
             SHALLOW: lambda point: float(self.engine.smallest_margin(point.row)),
