@@ -21,7 +21,9 @@ class Format(StrEnum):
 
 def export(
     file: FileArgument,
-    to: Annotated[Format, typer.Option("--to", help="The format.")],
+    to: Annotated[
+        Format | None, typer.Option("--to", help="The format; by default that of the output's name.")
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
@@ -47,6 +49,14 @@ def export(
     from contvines.export import export as write
     from contvines.store import load
 
+    if to is None:
+        ending = output.suffix.removeprefix(".") if output is not None else ""
+        if ending not in Format.__members__:
+            raise typer.BadParameter(
+                "the format is missing: --to csv, or a name that tells it, -o results.csv; formats are "
+                + ", ".join(Format)
+            )
+        to = Format(ending)
     target = output or beside(file, f".{to.value}")
     check_target(target, to.value)
     measures = to in (Format.csv, Format.mat)

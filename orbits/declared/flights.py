@@ -302,11 +302,14 @@ SAFE = 1e5  # product of norms up to which the product of the factors keeps the 
 
 
 def _periodic(chain: np.ndarray, size: int) -> np.ndarray:
-    from orbits.multipliers.periodic_schur import multipliers as periodic
-    from orbits.multipliers.periodic_schur import scratch_size
+    # kept on disk; what decides between it and the scaled product would be compiled anew by every process
+    from orbits.multipliers.factors import scratch_size
+    from orbits.multipliers.periodic_qr import periodic_multipliers
 
     length = len(chain)
     re, im = np.zeros(size), np.zeros(size)
     against = np.tile(-np.eye(size), (length, 1, 1))
-    periodic(np.ascontiguousarray(chain), against, 1.0, re, im, np.zeros(scratch_size(length, size)))
+    periodic_multipliers(
+        np.ascontiguousarray(chain), against, 1.0, re, im, np.zeros(scratch_size(length, size))
+    )
     return re + 1j * im

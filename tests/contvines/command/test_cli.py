@@ -190,6 +190,8 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
         (("plot", "g.vines", "-o", "a.doc"), "must end in .png"),
         (("plot", "g.vines", "--kind", "multipliers", "--branch", "B9"), "B9: there is no such branch"),
         (("export", "g.vines", "--to", "xml"), "xml"),
+        (("export", "g.vines"), "the format is missing"),
+        (("export", "g.vines", "-o", "points.xlsx"), "formats are csv, json, graphml, mat"),
         (("export", "g.vines", "--to", "csv", "-o", "none/a.csv"), "there is no folder 'none'"),
         (
             ("export", "g.vines", "--to", "csv", "-o", "g.vines"),
