@@ -114,3 +114,18 @@ def ratios(rounds, repetitions=REPETITIONS):
             slope = np.polyfit(np.log(lengths), np.log([found[l] for l in lengths]), 1)[0]
             exponents[name] = float(slope)
     return seconds, times, exponents
+
+
+def chart_in_diagrams(rounds):
+    """Median over rounds, in turns, of the time of the chart of amplitude and friction in times of a diagram."""
+    orbit = MACHINE.symmetric_orbit(amplitude=0.55)
+    found = []
+    for k in range(rounds + 1):
+        marks = [time.process_time()]
+        graph = cv.diagram(orbit, over="amplitude", within=(0.2, 1.3))
+        marks.append(time.process_time())
+        cv.chart(graph, over="friction", within=(0.02, 0.9))
+        marks.append(time.process_time())
+        if k:  # the first round compiles
+            found.append((marks[2] - marks[1]) / (marks[1] - marks[0]))
+    return statistics.median(found)

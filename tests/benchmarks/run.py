@@ -23,7 +23,7 @@ from . import case, scripts
 from .auto import Auto
 from .flights import MODELS, Flights
 from .floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
-from .loci import REPETITIONS, ratios
+from .loci import REPETITIONS, chart_in_diagrams, ratios
 from .ours import Core, Diagram, PublicAPI
 from .starts import Starts
 
@@ -246,6 +246,7 @@ def two_parameters(rounds, repetitions):
     show("times a point of its branch", times, columns, lambda kind, c: number(times[kind][of[c]]))
     if exponents:
         print("exponent from l=32: " + ", ".join(f"{slope:.2f} {kind}" for kind, slope in exponents.items()))
+    print(f"chart of amplitude and friction: {chart_in_diagrams(rounds):.1f} diagrams")
 
 
 def number(value, scale=1.0):

@@ -47,7 +47,7 @@ def test_an_interrupt_inside_a_callback_is_given_again():
     process.stdout.readline()
     time.sleep(0.1)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=600)
     assert process.returncode == 130
     assert "Traceback" not in said and said.startswith("contvines: stopped")
 

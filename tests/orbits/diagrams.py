@@ -10,7 +10,7 @@ from contvines.events.kinds import BORDERS
 from orbits.cycles.identity import canonical
 from orbits.starts.find import polish
 
-SECONDS = 300.0  # of processor time: a guard against hanging, far above what any diagram here takes
+SECONDS = 1800.0  # of processor time: a guard against hanging, far above what any diagram here takes
 
 
 @pytest.fixture(autouse=True)

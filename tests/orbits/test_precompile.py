@@ -45,7 +45,7 @@ def test_one_process_compiles_what_is_missing_wherever_it_is_started(monkeypatch
     monkeypatch.setattr(precompile, "_missing", lambda name: True)
     process = precompile.compile_ahead("absorber", "contvines.events.scan:prepare")
     assert process is not None and precompile.compile_ahead("absorber") is process
-    assert process.wait(timeout=120) == 0
+    assert process.wait(timeout=600) == 0
 
 
 def test_other_sources_are_not_compiled(monkeypatch):

@@ -1,7 +1,5 @@
 """Loci of the reduced absorber against closed forms and against diagrams in one parameter."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -74,26 +72,3 @@ def test_a_bad_second_parameter_is_refused_in_a_sentence(graph):
         cv.locus(graph["LP1"], over="friction", within=(0.6, 0.9))
     with pytest.raises(ValueError, match="friction = -0.1 is out of range"):
         cv.locus(graph["LP1"], over="friction", within=(-0.1, 0.9))
-
-
-def shortest(work, times=3):
-    """Least processor time of a few runs, the first of which compiles."""
-    found = []
-    for _ in range(times + 1):
-        start = time.process_time()
-        result = work()
-        found.append(time.process_time() - start)
-    return min(found[1:]), result
-
-
-def test_what_loci_and_charts_cost(graph):
-    orbit = Absorber(**MACHINE).symmetric_orbit(amplitude=0.55)
-    branch, points = shortest(lambda: list(cv.trace(orbit, over="amplitude", within=(0.45, 0.69))))
-    for label in ("LP1", "VG1"):
-        locus, found = shortest(
-            lambda label=label: cv.locus(graph[label], over="friction", within=(0.1, 0.9))
-        )
-        assert locus / len(found) < 20.0 * branch / len(points)
-    diagram, _ = shortest(lambda: cv.diagram(orbit, over="amplitude", within=(0.2, 1.3)))
-    chart, _ = shortest(lambda: cv.chart(graph, over="friction", within=(0.02, 0.9)), 1)
-    assert chart < 40.0 * diagram

@@ -153,7 +153,7 @@ def test_a_click_on_a_curve_shows_that_orbit_and_hovering_names_it(opened):
            return [r.left + f._size.l + f.xaxis.d2p(t.x[i]), r.top + f._size.t + f.yaxis.d2p(t.y[i]), t.customdata[i][1]]; }"""
     )
     opened.mouse.move(place[0], place[1])
-    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=10_000)
+    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=60_000)
     assert "B1" in opened.locator("#diagram .hoverlayer").text_content()
     opened.mouse.click(place[0], place[1])
     opened.wait_for_function(f"document.getElementById('command').textContent.endsWith('B1:{place[2]}')")
@@ -226,7 +226,7 @@ def test_a_chart_shows_the_motion_of_the_point_that_is_clicked(opened):
     line = trace_with(opened, "t.customdata && t.customdata[0][1] !== null && t.x.length > 2")
     x, y = place_of(opened, line, 2)
     opened.mouse.move(x, y)
-    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=10_000)
+    opened.wait_for_selector("#diagram .hoverlayer .hovertext", timeout=60_000)
     assert "symmetry breaking" in opened.locator("#diagram .hoverlayer").text_content()
     opened.mouse.click(x, y)
     opened.wait_for_function("document.getElementById('python').textContent.endsWith('.orbit(2)')")
