@@ -92,8 +92,9 @@ def compile_now(name: str, *more: str) -> None:
         model, Word.parse("LR"), 1, model.parameter_names[0], np.zeros(len(model.parameter_names))
     )
     unknowns, row = np.zeros(problem.dimension), np.zeros(1)
-    arguments = (problem.data, unknowns, 0.0, problem.workspace(), row)
-    problem.kernels.inspect.compile(tuple(map(typeof, arguments)))
+    data, work, compiled = problem.data, problem.workspace(), problem.kernels
+    arguments = tuple(map(typeof, (data, unknowns, 0.0, work, row)))
+    compiled.inspect.compile(arguments)
     for place in more:
         module, _, function = place.partition(":")
         getattr(importlib.import_module(module), function)()
@@ -103,6 +104,10 @@ def compile_now(name: str, *more: str) -> None:
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
+    compiled.examine.compile(arguments)
+    compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
+    if n == 2:
+        by_address.functions()
     settle_all(
         name,
         motion.start[None].copy(),
@@ -112,8 +117,6 @@ def compile_now(name: str, *more: str) -> None:
         tolerance=1e-8,
         workers=1,
     )
-    if n == 2:
-        by_address.functions()
 
 
 def _cores() -> int:
