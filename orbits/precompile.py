@@ -15,7 +15,7 @@ import sys
 import numpy as np
 from numba import config, typeof
 
-from orbits.compiling.ahead import cached, helpers
+from orbits.compiling.waiting import cached, processes
 from orbits.cycles import kernels
 from orbits.elimination import by_address
 from orbits.machines.catalogue import model_class, usual
@@ -39,7 +39,7 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         The process; this one waits for it where it would otherwise compile the same functions itself. None if there is nothing
         to compile or no second core.
     """
-    running = helpers.get(name)
+    running = processes.get(name)
     if running is not None and running.poll() is None:
         return running
     if _cores() < 2 or not _missing(name):
@@ -63,9 +63,9 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         )
     except OSError:
         return None
-    helpers[name] = process
+    processes[name] = process
     if _is_slow(usual(name)[0].node):
-        helpers[periodic_multipliers.__name__] = process
+        processes[periodic_multipliers.__name__] = process
     return process
 
 

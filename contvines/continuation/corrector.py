@@ -1,6 +1,6 @@
 """Corrector: Newton's method on the bordered system, along a branch and for single points.
 
-Runs compiled and interpreted: see :mod:`contvines.continuation.march`.
+Runs compiled and interpreted: see :mod:`contvines.continuation.loop`.
 """
 
 from typing import NamedTuple

@@ -15,8 +15,8 @@ import numpy as np
 
 from orbits.compiling import arguments, trigonometry
 from orbits.compiling import decorators as compiling
-from orbits.compiling.ahead import wait_for
 from orbits.compiling.decorators import specialise
+from orbits.compiling.waiting import wait_for
 from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
 from orbits.machines import path
 from orbits.machines.base import Model
