@@ -42,7 +42,7 @@ _HOME = {
     "chart": ".loci.charting",
     "diagram": ".graph.automatic",
     "load": ".store",
-    "locus": ".loci.following",
+    "locus": ".loci.tracing",
     "register": ".problems.registry",
     "resume": ".store",
     "save": ".store",
@@ -142,8 +142,8 @@ if TYPE_CHECKING:
     from .journal import MemoryJournal, NullJournal
     from .loci.chart import Chart
     from .loci.charting import chart
-    from .loci.following import locus
     from .loci.locus import Locus
+    from .loci.tracing import locus
     from .problems.algebraic import AlgebraicProblem
     from .problems.kernels import Kernels
     from .problems.maps import MapProblem

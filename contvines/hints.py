@@ -1,24 +1,19 @@
-"""Hints: names that are nearly right."""
+"""Arguments that a function does not have are refused with a hint."""
 
 from __future__ import annotations
 
-import difflib
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import fields
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
+
+from contvines_ground.near_names import did_you_mean
 
 from .doors import above
 
 P = ParamSpec("P")
 R = TypeVar("R")
-
-
-def did_you_mean(given: Any, known: Iterable[str]) -> str:
-    """ " (did you mean ...?)" where one of the known names is close, else empty."""
-    close = difflib.get_close_matches(str(given)[:60], [str(name) for name in known], n=1, cutoff=0.6)
-    return f" (did you mean {close[0]!r}?)" if close else ""
 
 
 def hinting(function: Callable[P, R]) -> Callable[P, R]:

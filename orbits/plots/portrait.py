@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.plots.figures import new_figure, styled
+from contvines_ground.figures import new_figure, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
