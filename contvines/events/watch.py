@@ -33,6 +33,7 @@ from .segment import Segment
 
 # beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about
 USER, TWICE, PAIRS, BORN = 256, 512, 1024, 2048
+NO_MARGIN = 1e-13  # something has no length or speed at all
 AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
 REACH, EDGE = (
     1.5,
@@ -129,7 +130,7 @@ class Watch(Examiner):
             leaping = leap(segment, found)
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
-            found = [e for e in found if e.kind != "astray"]
+            found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
@@ -271,6 +272,12 @@ class Watch(Examiner):
             return -spectrum.real.max(axis=-1)
         with np.errstate(divide="ignore"):
             return -np.log(np.abs(spectrum).max(axis=-1))
+
+    def _of_rounding(self, event: Located) -> bool:
+        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well."""
+        if event.role is not Role.SPECIAL or event.name:
+            return False
+        return bool(abs(self.engine.smallest_margin(event.point.row)) < NO_MARGIN)
 
     def _apart(self, event: Located, stop: Located) -> bool:
         engine, a, b = self.engine, event.point, stop.point
