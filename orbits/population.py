@@ -14,6 +14,7 @@ from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.attractors.recurrence import settle
+from orbits.hints import no_parameter
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
 from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip
@@ -59,9 +60,8 @@ class Population:
         workers: int | None = None,
     ) -> None:
         if parameter not in model.amount_names:
-            raise SimulationError(
-                f"{parameter!r} is no parameter of {model.name!r}; it has {', '.join(model.amount_names)}"
-            )
+            names = model.amount_names
+            raise SimulationError(no_parameter(repr(parameter), f"the model {model.name!r}", names))
         self.model, self.parameter = model, parameter
         self.parameters = dict(parameters or {})
         self.workers = (

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..doors import above
 from ..events.kinds import PREFIXES
-from ..hints import did_you_mean
+from ..hints import did_you_mean, hinted
 from .attractor import Attractor
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ class Switch:
         }
 
 
+@hinted
 @dataclass(eq=False)
 class Graph:
     """Branches and special points by label, and the switches between branches.

@@ -13,6 +13,7 @@ from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle
 from orbits.cycles.measures import gauged
+from orbits.hints import no_parameter
 from orbits.machines.stepping import MODE, RATE
 from orbits.simulation.driver import SimulationError, collect, first_state, machine
 from orbits.simulation.trajectory import Trajectory
@@ -110,9 +111,7 @@ def sweep(
     """
     numbers = [float(value) for value in values]
     if over not in model.amount_names:
-        raise SimulationError(
-            f"{over!r} is no parameter of {model.name!r}; it has " + ", ".join(model.amount_names)
-        )
+        raise SimulationError(no_parameter(repr(over), f"the model {model.name!r}", model.amount_names))
     if not numbers:
         raise SimulationError(f"no values of {over} to sweep over: give at least one")
     vectors = [

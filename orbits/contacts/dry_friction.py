@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from orbits.contacts.changes import CLOSE, SHORT, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
+from orbits.hints import hinted
 
 SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is zero
 
@@ -236,6 +237,7 @@ def _settle(beats: Sequence[Beat], after: list[int | None]) -> None:
             spread([i])
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class DryFriction(FrictionLaw):
     """Dry friction between two bodies, or a body and the ground.

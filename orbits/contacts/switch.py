@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from orbits.contacts.changes import CLOSE, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.riding import touched, withdrawn
+from orbits.hints import hinted
 
 
 class NotAlternating(ValueError):
@@ -148,6 +149,7 @@ class SwitchLaw:
         return self.weakened(site, j)
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class Switch(SwitchLaw):
     """A surface at which the equations of motion change: stops with springs, backlash, clutches.

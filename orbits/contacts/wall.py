@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Letter
+from orbits.hints import hinted
 
 FREE, HELD = 0, 1  # modes
 
@@ -99,6 +100,7 @@ class WallLaw:
         return []
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class Wall(WallLaw):
     """A unilateral contact with Newton's impact law.

@@ -17,6 +17,7 @@ from orbits.declared.equations import Equations
 from orbits.declared.formulas import PageError
 from orbits.declared.page import Page, page_of
 from orbits.doors import above
+from orbits.hints import hinting, no_parameter
 from orbits.machines.parameters import ParameterError
 from orbits.words.alphabet import Alphabet
 from orbits.words.of_pages import PageWord, parse
@@ -50,6 +51,7 @@ class Machine:
         If the page is no machine; the sentence names the contact and the way out.
     """
 
+    @hinting
     def __init__(
         self,
         *,
@@ -125,9 +127,7 @@ class Machine:
         given = dict(values or {})
         for key, value in given.items():
             if key not in self.parameters:
-                raise ParameterError(
-                    f"{key} is no parameter of the machine {self.name!r}; it has {', '.join(self.parameter_names)}"
-                )
+                raise ParameterError(no_parameter(key, f"the machine {self.name!r}", self.parameter_names))
             try:
                 number = float(value)
             except (TypeError, ValueError):

@@ -15,6 +15,7 @@ from orbits.declared import flights, loci
 from orbits.declared.engine import variables_of
 from orbits.declared.machine import Machine
 from orbits.declared.margins import fill_margins, owned, per_node
+from orbits.hints import did_you_mean
 from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi
@@ -97,7 +98,8 @@ class DeclaredSystem:
     ) -> None:
         if parameter not in machine.parameter_names:
             raise ValueError(
-                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}; choose one of "
+                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}"
+                f"{did_you_mean(parameter, machine.parameter_names)}; choose one of "
                 + ", ".join(machine.parameter_names)
             )
         if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):

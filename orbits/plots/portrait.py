@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.hints import hinting
 from orbits.plots.figures import new_figure, styled
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ PANELS = ("both", "phase", "history")
 NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
 
 
+@hinting
 def portrait(
     orbit: Orbit,
     points: int = 1200,

@@ -10,6 +10,7 @@ import numpy as np
 
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.margins import PER_NODE, margin_name
+from orbits.hints import no_parameter
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.branches import Pieces
 from orbits.proofs.checks import check_symmetry, motif_of
@@ -234,7 +235,7 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
     names = parameter_names(machine)
     for name in changed:
         if name not in names:
-            raise ProofError(f"{name} is no parameter of the machine {machine!r}; it has {', '.join(names)}")
+            raise ProofError(no_parameter(name, f"the machine {machine!r}", names))
     return {name: changed.get(name, own[name]) for name in names}
 
 

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from orbits.doors import above
+from orbits.hints import hinting
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import LevelRest
 from orbits.machines.cavity.shaken import Shaken
@@ -90,6 +91,7 @@ class Absorber(Shaken):
         except ParameterError:
             return
 
+    @hinting
     def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Any:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
