@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_arguments import hinting
 from orbits.cycles.solution import Solution
 from orbits.doors import above
-from orbits.hints import hinting
 
 
 @dataclass(frozen=True, eq=False, repr=False)

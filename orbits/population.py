@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
 from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.attractors.recurrence import settle
-from orbits.hints import no_parameter
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
 from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip

@@ -184,7 +184,7 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
 def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
     """The machine told by the unknown parameters, and their values in the study."""
     from contvines.command.compose import machine
-    from contvines.hints import did_you_mean
+    from contvines_ground.near_names import did_you_mean
 
     model = machine(study)
     known = list(model.tables.QUANTITIES) if study.quantities else list(study.parameters)

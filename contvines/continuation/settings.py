@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ..hints import did_you_mean, hinted
+from contvines_ground.near_names import did_you_mean
+
+from ..hints import hinted
 from .step_rule import BY_ANGLE, StepRule
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from contvines_ground.near_names import did_you_mean
+
 from ..doors import above
 from ..events.kinds import PREFIXES
-from ..hints import did_you_mean, hinted
+from ..hints import hinted
 from .attractor import Attractor
 
 if TYPE_CHECKING:

@@ -7,10 +7,12 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+from contvines_ground.near_names import did_you_mean
+
 from ..doors import above
 from ..events.kinds import CODIMENSION_TWO
 from ..graph.persistence import branch_of, content_of
-from ..hints import did_you_mean, hinted
+from ..hints import hinted
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
 from .plane_point import PlanePoint

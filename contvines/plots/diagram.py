@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from contvines_ground.near_names import did_you_mean
+
 from ..graph.measures import default_measure
-from ..hints import did_you_mean, hinting
+from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled, thin_ticks
 from .insets import Region
 from .legends import draw_legend, hold_legend

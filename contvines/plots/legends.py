@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..hints import did_you_mean
+from contvines_ground.near_names import did_you_mean
+
 from .figures import settle
 from .labels import text_widths
 from .style import LINES, PROVED, STATES, WIDTHS, Mark

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle
 from orbits.cycles.measures import gauged
-from orbits.hints import no_parameter
 from orbits.machines.stepping import MODE, RATE
 from orbits.simulation.driver import SimulationError, collect, first_state, machine
 from orbits.simulation.trajectory import Trajectory

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import NamedTuple
 
+from contvines_ground.near_arguments import hinted
 from orbits.contacts.changes import CLOSE, SHORT, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
-from orbits.hints import hinted
 
 SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is zero
 

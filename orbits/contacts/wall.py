@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from contvines_ground.near_arguments import hinted
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Letter
-from orbits.hints import hinted
 
 FREE, HELD = 0, 1  # modes
 

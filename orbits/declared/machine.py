@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_arguments import hinting
+from contvines_ground.near_names import no_parameter
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
@@ -17,7 +19,6 @@ from orbits.declared.equations import Equations
 from orbits.declared.formulas import PageError
 from orbits.declared.page import Page, page_of
 from orbits.doors import above
-from orbits.hints import hinting, no_parameter
 from orbits.machines.parameters import ParameterError
 from orbits.words.alphabet import Alphabet
 from orbits.words.of_pages import PageWord, parse

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.cycles.identity import canonical, size_of_one
@@ -15,7 +16,6 @@ from orbits.declared import flights, loci
 from orbits.declared.engine import variables_of
 from orbits.declared.machine import Machine
 from orbits.declared.margins import fill_margins, owned, per_node
-from orbits.hints import did_you_mean
 from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi

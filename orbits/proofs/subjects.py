@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.margins import PER_NODE, margin_name
-from orbits.hints import no_parameter
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.branches import Pieces
 from orbits.proofs.checks import check_symmetry, motif_of

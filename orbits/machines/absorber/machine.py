@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from contvines_ground.near_arguments import hinting
 from orbits.doors import above
-from orbits.hints import hinting
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import LevelRest
 from orbits.machines.cavity.shaken import Shaken
