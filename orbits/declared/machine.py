@@ -188,11 +188,7 @@ class Machine:
         """Modes that a state suggests: free walls, signs of velocities and surfaces."""
         absent = self.absent(params)
         numbers = np.concatenate([params, np.zeros(len(self.equations.signed))])
-        values = (
-            self.compiled.contact_values()(state[None], np.array([clock]), numbers[None])[0]
-            if self.contacts
-            else []
-        )
+        values = self.compiled.contact_values().one(state, clock, numbers) if self.contacts else []
         modes = []
         for j, (contact, value) in enumerate(zip(self.contacts, values)):
             if isinstance(contact, Wall):

@@ -168,7 +168,11 @@ class DeclaredSystem:
             word.modes[i % len(word.modes)][letter.contact] if letter.contact >= 0 else 0
             for i, letter in enumerate(self.letters)
         ]
-        self.flights = [compiled.flight(key, active) for key in keys]
+        self.flight_groups = []
+        for key in dict.fromkeys(keys):
+            places = np.array([i for i in range(self.length) if keys[i] == key])
+            many = compiled.flights(key, active) if len(places) >= flights.TOGETHER else None
+            self.flight_groups.append((compiled.flight(key, active), many, places))
         self.rate_groups = [
             (compiled.rates(key), np.array([i for i in range(self.length) if keys[i] == key]))
             for key in dict.fromkeys(keys)
