@@ -284,6 +284,16 @@ static int settled(State *s, int periods, int count, int *image, State *seen) {
   return j;
 }
 
+/* beside a doubling twice the period returns first: the shortest one, with its impacts and events */
+static int shortest(State *s, int periods, const State *seen) {
+  for (int q = 1; q < periods; q++)
+    if (periods % q == 0 && apart(&seen[0], &seen[q]) < 1e-9) {
+      *s = seen[0], s->psi = s->hits = s->events = 0, advance(s, q);
+      return q;
+    }
+  return periods;
+}
+
 static void learn(Kind *k, const State *seen, int periods, const State *end) {
   *k = (Kind){.periods = periods, .hits = end->hits, .events = end->events, .free = !end->hits, .count = 1};
   for (int q = 0; q < periods; q++) {
@@ -331,7 +341,10 @@ int main(int argc, char **argv) {
         if (!s.events && !s.mode) { stuck++; break; }
         for (j = 0; j < count; j++)
           if (!s.hits && kinds[j].free && kinds[j].periods == k && kinds[j].events == s.events) break;
-        if (j == count && s.hits && (one = settled(&s, k, count, &image, seen)) >= 0) kinds[one].mirrored += image, j = one;
+        if (j == count && s.hits) {
+          if ((one = settled(&s, k, count, &image, seen)) >= 0) kinds[one].mirrored += image, j = one;
+          else k = shortest(&s, k, seen);
+        }
         if (j < count) kinds[j].count++;
         else if (count < KINDS) learn(&kinds[count++], seen, k, &s);
       }
