@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
 from orbits.attractors.distinct import alike, distinct
@@ -59,9 +60,8 @@ class Population:
         workers: int | None = None,
     ) -> None:
         if parameter not in model.amount_names:
-            raise SimulationError(
-                f"{parameter!r} is no parameter of {model.name!r}; it has {', '.join(model.amount_names)}"
-            )
+            names = model.amount_names
+            raise SimulationError(no_parameter(repr(parameter), f"the model {model.name!r}", names))
         self.model, self.parameter = model, parameter
         self.parameters = dict(parameters or {})
         self.workers = (

@@ -14,7 +14,7 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from ..continuation.starts import solve_start, told_start
 from ..continuation.status import Status
 from ..events.kinds import BORDERS

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.coexistence.looking import look, told
+from contvines.coexistence.missing import look, told
 from orbits import Absorber
 from orbits.attractors import find_attractor
 
