@@ -9,6 +9,7 @@ from contvines_ground.near_names import did_you_mean
 
 from ..doors import above
 from ..events.kinds import PREFIXES
+from ..hints import hinted
 from .attractor import Attractor
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class Switch:
         }
 
 
+@hinted
 @dataclass(eq=False)
 class Graph:
     """Branches and special points by label, and the switches between branches.

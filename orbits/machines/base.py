@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines_ground.near_names import did_you_mean, no_parameter
 from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest
@@ -117,9 +117,7 @@ class Model(Varying):
         for entry in cls.settable:
             if entry.name == name:
                 return entry
-        raise ParameterError(
-            f"{name} is no parameter of the model {cls.name!r}; it has " + ", ".join(cls.parameter_names)
-        )
+        raise ParameterError(no_parameter(name, f"the model {cls.name!r}", cls.parameter_names))
 
     @classmethod
     def field_names(cls) -> tuple[str, ...]:
