@@ -111,7 +111,10 @@ class Compiled:
         if letter.kind == SWITCH:
             return e.surface[j]
         guards = e.pattern(key).guards
-        return next(g.value for g in guards if g.contact == j and g.kind == SLIP and g.sign == sign)
+        found = [g.value for g in guards if g.contact == j and g.kind == SLIP and g.sign == sign]
+        if not found:
+            raise ValueError(f"a slip of {e.contacts[j].name!r} follows a flight in which it does not stick")
+        return found[0]
 
     def contact_values(self) -> engine.Values:
         """Gaps, velocities and surfaces: one value per contact, in any mode."""

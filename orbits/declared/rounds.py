@@ -51,8 +51,13 @@ def escapes(
     wider, whole = _repeated(problem, orbit, 2)
     edits = edits_at(whole, index)
     plain = [_derivative(*solution) for solution in beside[-2:]]
-    known = [_rounds(problem, orbit, p, edit, plain) for edit in edits]
-    hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
+    own = edits_at(orbit, index)
+    hopeless: list[set[tuple[int, int]]] = [set() for _ in edits]
+    if [edit.change for edit in own] == [
+        edit.change for edit in edits
+    ]:  # else one round has no room for them
+        known = [_rounds(problem, orbit, p, edit, plain) for edit in own]
+        hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
     for rounds, changed in choices(MOST):
         wanted = [edit for edit, no in zip(edits, hopeless) if (rounds, changed) not in no]
         if not wanted or (changed > 1 and not problem.forced):
@@ -90,8 +95,10 @@ def _rounds(
     plain: list[tuple[np.ndarray, float] | None],
 ) -> Rounds | None:
     """Unchanged and changed rounds; None where they cannot be told."""
+    if edit.change.stop > problem.length:
+        return None
     start = with_edits(problem, orbit, [edit])
-    if start is None:
+    if start is None or not len(start[0].word):
         return None
     other, guess, first, change = start
     if change.grows is Grows.MARGIN:
