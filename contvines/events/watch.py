@@ -164,7 +164,9 @@ class Watch(Examiner):
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
             if not (e.role is Role.SPECIAL and inexact(segment, e))
-            and not (e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= flat)
+            and not (
+                e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= max(flat, 10.0 * e.error)
+            )
         ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
