@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.text_table import fitted
+from contvines.command.options import SizeOption
+from contvines.text_table import Table, terminal_width
 
 if TYPE_CHECKING:
     from contvines.command.study import Study
@@ -27,6 +28,7 @@ def sweep(
             "--plot", metavar="FILE.png", help="Draw the attractors: B at every impact, or largest |q1|."
         ),
     ] = None,
+    size: SizeOption = None,
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
     ] = None,
@@ -50,18 +52,19 @@ def sweep(
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
     if not quiet:
-        typer.echo(fitted(_summary(rows, read.parameter)))
+        typer.echo(_summary(rows, read.parameter))
     if plot is not None:
         from contvines.command.sweep_picture import picture
         from contvines.plots.figures import save_figure
 
-        save_figure(picture(rows, read, graph), plot)
+        save_figure(picture(rows, read, graph, size), plot)
         say(f"drawn in {plot}", quiet)
 
 
@@ -145,16 +148,16 @@ class _counter:
 
 def _summary(rows: "list[Kept]", parameter: str) -> str:
     """Runs of equal attractors, one line each."""
-    lines = []
+    runs = []
     first = 0
     for i in range(1, len(rows) + 1):
         if i == len(rows) or _kind(rows[i]) != _kind(rows[first]):
-            word = f" {rows[first].word}  k = {rows[first].periods}" if rows[first].word else ""
-            lines.append(
-                f"{parameter} {rows[first].value:.6g} to {rows[i - 1].value:.6g}: {rows[first].attractor}{word}"
-            )
+            row, last = rows[first], rows[i - 1]
+            periods = f"k={row.periods}" if row.word else ""
+            runs.append((f"{row.value:.6g} to {last.value:.6g}", row.attractor, periods, row.word))
             first = i
-    return "\n".join(lines)
+    head = (parameter, "settles on", "periods", "word")
+    return "\n".join(Table(head, runs, spare=("periods",)).lines(terminal_width()))
 
 
 def _kind(row: "Kept") -> tuple[Any, ...]:
