@@ -174,7 +174,7 @@ class Engine:
         sweeps: int,
     ) -> Solved | None:
         here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
-        with self.section:
+        with self.section, np.errstate(all="ignore"):
             p, sweeps, residual, sign, size = self.bound.point(
                 self.data,
                 self.work,
