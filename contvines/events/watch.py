@@ -145,7 +145,7 @@ class Watch(Examiner):
         return events
 
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
-        """The special points between a branch point and the first point of a branch that leaves it, in order.
+        """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
 
         The beginning of the segment, where every solution is that of a nearly singular system, is left out.
         """
@@ -157,18 +157,21 @@ class Watch(Examiner):
         found = self.examine(segment, real=real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
+        found.sort(key=lambda e: e.position)
+        leaping = leap(segment, found)
         # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = ROUNDING * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
             e
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
-            if not (e.role is Role.SPECIAL and inexact(segment, e))
+            if e.kind != "astray"
+            and not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= flat)
         ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
-        return before_stop(sorted(found, key=lambda e: e.position))
+        return before_stop(found) + ([] if leaping is None else [leaping])
 
     def _suspects(self, chunk: Chunk, i: int) -> list[int]:
         """The margins that may pass zero and come back in a segment: the parabola through three of their values does."""

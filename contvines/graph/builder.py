@@ -12,6 +12,7 @@ from ..branches.beginning import from_border
 from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
+from ..branches.opening import on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.march import MARGIN
@@ -196,6 +197,7 @@ def begins_elsewhere(run: Run, engine: Engine, half: HalfBranch, pending: Pendin
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     """The first regular point of a pending branch, or None."""
     if pending.kind is Origin.SWITCH:
+        _on_this_side(engine, pending)
         first = pending.ahead
         if first is not None and not engine.lower <= first.p <= engine.upper:
             first = pending.back
@@ -218,6 +220,18 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
+
+
+def _on_this_side(engine: Engine, pending: Pending) -> None:
+    """Bring the first points of a departure to this side of a border that is near."""
+    if pending.origin is None:
+        return
+    sides = pending.ahead, pending.back
+    pending.ahead, pending.back = (on_this_side(engine, pending.origin, side) for side in sides)
+    for before, point in zip(sides, (pending.ahead, pending.back)):
+        if point is not None and point is not before:
+            step = engine.distance(pending.origin, point)
+            pending.first_step = min(pending.first_step or step, step)
 
 
 def off(engine: Engine, point: Solved, step: float, real: bool) -> Solved:
@@ -312,7 +326,7 @@ def both_ways(
             if point is not None and engine.lower <= point.p <= engine.upper
         }
         if "ahead" in sides and sides["ahead"].status == Status.CLOSED:
-            ahead = sides["ahead"].since(first.u)
+            ahead = sides["ahead"].since(sides["ahead"].first)
             return ahead, (ending(ahead), ending(ahead)), True
         if len(sides) == 2:
             whole = sides["back"].reversed().extended(sides["ahead"], skip=1)

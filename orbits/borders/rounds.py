@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.neighbours import SIZES, Held, climb, examined, vanishing_in, with_edits
+from orbits.borders.holding import Held, climb
+from orbits.borders.neighbours import SIZES, examined, vanishing_in, with_edits
 from orbits.borders.rewriting import Edit
 from orbits.contacts.changes import Grows
 from orbits.cycles.solution import Solution
