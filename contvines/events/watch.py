@@ -12,7 +12,7 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.march import MARGIN
 from .dips import before_border, below_zero
-from .examine import ROUNDING, Examiner, changes
+from .examine import REACHED, ROUNDING, Examiner, changes
 from .leaps import inexact, leap
 from .located import Located, Role
 from .multipliers import LIMIT, balance, counts, nearest_to_circle
@@ -36,7 +36,8 @@ USER, TWICE, PAIRS = 256, 512, 1024
 NEARLY = 0.2  # part of the largest of three distances from the circle up to which their parabola counts as touching it
 ROUNDED = 1e-12
 CONSERVED = 1e-9  # pairs that stay closer to the circle are on it
-AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
+AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
+AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
 REACH, EDGE = (
     1.5,
     0.9,
@@ -309,8 +310,13 @@ class Watch(Examiner):
             return -np.log(np.abs(spectrum).max(axis=-1))
 
     def _apart(self, event: Located, stop: Located) -> bool:
-        engine, a, b = self.engine, event.point, stop.point
-        return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > AT_BORDER
+        """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
+        own = event.kind not in ("fold", "branch-point") or self._at_one(event.point)
+        return self.engine.distance(event.point, stop.point) > (AT_END if own else AT_BORDER)
+
+    def _at_one(self, point: Solved) -> bool:
+        spectrum = self.engine.spectrum(point.row)
+        return self.kind == "map" and bool(np.abs(spectrum - 1.0).min(initial=1.0) <= REACHED)
 
 
 def _wide(chunk: Chunk) -> Chunk:
