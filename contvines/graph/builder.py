@@ -9,7 +9,6 @@ import numpy as np
 
 from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
-from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.opening import on_this_side
@@ -23,7 +22,8 @@ from ..events.watch import Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .leaving import leave
-from .marking import is_border, mark, may_be_one, origin_index
+from .marking import mark, origin_index
+from .one_border import is_border, same_border, tie_borders
 from .pending import Origin, Pending
 from .run import Run
 
@@ -250,46 +250,6 @@ def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
     border = engine.weights * point.tangent
     found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), point.tangent)
     return found if found is not None and engine.lower <= found.p <= engine.upper else None
-
-
-def same_border(run: Run, label: str, known: Branch) -> str:
-    """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
-    graph = run.graph
-    here = graph.special[label]
-    for _, other in known.marks:
-        point = graph.special[other]
-        if (
-            other != label
-            and point.kind in BORDERS
-            and abs(point.value - here.value) <= 1e-9 * run.unit(point.value)
-            and may_be_one(here.problem, here.u, here.value, point)
-        ):
-            run.merge(label, other)
-            return other
-    return label
-
-
-def tie_borders(run: Run) -> None:
-    """One border that was reached from two branches, and crossed from neither, gets one label; the branches are tied."""
-    graph = run.graph
-    for label in list(graph.special):
-        point = graph.special.get(label)
-        if point is None or point.kind not in BORDERS or not point.real:
-            continue
-        for other in list(graph.special.values()):
-            if other is point:
-                break  # only those with an earlier label
-            near = abs(other.value - point.value) <= 1e-9 * run.unit(point.value)
-            if not (near and other.kind in BORDERS and other.real and other.branch != point.branch):
-                continue
-            if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):
-                continue  # its branch was reached through the other one: this is the far end of a very short branch
-            if other.problem is not None and point.problem.same_motion(
-                point.u, point.value, other.problem, other.u
-            ):
-                run.merge(label, other.label)
-                run.connect(other.label, other.branch, point.branch)
-                break
 
 
 def both_ways(
