@@ -20,6 +20,11 @@ from .records import pack, unpack
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 SHOWN = 1e-10  # margins of a special point that are certainly positive
 ASTRAY = 0.5  # part of its distance by which a nearer point may miss the parabola through the first one
+UPRIGHT = 1e-6  # parameter's part (in its unit) of the direction in which a branch leaves, where that is none
+NEARER = 4  # times that a first point is looked at nearer
+FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times the distance at which they are seen
+NOISY = 1e3  # ... and times the noise of the equations
+BENT = 0.3  # part by which bends of one branch may differ, so near to where it leaves
 
 
 def opening(
@@ -81,6 +86,36 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
         return None
     missed = engine.norm(engine.join(found.u, found.p) - guess)
     return found if missed <= ASTRAY * SHORTER * engine.norm(gap) else None
+
+
+def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
+    """The first point of a branch that leaves with p = p0 + a s^2, brought so near that all nearer points have this a, too.
+
+    Else the point is of another branch, which turns close to where this one leaves, as in a cascade.
+    """
+    unit = engine.parameter_unit(origin.p)
+    if point is None or abs(origin.tangent[-1]) > UPRIGHT * unit:
+        return point
+    trail, bends = [point], [_bend(engine, origin, point)]
+    for _ in range(NEARER):
+        closer = nearer(engine, origin, trail[-1])
+        if closer is None:
+            break
+        # solutions this near are those of nearly singular systems, the worse the nearer
+        rounding = max(FLAT, NOISY * engine.noise) * unit / engine.distance(origin, closer)
+        if abs(closer.p - origin.p) < rounding:
+            break
+        trail.append(closer)
+        bends.append(_bend(engine, origin, closer))
+    for i in range(len(trail) - 1, 0, -1):
+        if abs(bends[i - 1] - bends[i]) > BENT * max(abs(bends[i - 1]), abs(bends[i])):
+            return trail[i]
+    return point
+
+
+def _bend(engine: Engine, origin: Solved, point: Solved) -> float:
+    gap = engine.join(point.u - origin.u, point.p - origin.p)
+    return float(gap[-1]) / engine.inner(origin.tangent, gap) ** 2
 
 
 def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:

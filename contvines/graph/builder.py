@@ -11,7 +11,7 @@ from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
-from ..branches.opening import on_this_side
+from ..branches.opening import on_this_branch, on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.march import MARGIN
@@ -197,7 +197,7 @@ def begins_elsewhere(run: Run, engine: Engine, half: HalfBranch, pending: Pendin
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     """The first regular point of a pending branch, or None."""
     if pending.kind is Origin.SWITCH:
-        _on_this_side(engine, pending)
+        _bring_near(engine, pending)
         first = pending.ahead
         if first is not None and not engine.lower <= first.p <= engine.upper:
             first = pending.back
@@ -222,15 +222,16 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     return first
 
 
-def _on_this_side(engine: Engine, pending: Pending) -> None:
-    """Bring the first points of a departure to this side of a border that is near."""
-    if pending.origin is None:
+def _bring_near(engine: Engine, pending: Pending) -> None:
+    """Bring the first points of a departure so near that they are of its branch, and on this side of a border."""
+    origin, sides = pending.origin, (pending.ahead, pending.back)
+    if origin is None:
         return
-    sides = pending.ahead, pending.back
-    pending.ahead, pending.back = (on_this_side(engine, pending.origin, side) for side in sides)
+    own = [on_this_branch(engine, origin, side) for side in sides]
+    pending.ahead, pending.back = (on_this_side(engine, origin, side) for side in own)
     for before, point in zip(sides, (pending.ahead, pending.back)):
         if point is not None and point is not before:
-            step = engine.distance(pending.origin, point)
+            step = engine.distance(origin, point)
             pending.first_step = min(pending.first_step or step, step)
 
 

@@ -18,7 +18,7 @@ SAME = 1e-6  # motions that differ by less need not come nearer
 SHRINKS = 0.5  # a square root shrinks by 0.32 where the distance does tenfold
 NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # the same for multipliers
 NEAREST = (1e-6, 1e-7, 1e-8, 1e-9)  # ... where these do not tell: some grow until they are as near as that
-UNBOUNDED = 1e14  # multipliers listed as large grow without bound
+UNBOUNDED = 1e14  # multipliers listed as large grow without bound, or so far
 LIMIT = 1e-3  # relative difference of characteristic polynomials
 ASIDE = 0.1  # of the distance, where crossings are looked for
 
@@ -102,7 +102,7 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         tally.count("borders of orbits too unstable to tell")
         return
     if not np.all(np.abs(listed) < UNBOUNDED):
-        if not sizes[-1] > 1.5 * sizes[-2]:
+        if not (sizes[-1] > 1.5 * sizes[-2] or sizes[-1] > UNBOUNDED):
             tally.find("limit", f"{branch.label} at {point.label}: without bound, but {sizes[-3:]} beside it")
         return
     if _tend_to(listed, seen):
