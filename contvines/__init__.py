@@ -42,7 +42,7 @@ _HOME = {
     "chart": ".loci.charting",
     "diagram": ".graph.automatic",
     "load": ".store",
-    "locus": ".loci.following",
+    "locus": ".loci.tracing",
     "register": ".problems.registry",
     "resume": ".store",
     "save": ".store",
@@ -59,6 +59,7 @@ lead(
         "branch_page": "contvines.graph.pages:branch_page",
         "basins_table": "contvines.coexistence.table:table",
         "basins_page": "contvines.coexistence.table:page",
+        "chart_dataset": "contvines.export.frames:chart_dataset",
         "chart_frame": "contvines.export.frames:chart_frame",
         "chart_page": "contvines.loci.table:page",
         "chart_table": "contvines.loci.table:shown",
@@ -124,7 +125,11 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(_HOME[name], __name__), name)
         globals()[name] = value
         return value
-    raise AttributeError(f"contvines has no {name!r}; it has {', '.join(__all__)}")
+    from contvines_ground.near_names import did_you_mean
+
+    raise AttributeError(
+        f"contvines has no {name!r}{did_you_mean(name, __all__)}; it has {', '.join(__all__)}"
+    )
 
 
 def __dir__() -> list[str]:
@@ -142,8 +147,8 @@ if TYPE_CHECKING:
     from .journal import MemoryJournal, NullJournal
     from .loci.chart import Chart
     from .loci.charting import chart
-    from .loci.following import locus
     from .loci.locus import Locus
+    from .loci.tracing import locus
     from .problems.algebraic import AlgebraicProblem
     from .problems.kernels import Kernels
     from .problems.maps import MapProblem

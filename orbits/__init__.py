@@ -56,7 +56,9 @@ def __getattr__(name: str) -> Any:
         return getattr(importlib.import_module(_PLACES[name]), name)
     if name in _ROOMS:
         return importlib.import_module(f"orbits.{name}")
-    raise AttributeError(f"module 'orbits' has no attribute {name!r}")
+    from contvines_ground.near_names import did_you_mean
+
+    raise AttributeError(f"orbits has no {name!r}{did_you_mean(name, __all__)}; it has {', '.join(__all__)}")
 
 
 def __dir__() -> list[str]:

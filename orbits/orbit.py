@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_arguments import hinting
 from orbits.cycles.solution import Solution
 from orbits.doors import above
 
@@ -16,6 +17,7 @@ class Orbit(Solution):
     """A periodic orbit P_l^k as users hold it; the attributes are those of `orbits.cycles.cycle.Cycle`."""
 
     # ------------------------------------------------------------------ towards continuation
+    @hinting
     def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
         """The orbit's word as a continuation problem against `parameter`.
 

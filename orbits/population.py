@@ -3,29 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
+from orbits.attractors.distinct import alike, distinct
 from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.attractors.recurrence import settle
-from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, V, W
+from orbits.attractors.returning import returning_cycles
+from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
 from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip
 
 TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
 LONGEST = 24  # forcing periods of the longest recurrence looked for
-EMBEDDED = 6  # forcing periods of the longest unstable cycle looked for in a chaotic motion
+EMBEDDED = 6  # forcing periods of the longest unstable cycle looked for
 TOLERANCE = 1e-8  # difference of two states that counts as a return
-PATIENCE, LATE = (
-    3,
-    3000.0,
-)  # how often, and for how many more periods, a motion that does not recur is looked at again
+PATIENCE = 3  # times a motion that does not recur is looked at again
+LATE = 3000.0  # forcing periods between two such looks
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
@@ -59,9 +60,8 @@ class Population:
         workers: int | None = None,
     ) -> None:
         if parameter not in model.amount_names:
-            raise SimulationError(
-                f"{parameter!r} is no parameter of {model.name!r}; it has {', '.join(model.amount_names)}"
-            )
+            names = model.amount_names
+            raise SimulationError(no_parameter(repr(parameter), f"the model {model.name!r}", names))
         self.model, self.parameter = model, parameter
         self.parameters = dict(parameters or {})
         self.workers = (
@@ -124,9 +124,7 @@ class Population:
             Whether it reaches the mirror image of that motion.
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
-        states = np.zeros((len(starts), self.engine.state))
-        for column, name in zip(starts.T, self.names, strict=True):
-            states[:, {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}[name]] = column
+        states = self._states(starts)
         result = settle_all(
             self.model.name,
             states,
@@ -148,17 +146,28 @@ class Population:
         p : float
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
-        found: list[tuple[Any, np.ndarray]] = []
-        forms: list[tuple[Any, np.ndarray]] = []
-        for cycle in embedded_cycles(self.model, self.engine, params, state, EMBEDDED):
-            orbit = cycle.orbit.root()
-            problem = orbit.problem(self.parameter)
-            u = orbit.seed(problem)[0]
-            form = problem.canonical(u, p)
-            if not any(_alike(form, known) for known in forms):
-                forms.append(form)
-                found.append((problem, u))
-        return found
+        cycles = embedded_cycles(self.model, self.engine, params, state, EMBEDDED)
+        return distinct((cycle.orbit.root() for cycle in cycles), self.parameter, p)
+
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Cycles, stable or not, to which Newton's method leads from starts, each once; see `orbits.attractors.returning`.
+
+        Parameters
+        ----------
+        starts : float array (m, n)
+        p : float
+        """
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        cycles = returning_cycles(
+            self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED
+        )
+        return distinct((cycle.orbit.root() for cycle in cycles), self.parameter, p)
+
+    def _states(self, starts: np.ndarray) -> np.ndarray:
+        """States of the simulation, shape (m, S)."""
+        states = np.zeros((len(starts), self.engine.state))
+        states[:, [PSI, *self.engine.places]] = starts
+        return states
 
     def _shaking(self, params: np.ndarray) -> float:
         """Largest velocity of the cavity's centre that the excitation gives, as far as it is known beforehand."""
@@ -285,7 +294,7 @@ class _Sorting:
     def _same(self, motion: Motion, problem: Any, u: Any) -> bool:
         if motion.problem is None or problem is None:
             return motion.problem is problem
-        return _alike(motion.problem.canonical(motion.u, self.p), problem.canonical(u, self.p))
+        return alike(motion.problem.canonical(motion.u, self.p), problem.canonical(u, self.p))
 
     def _on(self, found: Attractor) -> tuple[np.ndarray, np.ndarray, bool]:
         """States of the attractor at whole forcing periods, of its mirror image, and whether its mean is free."""
@@ -335,16 +344,3 @@ class _Sorting:
         order = sorted((k for k in range(len(self.motions)) if first[k] < 1 << 60), key=first.__getitem__)
         place = {k: i for i, k in enumerate(order)}
         return [self.motions[k] for k in order], np.array([place[int(k)] for k in self.index]), self.mirrored
-
-
-def _alike(one: tuple[Any, np.ndarray], other: tuple[Any, np.ndarray]) -> bool:
-    """Whether two canonical forms are those of one motion."""
-    return one[0] == other[0] and np.allclose(one[1], other[1], atol=1e-5)
-
-
-def shares(index: np.ndarray, count: int) -> np.ndarray:
-    """Share of the starts that reach each of `count` motions."""
-    return np.bincount(index, minlength=count) / max(len(index), 1)
-
-
-__all__: Sequence[str] = ["Motion", "Population", "shares"]

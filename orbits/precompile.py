@@ -15,7 +15,7 @@ import sys
 import numpy as np
 from numba import config, typeof
 
-from orbits.compiling.ahead import cached, helpers
+from orbits.compiling.waiting import cached, processes
 from orbits.cycles import kernels
 from orbits.elimination import by_address
 from orbits.machines.catalogue import model_class, usual
@@ -39,7 +39,7 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         The process; this one waits for it where it would otherwise compile the same functions itself. None if there is nothing
         to compile or no second core.
     """
-    running = helpers.get(name)
+    running = processes.get(name)
     if running is not None and running.poll() is None:
         return running
     if _cores() < 2 or not _missing(name):
@@ -63,9 +63,9 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         )
     except OSError:
         return None
-    helpers[name] = process
+    processes[name] = process
     if _is_slow(usual(name)[0].node):
-        helpers[periodic_multipliers.__name__] = process
+        processes[periodic_multipliers.__name__] = process
     return process
 
 
@@ -92,8 +92,9 @@ def compile_now(name: str, *more: str) -> None:
         model, Word.parse("LR"), 1, model.parameter_names[0], np.zeros(len(model.parameter_names))
     )
     unknowns, row = np.zeros(problem.dimension), np.zeros(1)
-    arguments = (problem.data, unknowns, 0.0, problem.workspace(), row)
-    problem.kernels.inspect.compile(tuple(map(typeof, arguments)))
+    data, work, compiled = problem.data, problem.workspace(), problem.kernels
+    arguments = tuple(map(typeof, (data, unknowns, 0.0, work, row)))
+    compiled.inspect.compile(arguments)
     for place in more:
         module, _, function = place.partition(":")
         getattr(importlib.import_module(module), function)()
@@ -103,6 +104,10 @@ def compile_now(name: str, *more: str) -> None:
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
+    compiled.examine.compile(arguments)
+    compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
+    if n == 2:
+        by_address.functions()
     settle_all(
         name,
         motion.start[None].copy(),
@@ -112,8 +117,6 @@ def compile_now(name: str, *more: str) -> None:
         tolerance=1e-8,
         workers=1,
     )
-    if n == 2:
-        by_address.functions()
 
 
 def _cores() -> int:

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("contvines", "orbits")
+PACKAGES = ("contvines", "orbits", "contvines_ground")
 LINES, FUNCTION = 350, 120
 FILES = sorted(path for package in (*PACKAGES, "tests") for path in (ROOT / package).rglob("*.py"))
 

@@ -1,5 +1,6 @@
 """The worked case of `examples/design`: its study is read, a small survey of it is made and drawn, and a choice follows."""
 
+import csv
 import json
 from pathlib import Path
 
@@ -44,6 +45,45 @@ def test_a_small_survey_and_its_choice(tmp_path, monkeypatch, capsys):
     assert all(row["note"] == "" for row in about["rows"])
     assert (tmp_path / "case-survey.nc").exists() and (tmp_path / "map.png").exists()
     assert run("survey", "case.toml", "--workers", "1", "-q") == 0  # nothing to compute
+
+
+def test_the_choice_is_at_worst_as_good_as_the_worst_of_every_sample_of_the_survey(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    text = STUDY.read_text().replace("count = 7", "count = 3").replace("samples = 6", "samples = 2")
+    text = text.replace("depth = 2", "depth = 0").replace("vary.friction = { uniform = [0.05, 0.3] }\n", "")
+    text = text.replace('"lower_peak", "covered", "stable:LR"', '"stable:LRLtR"').replace(
+        'within = ["8 mm", "20 mm"]', 'within = ["13 mm", "15 mm"]'
+    )
+    (tmp_path / "case.toml").write_text(text)
+    words = (
+        "survey",
+        "case.toml",
+        "--workers",
+        "1",
+        "--best",
+        "lowest worst-case peak",
+        "--over",
+        "half_width",
+    )
+    assert run(*words, "--json", "--plot", "best.png") == 0
+    about = json.loads(capsys.readouterr().out)
+    with (tmp_path / "case-survey.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    worst = {}
+    for row in rows:
+        place = float(row["half_width [mm]"])
+        worst[place] = max(worst.get(place, 0.0), float(row["peak [mm]"]))
+    assert (
+        len(rows) == 6
+        and about["peak"] <= min(worst.values())
+        and 13.0 <= about["best"]["half_width"] <= 15.0
+    )
+    assert run(*words) == 0
+    said = capsys.readouterr().out
+    assert "at worst over 2 samples, the lowest that was found" in said
+    assert "stable_LRLtR_from = -" in said and "nan" not in said  # a motion that none of the samples has
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,13 @@ import numpy as np
 
 from ..doors import above
 from ..events.kinds import BORDERS
+from ..hints import hinted
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending
 
 
+@hinted
 @dataclass(eq=False)
 class Branch:
     """A branch of solutions, in order along the curve, special points included.

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..doors import above
 from ..events.kinds import BORDERS
+from ..hints import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
 from .later import Later
@@ -16,6 +17,7 @@ from .later import Later
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 
 
+@hinted
 @dataclass(eq=False, repr=False)
 class SpecialPoint:
     """A special point of a branch.

@@ -18,6 +18,7 @@ from .section import Section
 
 FEWEST, MOST = 17, 257  # points of a circle
 SMOOTH = 1e-7  # the last harmonics of a circle that has enough points, relative to the first
+LESS = 0.25  # by which twice the points make them smaller at least: a circle that meets a border has no more derivatives to show
 TORN = 3e-3  # ... beyond which it has broken
 APART = 1e-3  # by which its images miss it between its points, relative to its radius: beyond that there is no circle
 # first amplitude relative to the last one, factors from one to the next
@@ -204,10 +205,19 @@ def _next(before: Curve, last: Curve, birth: Birth, step: float) -> tuple[Curve,
 def _smooth(section: Sections, guess: Curve, frame: Frame, condition: Condition) -> Curve | None:
     """The circle through as many points as it needs."""
     curve: Curve | None = guess
+    before: Curve | None = None
     while curve is not None:
         curve = solve(section, curve, frame, condition)
+        if (
+            before is not None
+            and curve is not None
+            and LESS * before.tail < curve.tail
+            and before.tail < TORN
+        ):
+            return before
         if curve is None or curve.tail < SMOOTH or len(curve.points) >= MOST:
             return curve
+        before = curve
         curve = curve.finer(min(MOST, 2 * len(curve.points) - 1))
     return None
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..doors import above
+from ..hints import hinted
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 
@@ -72,6 +73,7 @@ class Circle:
         }
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class Circles:
     """The circles that are born at a Neimark-Sacker point, in the order of growing radius.

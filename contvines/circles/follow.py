@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,21 @@ REACH = (
     0.5  # amplitude, relative to the size of the section, to which circles are followed where no end is given
 )
 COUNT = 40  # circles at most
-RETURNS = 3000  # of a simulation that is compared with a circle
+RETURNS = 3000  # of a simulation that is compared with a circle, at most
+FIRST = (
+    375  # ... after which, and after twice as many again, its rotation number is asked whether it has settled
+)
+SETTLED = 1e-11  # difference of the rotation numbers of all and of half the returns from which on it has
 PATIENCE = 6000  # returns at most until it settles
 LONGEST = 200  # periods of a locked motion
+LOOK = (
+    200  # returns after which, and after twice as many again, it is asked whether growth or decay is clear;
+)
+ROUNDS, RESONANCES = (
+    4,
+    6,
+)  # turns of the drift beside a resonance of this order at most, that they cover at least
+CLEAR = 5.0  # factor from the largest displacement of their first half to that of their second
 DISPLACED = 1e-3  # relative displacement whose growth or decay says whether a circle is stable
 
 
@@ -114,22 +127,17 @@ def _circle(section: Callable[[float], Section], curve: Curve, birth: Birth) -> 
 
 
 def _displacements(
-    here: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray, count: int
-) -> np.ndarray:
+    here: Section, curve: Curve, birth: Birth, centre: np.ndarray, x: np.ndarray
+) -> Iterator[float]:
     """log of (distance along the critical plane from the centre / that of the circle at the same angle), per return."""
     own = (curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - centre) @ birth.frame.left.conj()
     angles = np.unwrap(np.angle(own))
     if angles[-1] < angles[0]:
         own, angles = own[::-1], angles[::-1]
-    logs = np.empty(count)
-    for i in range(count):
-        x = here.step(x)
-        if not np.isfinite(x).all():
-            return logs[:i]
+    while np.isfinite(x := here.step(x)).all():
         z = complex((x - centre) @ birth.frame.left.conj())
         place = angles[0] + (np.angle(z) - angles[0]) % (2.0 * np.pi)
-        logs[i] = np.log(max(abs(z), 1e-300) / np.interp(place, angles, np.abs(own)))
-    return logs
+        yield float(np.log(max(abs(z), 1e-300)) - np.log(np.interp(place, angles, np.abs(own))))
 
 
 def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
@@ -137,26 +145,47 @@ def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> 
     rate = 2.0 * abs(birth.growth * (curve.value - birth.p)) or 1e-3
     count = int(min(PATIENCE, max(200, 2.0 / rate)))
     start = curve.points[0] + DISPLACED * (curve.points[0] - centre)
-    logs = _displacements(here, curve, birth, centre, start, count)
-    if len(logs) < count:
-        return False
-    part = max(20, count // 10)
-    first, last = float(np.mean(np.abs(logs[:part]))), float(np.mean(np.abs(logs[-part:])))
-    if last < 0.8 * first:
-        return True
-    return False if last > 1.25 * first else None
+    distances = _displacements(here, curve, birth, centre, start)
+    logs = np.empty(0)
+    asked = int(min(count, max(LOOK, ROUNDS / _slowest(curve.rotation))))
+    while True:
+        logs = np.append(logs, np.abs(list(islice(distances, asked - len(logs)))))
+        if len(logs) < asked:
+            return False
+        if asked == count:
+            part = max(20, count // 10)
+            share = float(np.mean(logs[-part:]) / np.mean(logs[:part]))
+            return True if share < 0.8 else False if share > 1.25 else None
+        share = float(logs[asked // 2 :].max() / logs[: asked // 2].max())
+        if not 1.0 / CLEAR < share < CLEAR:
+            return share < 1.0
+        asked = min(2 * asked, count)
+
+
+def _slowest(rotation: float) -> float:
+    """Turns per return of the slow drift beside a resonance, where a displacement grows and shrinks once in a turn."""
+    drifts = [abs(q * rotation - round(q * rotation)) for q in range(1, RESONANCES + 1)]
+    return max(min(drifts), 1.0 / PATIENCE)
 
 
 def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float) -> float | None:
     """Rotation number of a simulation on the circle; None where it leaves the circle."""
-    x, z = curve.points[0], np.empty(RETURNS, dtype=complex)
+    x, z, asked = curve.points[0], np.empty(RETURNS, dtype=complex), FIRST
+    outline = curve.at(np.linspace(0.0, 2.0 * np.pi, 721))
     for i in range(RETURNS):
         x = here.step(x)
         z[i] = (x - centre) @ birth.frame.left.conj()
-    if not np.isfinite(z).all():
-        return None
-    nearest = np.sqrt(((curve.at(np.linspace(0.0, 2.0 * np.pi, 721)) - x) ** 2).sum(axis=1).min())
-    return rotation_number(z, curve.rotation)[0] if nearest < 0.02 * radius else None
+        if i + 1 < min(asked, RETURNS):
+            continue
+        asked *= 2
+        if not np.isfinite(z[: i + 1]).all():
+            return None
+        if np.sqrt(((outline - x) ** 2).sum(axis=1).min()) > 0.02 * radius:
+            return None
+        turns, error = rotation_number(z[: i + 1], curve.rotation)
+        if error < SETTLED or i + 1 == RETURNS:
+            return turns
+    return None
 
 
 def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birth) -> dict[str, Any]:
@@ -166,13 +195,15 @@ def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birt
     value = last.value + 0.25 * (last.value - before)
     here, x = section(value), last.points[0]
     far = 1e3 * birth.frame.size
-    for _ in range(PATIENCE):
-        x = here.step(x)
-        if not np.linalg.norm(x) < far:
-            return {"value": value, "kind": "leaves"}
-    first = x
-    for n in range(1, LONGEST + 1):
-        x = here.step(x)
-        if np.abs(x - first).max() < 1e-8 * birth.frame.size:
-            return {"value": value, "kind": "locked" if n > 1 else "fixed", "periods": n}
+    same = 1e-8 * birth.frame.size
+    for asked in (PATIENCE // 20, PATIENCE // 4, PATIENCE):
+        for _ in range(asked):
+            x = here.step(x)
+            if not np.linalg.norm(x) < far:
+                return {"value": value, "kind": "leaves"}
+        first = x
+        for n in range(1, LONGEST + 1):
+            x = here.step(x)
+            if np.abs(x - first).max() < same:
+                return {"value": value, "kind": "locked" if n > 1 else "fixed", "periods": n}
     return {"value": value, "kind": "wandering"}

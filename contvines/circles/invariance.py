@@ -2,7 +2,7 @@
 
 x(phi) is a trigonometric polynomial through n = 2 K + 1 points. The rotation number rho and the parameter p are unknowns, too; the
 phase is fixed by a first harmonic without imaginary part, and either the first harmonic or p is given. Stable or
-not makes no difference. P is the simulated return map, its derivatives are differences.
+not makes no difference. P is the simulated return map; its derivatives are differences where the section does not know them.
 
 Source of the method: Schilder, Osinga and Vogt, SIAM J. Appl. Dyn. Syst. 4 (2005) 459, for flows; here for section maps.
 """
@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .section import Section, slopes
+from .section import Section, Varied, slopes
 
 STEP = 1e-6  # of differences of the simulated map, relative to the size of the section and of the parameter
 INSIDE = 0.01  # ... and at most, relative to the size of the circle and to the distance from its birth
@@ -110,6 +110,36 @@ def first_harmonic(curve: Curve, frame: Frame) -> complex:
     return complex(frame.left.conj() @ curve.harmonics[1])
 
 
+def _images(section: Section, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The next points (n, d), with their derivatives by the points (n, d, d) and by the parameter (n, d) where the section knows them."""
+    n, d = points.shape
+    by_state, by_value = np.full((n, d, d), np.nan), np.full((n, d), np.nan)
+    if not isinstance(section, Varied):
+        return np.array([section.step(x) for x in points]), by_state, by_value
+    images = np.empty((n, d))
+    for j, x in enumerate(points):
+        images[j], by_state[j], by_value[j] = section.varied(x)
+    return images, by_state, by_value
+
+
+def _differences(
+    section: Callable[[float], Section],
+    points: np.ndarray,
+    p: float,
+    steps: tuple[float, float],
+    by_state: np.ndarray,
+    by_value: np.ndarray,
+) -> None:
+    """Derivatives that the section does not know, by differences of these lengths in the points and in the parameter."""
+    unknown = np.flatnonzero(~np.isfinite(by_state).all(axis=(1, 2)))
+    if not len(unknown):
+        return
+    here, beside, before = section(p), section(p + steps[1]), section(p - steps[1])
+    for j in unknown:
+        by_state[j] = slopes(here, points[j], steps[0])
+        by_value[j] = (beside.step(points[j]) - before.step(points[j])) / (2.0 * steps[1])
+
+
 def solve(
     section: Callable[[float], Section], guess: Curve, frame: Frame, condition: Condition
 ) -> Curve | None:
@@ -138,9 +168,7 @@ def solve(
     width = max(min(STEP * frame.unit, INSIDE * abs(guess.value - frame.origin)), LEAST * frame.unit)
     last = np.inf
     for _ in range(SWEEPS):
-        here, beside = section(p), section(p + width)
-        before = section(p - width)
-        images = np.array([here.step(x) for x in points])
+        images, by_state, by_value = _images(section(p), points)
         turned = (
             np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ fourier
         )  # values at the phases that come next
@@ -161,16 +189,16 @@ def solve(
         size = n * d
         matrix = np.zeros((size + 2, size + 2))
         blocks = matrix[:size, :size].reshape(n, d, n, d)
-        for j, x in enumerate(points):
-            blocks[j, :, j, :] += slopes(here, x, h)
+        _differences(section, points, p, (h, width), by_state, by_value)
+        for j, block in enumerate(by_state):
+            blocks[j, :, j, :] += block
         for c in range(d):
             blocks[:, c, :, c] -= np.real(turned)
         turning = np.exp(1j * np.outer(phases + 2.0 * np.pi * rho, k)) @ (
             (2j * np.pi * k)[:, None] * (fourier @ points)
         )
         matrix[:size, size] = -np.real(turning).reshape(-1)
-        moved = [np.array([other.step(x) for x in points]) for other in (beside, before)]
-        matrix[:size, size + 1] = ((moved[0] - moved[1]) / (2.0 * width)).reshape(-1)
+        matrix[:size, size + 1] = by_value.reshape(-1)
         along: Any = np.outer(first, frame.left.conj()).reshape(-1)
         matrix[size, :size] = along.imag
         matrix[size + 1, :size] = normal[0] / length * along.real

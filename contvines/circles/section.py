@@ -8,11 +8,13 @@ The contract, in words:
    smooth in u; of a cycle, it is a fixed point of ``step``.
 4. ``section.rounds(u)`` are the points in which the cycle itself meets the section, shape (periods, d), the first that of ``through``.
 5. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
+6. ``section.varied(x)``, where a section has it: the next point with its derivatives by x, shape (d, d), and by the parameter, shape
+   (d,); NaN where they are not known. Without it differences of ``step`` stand in.
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -31,6 +33,13 @@ class Section(Protocol):
     def rounds(self, u: np.ndarray) -> np.ndarray: ...
 
     def step(self, x: np.ndarray) -> np.ndarray: ...
+
+
+@runtime_checkable
+class Varied(Protocol):
+    """A section that knows the derivatives of its steps."""
+
+    def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
 
 
 def section_of(problem: Problem, p: float) -> Section:

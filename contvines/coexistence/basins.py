@@ -11,7 +11,7 @@ import numpy as np
 from ..doors import above
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
-from ..hints import hinting
+from ..hints import hinted, hinting
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
@@ -22,6 +22,7 @@ MOST = 4_000_000  # points of a picture
 CONFIDENCE = 1.96  # standard errors of a 95 % interval
 
 
+@hinted
 @dataclass(repr=False)
 class Basins:
     """A plane of starts coloured by what they reach.

@@ -20,6 +20,7 @@ from .roots import add_root
 from .windows import Windows
 
 FEW = 16  # starts at each of the further values
+SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
 LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
 
 
@@ -107,7 +108,7 @@ def atlas(
     for p in where:
         looking.at(p, starts)
     if scan:
-        looking.beside_chaos()
+        looking.for_cycles(where)
         looking.between(scan)
         looking.everywhere(scan)
         looking.between(scan)
@@ -194,9 +195,11 @@ class _Looking:
         self.found += counted
         return join(self.run, counted)
 
-    def beside_chaos(self) -> None:
-        """Follow unstable cycles out of the chaos that has been met, to where they are born with a stable one."""
-        Windows(self.run, self.population).beside(self.found)
+    def for_cycles(self, values: Sequence[float]) -> None:
+        """Follow unstable cycles, out of the chaos that has been met and from elsewhere, to where they are born with a stable one."""
+        windows = Windows(self.run, self.population)
+        windows.beside(self.found)
+        windows.around(values, SOUGHT, self.seed)
 
     def between(self, most: int) -> None:
         """One value at least in each stretch between two changes, new changes included, up to `most` values."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..doors import above
-from ..hints import hinting
+from ..hints import hinted, hinting
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, robustness
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@hinted
 @dataclass
 class Erosion:
     """The robustness of a branch's stable motions against the parameter.

@@ -22,9 +22,10 @@ SIGMAS = 3.0
 EMBEDDED, EMBEDDED_IN = (
     6,
     4000,
-)  # longest unstable cycle looked for in a chaotic motion, and iterations of that
+)  # longest unstable cycle looked for, and iterations of a chaotic motion in which it is
 NEAREST, APART = 400, 1e-3  # returns looked at for each length; they lie so far apart, relative to the box
 NEWTON, FROM_GUESS = 12, 0.05  # steps, and how far they may lead, relative to the box
+ANYWHERE = 2.0  # likewise, where there is but a start
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +171,24 @@ class MapPopulation:
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
-    def _solved(self, guess: np.ndarray, p: float) -> np.ndarray | None:
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Cycles, stable or not, to which Newton's method leads from starts; see `contvines.coexistence.population`.
+
+        One of their points at least lies in the box of starts.
+        """
+        cycles: list[np.ndarray] = []
+        low, high = self._box.T
+        for start in np.asarray(starts, dtype=float):
+            for period in range(1, EMBEDDED + 1):
+                with np.errstate(all="ignore"):  # far away a map may leave the range of numbers
+                    points = self._solved(np.repeat(start[None], period, axis=0), p, ANYWHERE)
+                if points is None or any(self._one(points, known) for known in cycles):
+                    continue
+                if np.any(np.all((points >= low) & (points <= high), axis=1)):
+                    cycles.append(points)
+        return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
+
+    def _solved(self, guess: np.ndarray, p: float, reach: float = FROM_GUESS) -> np.ndarray | None:
         """The points, shape (n, d), of the cycle next to a guess, by Newton's method on the n-th image; None if there is none."""
         x, n, functions = guess[0].copy(), len(guess), self.problem.functions
         for _ in range(NEWTON):
@@ -185,7 +203,7 @@ class MapPopulation:
             if np.abs(step).max() <= RETURN * self.size:
                 return np.array(points)
             x = x + step
-            if np.abs(x - guess[0]).max() > FROM_GUESS * self.size:
+            if np.abs(x - guess[0]).max() > reach * self.size:
                 return None
         return None
 

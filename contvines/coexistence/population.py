@@ -15,6 +15,8 @@ The contract, in words:
 6. ``population.embedded(motion.state, p)`` returns ``(problem, u)`` of unstable cycles that a chaotic motion passes near, each once.
    Windows of periodic motion are born in pairs of which the unstable one lives on in the chaos beside them: traced back, it
    leads into windows that are too narrow for starts to meet.
+7. ``population.returning(starts, p)`` returns ``(problem, u)`` of cycles, stable or not, to which Newton's method on the return map leads
+   from starts, each once: it reaches a cycle from far more starts than settle on it.
 """
 
 from __future__ import annotations
@@ -71,6 +73,8 @@ class Population(Protocol):
     def settle(self, starts: np.ndarray, p: float) -> tuple[Sequence[Motion], np.ndarray, np.ndarray]: ...
 
     def embedded(self, state: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+
+    def returning(self, starts: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
 
 
 def population_of(thing: Any, over: str | None = None, **parameters: float) -> Population:

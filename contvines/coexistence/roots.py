@@ -10,15 +10,17 @@ from ..graph.builder import begin, trace_pending, work
 from ..graph.run import Run
 
 
-def add_root(run: Run, problem: Any, u: np.ndarray, p: float) -> None:
+def add_root(run: Run, problem: Any, u: np.ndarray, p: float, depth: int = 0) -> None:
     """Trace a solution with all that leaves it; alone where `max_branches`, which limits no roots, is reached.
+
+    Its branch counts as one that `depth` others lie before.
 
     Raises
     ------
     ValueError
         If it is no start; see :func:`contvines.graph.builder.begin`.
     """
-    begin(run, problem, u, p)
+    begin(run, problem, u, p, depth)
     if run.graph.complete:
         work(run)
     else:

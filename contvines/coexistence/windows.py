@@ -1,9 +1,10 @@
-"""Windows of periodic motion beside chaos, reached from the unstable cycles that live in the chaos."""
+"""Windows of periodic motion that few or no starts meet, reached from the unstable cycles beside them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,10 +20,11 @@ from .population import Population
 from .roots import add_root
 
 MOST = 10_000  # branches traced apart
+NARROWEST = 1e-5  # of the interval: narrower windows are left out
 
 
 class Windows:
-    """Branches traced from unstable cycles, apart from the graph: only what is stable somewhere goes on it.
+    """Branches traced from unstable cycles, apart from the graph: only what is stable somewhere goes on it, with one generation of what leaves it.
 
     Parameters
     ----------
@@ -53,25 +55,47 @@ class Windows:
             How many branches were added.
         """
         before = len(self.run.graph.branches)
+        parameter = self.population.parameter
         for counted in found:
-            if counted.state is None:
-                continue
-            for problem, u, p in self._stable(counted.state, counted.attractor.value):
-                if self.run.register.find(problem, u, p, True) is None:
-                    add_root(self.run, problem, u, p)
+            if counted.state is not None:
+                state, p = counted.state, counted.attractor.value
+                self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
+                self._add(f"windows/{p!r}", p, partial(self.population.embedded, state, p))
         return len(self.run.graph.branches) - before
 
-    def _stable(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
-        """A point of every stable stretch to which the cycles of one chaotic motion lead; kept in the journal."""
-        key = f"windows/{p!r}"
+    def around(self, values: Sequence[float], count: int, seed: int) -> int:
+        """Add to the graph the branches that are stable somewhere and hold a cycle that Newton's method reaches from starts.
+
+        What settles on a narrow or rare motion is hard to meet; the cycles that its branch turns into, unstable ones, reach far beyond.
+
+        Returns
+        -------
+        int
+            How many branches were added.
+        """
+        before = len(self.run.graph.branches)
+        for p in values:
+            starts = self.population.starts(count, seed, p)
+            self.run.tell(f"cycles from {count} starts at {self.population.parameter} = {p:.6g}", p)
+            self._add(f"returning/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
+        return len(self.run.graph.branches) - before
+
+    def _add(self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]) -> None:
+        for problem, u, at in self._stable(key, p, cycles):
+            if self.run.register.find(problem, u, at, True) is None:
+                add_root(self.run, problem, u, at, max(self.run.depth - 1, 0))
+
+    def _stable(
+        self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]
+    ) -> list[tuple[Any, np.ndarray, float]]:
+        """A point of every stable stretch to which cycles lead; kept in the journal."""
         known = self.run.journal.recall(key)
         parts = [] if known is None else [rebuild(description) for description in known["problems"]]
         at_hand = all(part is not None for part in parts)  # functions of the user's may not be
         if known is not None and at_hand:
             return [(problem, known[f"u{k}"], float(known["at"][k])) for k, problem in enumerate(parts)]
-        self.run.tell(f"unstable cycles in the chaos at {self.population.parameter} = {p:.6g}", p)
         points = []
-        for problem, u in self.population.embedded(state, p):
+        for problem, u in cycles():
             if self.run.register.find(problem, u, p) is None:
                 points += self._traced(problem, u, p)
         record: dict[str, Any] = {
@@ -97,13 +121,15 @@ class Windows:
             (branch.problem, branch.points[i], float(branch.values[i]))
             for branch in new
             if branch.real
-            for i in _middles(branch)
+            for i in _middles(branch, NARROWEST * (self.run.graph.within[1] - self.run.graph.within[0]))
         ]
 
 
-def _middles(branch: Branch) -> Iterator[int]:
-    """For every stable stretch the point that is nearest to its middle."""
+def _middles(branch: Branch, narrowest: float) -> Iterator[int]:
+    """For every stable stretch that is not narrower the point that is nearest to its middle."""
     for low, high in branch.stable_intervals():
+        if high - low < narrowest:
+            continue
         inside = np.flatnonzero((branch.values >= low) & (branch.values <= high) & np.asarray(branch.stable))
         if inside.size:
             yield int(inside[np.argmin(np.abs(branch.values[inside] - 0.5 * (low + high)))])

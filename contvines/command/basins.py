@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.options import SizeOption
 from contvines.command.run import StudyArgument
 
 
@@ -34,9 +35,7 @@ def basins(
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the plane in colours.")
     ] = None,
-    size: Annotated[
-        tuple[float, float] | None, typer.Option("--size", metavar="WIDTH HEIGHT", help="Inches.")
-    ] = None,
+    size: SizeOption = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")
     ] = False,

@@ -124,21 +124,12 @@ def choose(
         }
         typer.echo(json_text(about))
     elif not quiet:
-        typer.echo(fitted(_told(choice, outcome, found, units, largest)))
+        typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)))))
     if plot is not None:
         from contvines.plots.figures import save_figure
 
         figure = found.plot(outcome)
-        axes = figure.axes[0]
-        place = [choice.values[name] for name in plan.axes]
-        axes.plot(
-            place[0],
-            place[1] if len(place) == 2 else choice.outcome,
-            "*",
-            color="#b5121b",
-            markersize=14,
-            markeredgecolor="white",
-        )
+        _draw(figure, choice, list(plan.axes), "at worst" if quantile is None else f"{100.0 * quantile:g} %")
         save_figure(figure, plot)
         say(f"drawn in {plot}", quiet)
 
@@ -168,19 +159,50 @@ def _known(
     return [(dict(zip(found.plan.axes, map(float, point))), float(v)) for point, v in zip(points, flat)]
 
 
-def _told(choice: Any, outcome: str, found: Any, units: dict[str, str], largest: bool) -> str:
+def _wish(largest: bool, quantile: float | None, samples: int) -> str:
+    """What was looked for, in words."""
+    which = "largest" if largest else "lowest"
+    if samples == 1:
+        return f"the {which} that was found"
+    over = "at worst" if quantile is None else f"in {100.0 * quantile:g} % of the cases"
+    return f"{over} over {samples} samples, the {which} that was found"
+
+
+def _draw(figure: Any, choice: Any, names: list[str], over: str) -> None:
+    """Mark the choice in the survey's picture, and what was tried on the way to it."""
+    axes = figure.axes[0]
+    red = "#b5121b"
+    if len(names) == 1:
+        tried = sorted((values[names[0]], outcome) for values, outcome in choice.tried)
+        axes.plot(*zip(*tried), ".", color=red, label=f"tried, {over}")
+    else:
+        axes.plot(*zip(*([values[name] for name in names] for values, _ in choice.tried)), ".", color=red, label="tried")  # fmt: skip
+    place = [choice.values[name] for name in names]
+    axes.plot(
+        place[0],
+        place[1] if len(place) == 2 else choice.outcome,
+        "*",
+        color=red,
+        markersize=14,
+        markeredgecolor="white",
+        label="chosen",
+    )
+    if axes.get_legend() is not None:
+        axes.legend()
+
+
+def _told(choice: Any, outcome: str, found: Any, units: dict[str, str], wish: str) -> str:
     """The choice, and what it costs: the other outcomes beside the best that each could be on the grid."""
     import numpy as np
 
     def shown(name: str, value: float) -> str:
-        return f"{value:.6g} {units.get(name, '')}".rstrip()
+        return f"{value:.6g} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
 
     lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
-    lines.append(
-        f"{outcome} = {shown(outcome, choice.outcome)}, the {'largest' if largest else 'lowest'} that was found"
-    )
+    lines.append(f"{outcome} = {shown(outcome, choice.outcome)}, {wish}")
     if choice.others:
-        lines += ["", "there, beside it (and from ... to ... over the survey):"]
+        middle = ", medians of the samples" if found.plan.samples else ""
+        lines += ["", f"there, beside it{middle} (and from ... to ... over the survey):"]
         for name, value in choice.others.items():
             column = found.columns.get(name)
             known = column[np.isfinite(column)] if column is not None else np.array([])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import JsonOption
+from contvines.command.options import JsonOption, SizeOption
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
@@ -65,6 +65,7 @@ def calibrate(
         Path | None,
         typer.Option("--plot", metavar="FILE.png", help="Draw the data and what the estimate leaves over."),
     ] = None,
+    size: SizeOption = None,
     json_: JsonOption = False,
 ) -> None:
     """Estimate restitution, friction and the like from a measurement, with confidence intervals.
@@ -81,9 +82,10 @@ def calibrate(
             f"--impacts and --sweep: {both} given; give one of them: --impacts times.csv or --sweep responses.csv."
         )
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     if release is not None and impacts is None:
         raise ValueError(f"--release {release}: this goes with --impacts.")
     if measure is not None and sweep is None:
@@ -117,9 +119,15 @@ def calibrate(
     else:
         typer.echo(fitted(told(found, units, guesses)))
     if plot is not None:
+        from contvines.graph.table import with_unit
         from contvines.plots.figures import save_figure
+        from contvines.plots.measured import plot_calibration
 
-        save_figure(_draw(found, *places), plot)
+        over, unit, where, heights, label = places
+        drawn = plot_calibration(
+            where, found.residuals, heights, xlabel=with_unit(over, unit), ylabel=label, figsize=size
+        )
+        save_figure(drawn, plot)
         say(f"drawn in {plot}", json_)
 
 
@@ -176,7 +184,7 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
 def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
     """The machine told by the unknown parameters, and their values in the study."""
     from contvines.command.compose import machine
-    from contvines.hints import did_you_mean
+    from contvines_ground.near_names import did_you_mean
 
     model = machine(study)
     known = list(model.tables.QUANTITIES) if study.quantities else list(study.parameters)
@@ -257,7 +265,7 @@ def _from_sweep(
 ) -> tuple[Calibration, tuple[Any, ...]]:
     from contvines.command.compose import loose
     from contvines.command.measured import Column, measured
-    from contvines.graph.table import with_unit
+    from contvines.plots.style import axis_label
     from orbits.attractors.sweep import measure_names
     from orbits.design.calibration import from_sweep
 
@@ -282,31 +290,4 @@ def _from_sweep(
         fixed=loose(study),
         confidence=confidence,
     )
-    return found, (over, model.units.get(over, ""), values, heights, with_unit(name, unit))
-
-
-def _draw(found: Calibration, over: str, unit: str, places: Any, heights: Any, label: str) -> Any:
-    """A sweep: the data and the computed responses; impact times: what is left over."""
-    from contvines.graph.table import with_unit
-    from contvines.plots.figures import new_axes, styled
-
-    with styled():
-        figure, axes = new_axes(None)
-        if heights is None:
-            axes.axhline(0.0, color="0.6", linewidth=0.8)
-            axes.plot(places, -found.residuals, "o", color="#0b3c6f", markersize=4)
-        else:
-            axes.plot(
-                places, heights, "o", color="#b5121b", markersize=5, markerfacecolor="none", label="measured"
-            )
-            axes.plot(
-                places,
-                heights + found.residuals,
-                "-",
-                color="#0b3c6f",
-                linewidth=1.2,
-                label="with the estimate",
-            )
-            axes.legend()
-        axes.set(xlabel=with_unit(over, unit), ylabel=label)
-        return figure
+    return found, (over, model.units.get(over, ""), values, heights, axis_label(name, unit=unit or None))

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from contvines.command.options import FileArgument, TrustOption
+from contvines.command.options import FileArgument, SizeOption, TrustOption
 from contvines.command.stored import refuse_detached
 
 
@@ -22,6 +22,7 @@ def circle(
         Path | None,
         typer.Option("--plot", metavar="FILE.png", help="Draw section, radius and rotation number."),
     ] = None,
+    size: SizeOption = None,
     json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
     trust: TrustOption = False,
 ) -> None:
@@ -29,9 +30,10 @@ def circle(
     from contvines.store import load
 
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     graph = load(file, trust=trust)
     special = getattr(graph, "special", {})
     if label not in special:
@@ -50,6 +52,6 @@ def circle(
     if plot is not None:
         from contvines.plots.figures import save_figure
 
-        save_figure(found.plot(), plot)
+        save_figure(found.plot(figsize=size), plot)
         if not json:
             typer.echo(f"drawn in {plot}")

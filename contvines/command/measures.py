@@ -22,7 +22,7 @@ def check_bounds(study: "Study", command: str) -> None:
             "[continue] bounds: an atlas follows all that it meets to its end; leave them out, or use contvines diagram."
         )
     from contvines.command.compose import machine
-    from contvines.hints import did_you_mean
+    from contvines_ground.near_names import did_you_mean
     from orbits.cycles.measures import names
 
     known = names(machine(study))
@@ -57,7 +57,7 @@ def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -
     if not given:
         return
     from contvines.command.compose import machine
-    from contvines.hints import did_you_mean
+    from contvines_ground.near_names import did_you_mean
     from orbits.cycles.measures import names
 
     known = list(dict.fromkeys([study.parameter, *names(machine(study))]))

@@ -18,3 +18,10 @@ TrustOption = Annotated[
 ]
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
+
+SizeOption = Annotated[
+    tuple[float, float] | None,
+    typer.Option(
+        "--size", metavar="WIDTH HEIGHT", help="Of the picture, in inches; 3.4 2.4 is a column of a journal."
+    ),
+]

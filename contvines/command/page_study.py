@@ -16,7 +16,8 @@ from contvines.command.schema import (
     SurveySection,
     SweepSection,
 )
-from contvines.command.sentences import did_you_mean, sentences_of, together
+from contvines.command.sentences import sentences_of, together
+from contvines_ground.near_names import did_you_mean
 
 
 class PageSection(Section):

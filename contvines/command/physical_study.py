@@ -6,7 +6,7 @@ in which the machine's quantity was given. What is left is a study like any othe
 
 from typing import Any
 
-from contvines.command.sentences import did_you_mean
+from contvines_ground.near_names import did_you_mean
 
 OWN = ("name", "units", "unusual")
 SAID = ("word", "periods", "guess")

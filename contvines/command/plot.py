@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.compare import CompareOption, check_compared, compared
-from contvines.command.options import FileArgument, TrustOption
+from contvines.command.options import FileArgument, SizeOption, TrustOption
 from contvines.command.stored import say_unfinished, say_what_lacks
 
 
@@ -53,10 +53,7 @@ def plot(
     ylim: Annotated[
         tuple[float, float] | None, typer.Option("--ylim", metavar="LOW HIGH", help="Limits of the y axis.")
     ] = None,
-    size: Annotated[
-        tuple[float, float] | None,
-        typer.Option("--size", metavar="WIDTH HEIGHT", help="Inches; 3.4 2.4 is a column of a journal."),
-    ] = None,
+    size: SizeOption = None,
     color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
     words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
     legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import FileArgument, TrustOption
+from contvines.command.options import FileArgument, SizeOption, TrustOption
 
 
 def robustness(
@@ -32,6 +32,7 @@ def robustness(
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the erosion curve of a branch.")
     ] = None,
+    size: SizeOption = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")
     ] = False,
@@ -45,9 +46,10 @@ def robustness(
     from contvines.store import load
 
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     graph = load(file, trust=trust)
     name, _, place = label.partition(":")
     branches = getattr(graph, "branches", {})
@@ -76,6 +78,6 @@ def robustness(
     if plot is not None:
         from contvines.plots.figures import save_figure
 
-        save_figure(found.plot(), plot)
+        save_figure(found.plot(figsize=size), plot)
         if not json:
             typer.echo(f"drawn in {plot}")

@@ -204,7 +204,7 @@ def _run(
     if not quiet:
         typer.echo(str(graph))
     if command == "diagram" and graph.missing:
-        from contvines.coexistence.looking import told
+        from contvines.coexistence.missing import told
 
         say(told(graph, f"contvines atlas {path} adds what hangs together with it"), quiet)
     if plot is not None:
@@ -252,7 +252,7 @@ def _look(study: Any, target: Path) -> Any:
 
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
     """
-    from contvines.coexistence.looking import look
+    from contvines.coexistence.missing import look
     from contvines.coexistence.population import population_of
     from contvines.command.compose import loose, machine
     from contvines.problems.abilities import Populated

@@ -33,7 +33,7 @@ from contvines.command.sentences import (
     would_do,
 )
 from contvines.command.toml_text import TomlError, toml_data
-from contvines.hints import did_you_mean
+from contvines_ground.near_names import did_you_mean
 from orbits.machines.catalogue import model_class
 
 

@@ -26,8 +26,8 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
     """
     from contvines.command.compose import machine
     from contvines.command.schema import PARAMETERS
-    from contvines.command.sentences import did_you_mean
     from contvines.survey import planned
+    from contvines_ground.near_names import did_you_mean
 
     said = dict(study.survey.vary if vary is None else vary)
     model = machine(study)

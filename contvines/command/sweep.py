@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from contvines.command.options import SizeOption
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def sweep(
             "--plot", metavar="FILE.png", help="Draw the attractors: B at every impact, or largest |q1|."
         ),
     ] = None,
+    size: SizeOption = None,
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
     ] = None,
@@ -50,9 +52,10 @@ def sweep(
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
     if not quiet:
@@ -61,7 +64,7 @@ def sweep(
         from contvines.command.sweep_picture import picture
         from contvines.plots.figures import save_figure
 
-        save_figure(picture(rows, read, graph), plot)
+        save_figure(picture(rows, read, graph, size), plot)
         say(f"drawn in {plot}", quiet)
 
 

@@ -75,13 +75,18 @@ def _shown(value: Any) -> str:
     return repr(value) if isinstance(value, str) else f"{value:.15g}"
 
 
-def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
+def picture(
+    rows: "list[Kept]", study: "Study", graph: Any, size: tuple[float, float] | None = None
+) -> "Figure":
     """The attractors of a sweep as dots, over a graph if there is one."""
     from contvines.command.compose import machine
     from contvines.plots.sweep import plot_sweep
     from orbits.machines.catalogue import model_class
 
-    units = {} if study.machine is not None else machine(study).units
+    look: dict[str, Any] = {
+        "units": {} if study.machine is not None else machine(study).units,
+        "figsize": size,
+    }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
     if study.machine is not None:  # impact speeds, or how far the first state goes
@@ -91,7 +96,7 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
         measure = model_class(study.name).swept_measure
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
-        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, units=units)
+        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, **look)
     first: list[tuple[float, float]] = []
     others: list[tuple[float, float]] = []
     lines = _lines(graph) if graph is not None else []
@@ -99,7 +104,7 @@ def picture(rows: "list[Kept]", study: "Study", graph: Any) -> "Figure":
         place = _drawn_impact(row, lines) if graph is not None else None
         for i, dot in enumerate(row.dots):
             (first if graph is None or i == place else others).append((row.value, dot))
-    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, units=units)
+    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, **look)
 
 
 def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:

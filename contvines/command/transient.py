@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import JsonOption
+from contvines.command.options import JsonOption, SizeOption
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,6 +43,7 @@ def transient(
         Path | None,
         typer.Option("--plot", metavar="FILE.png", help="Draw it, with the bare oscillator beside."),
     ] = None,
+    size: SizeOption = None,
     json_: JsonOption = False,
 ) -> None:
     """A shock, a recorded base motion or a free decay, compared with the bare oscillator.
@@ -63,9 +64,10 @@ def transient(
     if output is not None:
         check_target(output, "csv")
     if plot is not None:
-        from contvines.plots.figures import check_picture
+        from contvines.plots.figures import check_picture, check_size
 
         check_picture(plot)
+        check_size(size)
     read = checked_study(study)
     if read.machine is not None:
         raise ValueError(
@@ -84,7 +86,7 @@ def transient(
     if plot is not None:
         from contvines.plots.figures import save_figure
 
-        save_figure(found.draw(), plot)
+        save_figure(found.draw(size), plot)
         say(f"drawn in {plot}", json_)
 
 
@@ -137,39 +139,11 @@ class Told:
                 [repr(float(x)) for x in row] for row in zip(*(values for _, _, values in self.series))
             )
 
-    def draw(self) -> Any:
+    def draw(self, size: tuple[float, float] | None = None) -> Any:
         """The motion, or the energy, with the absorber and without; impacts as ticks."""
-        import numpy as np
+        from contvines.plots.measured import plot_transient
 
-        from contvines.graph.table import with_unit
-        from contvines.plots.figures import new_axes, styled
-
-        (clock, second, time), *curves = self.series
-        with styled():
-            figure, axes = new_axes(None)
-            looks = {"bare": ("0.55", (0, (4, 1.5)), "without absorber")}
-            for name, _, values in curves:
-                if name.startswith("relative"):
-                    continue
-                color, dashes, label = looks.get(name.split("_")[0], ("#0b3c6f", "-", "with absorber"))
-                axes.plot(time, values, color=color, linestyle=dashes, linewidth=1.2, label=label)
-            if self.hits is not None and self.hits.size:
-                low = axes.get_ylim()[0]
-                axes.plot(
-                    self.hits,
-                    np.full(self.hits.size, low),
-                    "|",
-                    color="#b5121b",
-                    markersize=7,
-                    label="impacts",
-                )
-            name, unit, _ = curves[0]
-            axes.set(xlabel=with_unit(clock, second), ylabel=with_unit(name.replace("_", " "), unit))
-            if name == "energy":
-                axes.set(yscale="log", ylabel="energy / first energy")
-            axes.margins(x=0.0)
-            axes.legend()
-            return figure
+        return plot_transient(self.series, self.hits, figsize=size)
 
 
 def _params(study: Any) -> tuple[Any, Any]:

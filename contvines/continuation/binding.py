@@ -1,6 +1,6 @@
 """Binding the continuation loop to the kernels of a problem.
 
-One source (march.py, corrector.py): ``bind`` copies the functions with other globals. What runs over the unknowns is taken
+One source (loop.py, corrector.py): ``bind`` copies the functions with other globals. What runs over the unknowns is taken
 from lengths.py for compiled problems and from arrays.py for others. For compiled problems the copies are compiled and cached on disk under a name that carries a digest of the kernels' sources, so that a cached
 loop is never older than the kernels in it.
 """
@@ -13,8 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import arrays, corrector, lengths, step_rule
-from . import march as loop
+from . import arrays, corrector, lengths, loop, step_rule
 from .step_rule import BY_ANGLE, StepRule, by_angle
 
 

@@ -1,6 +1,6 @@
 """Corrector: Newton's method on the bordered system, along a branch and for single points.
 
-Runs compiled and interpreted: see :mod:`contvines.continuation.march`.
+Runs compiled and interpreted: see :mod:`contvines.continuation.loop`.
 """
 
 from typing import NamedTuple
@@ -165,8 +165,8 @@ def point(data, work, what, chord, place, border, along, max_sweeps, u, tangent,
     sign = 0.0
     size = 0.0
     settled = max_sweeps == 0
-    sweep = 0
-    while True:
+    sweep = max_sweeps
+    for sweep in range(max_sweeps + 1):
         gap = start + s * length
         if what != ELIMINATE:
             residual = linearise(data, u, p, work)
@@ -184,7 +184,6 @@ def point(data, work, what, chord, place, border, along, max_sweeps, u, tangent,
         if verdict < 0:
             return p, -1, residual, sign, size
         settled = verdict > 0
-        sweep += 1
     if what == ELIMINATE:
         return p, sweep, residual, sign, size
     inspect(data, u, p, work, row)

@@ -12,7 +12,7 @@ from ..interrupts import HELD, OPEN
 from ..problems.abilities import Rough
 from ..problems.protocol import Problem
 from . import corrector
-from . import march as source
+from . import loop as source
 from .approach import approach
 from .binding import bind
 from .lengths import Metric

@@ -6,9 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from contvines_ground.near_names import did_you_mean
+
+from ..hints import hinted
 from .step_rule import BY_ANGLE, StepRule
 
 
+@hinted
 @dataclass(frozen=True)
 class Settings:
     """How to continue. Lengths are in the metric in which the parameter interval has length 1 and u its rms norm.
@@ -79,7 +83,9 @@ class Settings:
         given: dict[str, Any] = {} if values is None else {**values}  # type: ignore[dict-item]
         for name in given:
             if name not in names:
-                raise ValueError(f"settings: there is no {name!r}; choose from {', '.join(names)}")
+                raise ValueError(
+                    f"settings: there is no {name!r}{did_you_mean(name, names)}; choose from {', '.join(names)}"
+                )
         return cls(**given)
 
     @classmethod

@@ -11,7 +11,7 @@ from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
-from . import march as source
+from . import loop as source
 from .chunk import Chunk
 from .closing import Closing
 from .engine import Engine, Solved

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from .kinds import BORDERS
 from .locate import Root, locate
 from .segment import Segment

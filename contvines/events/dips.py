@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..continuation.engine import Solved
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from .scan import dips
 from .segment import Segment
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..continuation.lengths import Metric
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from .bits import (
     APART,
     BORDER,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
 from .leaps import inexact, leap

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,19 +36,19 @@ def graph_dataset(graph: Graph) -> Any:
     ValueError
         If pandas or xarray is not installed.
     """
-    frame = graph_frame(graph).reset_index()
-    frame.index.name = "row"
-    _xarray()
-    found = frame.to_xarray().set_coords(["branch", "index"])
+    found = _dataset(graph_frame(graph), graph.units)
     found.attrs["parameter"] = graph.parameter
-    for name, unit in graph.units.items():
-        if name in found:
-            found[name].attrs["units"] = unit
     return found
 
 
 def chart_frame(chart: Chart) -> Any:
-    """All points of all loci, indexed by locus and point: kind, word, both parameters, and whether the motion is real."""
+    """All points of all loci, indexed by locus and point: kind, word, both parameters, and whether the motion is real.
+
+    Raises
+    ------
+    ValueError
+        If pandas is not installed.
+    """
     p, q = chart.parameters
     parts = [
         {
@@ -64,6 +65,19 @@ def chart_frame(chart: Chart) -> Any:
     ]
     names = ["locus", "index", "kind", "word", p, q, "real"]
     return _pandas().DataFrame(parts, columns=names).set_index(["locus", "index"])
+
+
+def chart_dataset(chart: Chart) -> Any:
+    """All points of all loci as a data set over the dimension ``row``, whose coordinates are locus and index.
+
+    Raises
+    ------
+    ValueError
+        If pandas or xarray is not installed.
+    """
+    found = _dataset(chart_frame(chart), chart.units)
+    found.attrs["parameters"] = list(chart.parameters)
+    return found
 
 
 def branch_frame(branch: Branch) -> Any:
@@ -102,6 +116,19 @@ def branch_dataset(branch: Branch) -> Any:
         "special": ("point", special),
     }
     return xarray.Dataset(variables, coordinates, about)
+
+
+def _dataset(frame: Any, units: Mapping[str, str]) -> Any:
+    """A frame as a data set over the dimension ``row``; what indexed the frame are coordinates."""
+    _xarray()
+    keys = list(frame.index.names)
+    rows = frame.reset_index()
+    rows.index.name = "row"
+    found = rows.to_xarray().set_coords(keys)
+    for name, unit in units.items():
+        if name in found:
+            found[name].attrs["units"] = unit
+    return found
 
 
 def _xarray() -> Any:

@@ -14,7 +14,7 @@ from ..branches.half_branch import HalfBranch
 from ..branches.opening import on_this_branch, on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from ..continuation.starts import solve_start, told_start
 from ..continuation.status import Status
 from ..events.kinds import BORDERS
@@ -32,8 +32,8 @@ BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
-def begin(run: Run, problem: Problem, u: Any, p: float) -> None:
-    """Put the start into the queue.
+def begin(run: Run, problem: Problem, u: Any, p: float, depth: int = 0) -> None:
+    """Put the start into the queue; its branch counts as one that so many others lie before.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def begin(run: Run, problem: Problem, u: Any, p: float) -> None:
             f"margin {margin:.3g}), so no machine can follow it; start elsewhere or set virtual = true"
         )
     run.graph.start = told_start(engine, u, p, start)
-    run.queue.append(Pending(problem, start.u, start.p, start.tangent))
+    run.queue.append(Pending(problem, start.u, start.p, start.tangent, depth=depth))
 
 
 def adopt(run: Run) -> None:

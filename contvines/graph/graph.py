@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from contvines_ground.near_names import did_you_mean
+
 from ..doors import above
 from ..events.kinds import PREFIXES
-from ..hints import did_you_mean
+from ..hints import hinted
 from .attractor import Attractor
 
 if TYPE_CHECKING:
@@ -50,6 +52,7 @@ class Switch:
         }
 
 
+@hinted
 @dataclass(eq=False)
 class Graph:
     """Branches and special points by label, and the switches between branches.

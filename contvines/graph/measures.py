@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
+
 if TYPE_CHECKING:
     from .graph import Graph
 
@@ -51,7 +53,7 @@ def measured(branch: Any, name: str) -> np.ndarray:
     except (KeyError, ValueError) as error:
         names = sorted({branch.parameter, *branch.measure_names})
         raise ValueError(
-            f"{branch.label} has no measure {name!r}; choose one of {', '.join(names)}."
+            f"{branch.label} has no measure {name!r}{did_you_mean(name, names)}; choose one of {', '.join(names)}."
         ) from error
 
 

@@ -7,16 +7,19 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+from contvines_ground.near_names import did_you_mean
+
 from ..doors import above
 from ..events.kinds import CODIMENSION_TWO
 from ..graph.persistence import branch_of, content_of
-from ..hints import did_you_mean
+from ..hints import hinted
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
 from .plane_point import PlanePoint
 from .regions import Region
 
 
+@hinted
 @dataclass(eq=False)
 class Chart:
     """What happens in the plane of two parameters.
@@ -113,6 +116,10 @@ class Chart:
     def to_pandas(self) -> Any:
         """All points of all loci as a data frame; see :func:`contvines.export.frames.chart_frame`."""
         return above("chart_frame")(self)
+
+    def to_xarray(self) -> Any:
+        """All points of all loci as a data set; see :func:`contvines.export.frames.chart_dataset`."""
+        return above("chart_dataset")(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
         """Write the chart for other programs; `to` ("csv", "json") is read off the name by default.

@@ -12,7 +12,7 @@ from ..hints import hinting
 from ..interrupts import listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
-from .following import locus
+from .tracing import locus
 
 
 @hinting

@@ -22,7 +22,6 @@ from .codimension_two import find
 from .coefficients_at import coefficients
 from .crossings import crossings
 from .departures import Candidate, leaving
-from .following import checked_ends, trace_locus
 from .kinds import PREFIXES, condition
 from .known_motions import KnownMotions, together
 from .layout import MARGIN
@@ -30,6 +29,7 @@ from .locus import Locus
 from .plane_point import PlanePoint
 from .regions import divide
 from .starts import begin, regular_side
+from .tracing import checked_ends, trace_locus
 
 SAME = 1e-7  # points of the plane closer than this part of its sides are one
 END = 1e-5  # of them: a locus ends there

@@ -10,6 +10,7 @@ import numpy as np
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..hints import hinted
 
 
 class Turn(NamedTuple):
@@ -19,6 +20,7 @@ class Turn(NamedTuple):
     value: tuple[float, float]
 
 
+@hinted
 @dataclass(eq=False)
 class Locus:
     """The special points of one kind that hang together, in the plane of two parameters.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..graph.shortening import short_word
+from ..hints import hinting
 from .basins import COLORS
 from .diagram import draw_diagram
 from .figures import freeze, new_figure, settle, styled, thin_ticks
@@ -25,6 +26,7 @@ MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the r
 LOW = 3.4  # inches
 
 
+@hinting
 def plot_atlas(
     graph: Graph,
     x: str | None = None,

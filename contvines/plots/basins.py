@@ -86,7 +86,7 @@ def plot_basins(
                 cycles = f", k={about.periods}" if about.periods > 1 else ""
                 entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}"))
                 if 0.0 < about.mirror_share < about.share:
-                    entries.append(Patch(color=light[k], label="its mirror image"))
+                    entries.append(Patch(color=light[k], label=f"{name}, mirror image"))
             if basins.manifolds:
                 words = dict.fromkeys(short_word(curve.word, 20) for curve in basins.manifolds)
                 entries.append(

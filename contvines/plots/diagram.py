@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from contvines_ground.near_names import did_you_mean
+
 from ..graph.measures import default_measure
 from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled, thin_ticks
@@ -86,7 +88,9 @@ def plot_diagram(
         If the problem has no such measure, a label is unknown, or an option has no such value.
     """
     if color not in COLORS:
-        raise ValueError(f"color = {color!r} is unknown; choose one of {', '.join(COLORS)}")
+        raise ValueError(
+            f"color = {color!r} is unknown{did_you_mean(color, COLORS)}; choose one of {', '.join(COLORS)}"
+        )
     _check_labels(graph, labels)
     own = axes is None
     with styled(style):

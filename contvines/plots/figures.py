@@ -1,52 +1,23 @@
-"""How a figure is made, given its place and saved; the user's own settings come before the house's."""
+"""How a figure is given its place and saved."""
 
 from __future__ import annotations
 
 import itertools
-import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from contvines_ground.figures import new_figure, shrinking, styled, windows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HOUSE = Path(__file__).with_name("contvines.mplstyle")
 FORMATS = ("png", "pdf", "svg", "jpg", "eps")
-FULL_WIDTH = 6.5  # inches; in narrower figures texts, marks and lines shrink
-SMALLEST = 0.72  # but not below this share
-
-
-@contextmanager
-def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Draw in the package's style; what the user has set, and `style`, come before it; settings stay as they were.
-
-    Parameters
-    ----------
-    style : str, mapping or None
-        The name of a matplotlib style, the path of a style sheet, or rcParams.
-    """
-    import matplotlib as mpl
-    from matplotlib.style import context
-
-    default: Any = mpl.rcParamsDefault
-    # reading the backend would choose one, which imports pyplot
-    settings: Any = mpl.rcParams
-    names = [name for name in settings if not name.startswith("backend") and name in default]
-    own = {name: settings[name] for name in names if settings[name] != default[name]}
-    chosen: list[Any] = ["default", HOUSE, own]
-    if style is not None:
-        chosen.append(dict(style) if isinstance(style, Mapping) else style)
-    with context(chosen):
-        yield
 
 
 def scale(figure: Figure) -> float:
-    """By how much texts, marks and lines shrink in a figure narrower than `FULL_WIDTH`."""
-    return float(min(1.0, max(SMALLEST, figure.get_size_inches()[0] / FULL_WIDTH)))
+    """By how much texts, marks and lines shrink in a figure that is narrow."""
+    return shrinking(figure.get_size_inches()[0])
 
 
 def new_axes(axes: Axes | None, **options: Any) -> tuple[Figure, Axes]:
@@ -64,47 +35,6 @@ def new_axes(axes: Axes | None, **options: Any) -> tuple[Figure, Axes]:
         size = FontProperties(size=settings[key]).get_size_in_points()
         axes.tick_params(axis=axis, labelsize=size)  # type: ignore[arg-type]
     return made, axes
-
-
-def new_figure(figsize: tuple[float, float] | None = None, **options: Any) -> Figure:
-    """A figure that pyplot does not keep: notebooks show it once, as the value of a cell, and nothing piles up.
-
-    Where pyplot shows windows it is one of pyplot's. In a figure narrower than `FULL_WIDTH` all text is smaller.
-    """
-    import matplotlib as mpl
-
-    width = (figsize or mpl.rcParams["figure.figsize"])[0]
-    smaller = max(SMALLEST, min(1.0, width / FULL_WIDTH))
-    changed: dict[Any, Any] = {
-        name: mpl.rcParams[name] * smaller
-        for name in ("font.size", "lines.linewidth", "lines.markersize", "axes.linewidth")
-    } | {
-        name: mpl.rcParams[name] * smaller
-        for name in ("axes.labelsize", "axes.titlesize", "legend.fontsize")
-        if isinstance(mpl.rcParams[name], int | float)
-    }
-    mpl.rcParams.update(changed)  # inside `styled`, which puts everything back
-    if windows():
-        return sys.modules["matplotlib.pyplot"].figure(figsize=figsize, **options)
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    made = _picture_class()(figsize=figsize, **options)
-    FigureCanvasAgg(made)
-    return made
-
-
-def _picture_class() -> type[Figure]:
-    from matplotlib.figure import Figure
-
-    class Picture(Figure):
-        """A figure that shows itself in a notebook, whether or not pyplot has been imported there."""
-
-        def _repr_png_(self) -> bytes:
-            buffer = BytesIO()
-            self.savefig(buffer, format="png", dpi=110)
-            return buffer.getvalue()
-
-    return Picture
 
 
 def settle(figure: Figure) -> None:
@@ -149,14 +79,6 @@ def freeze(figure: Figure) -> None:
     """Leave everything where it is: a figure without a window is not laid out again."""
     if not windows():
         figure.set_layout_engine("none")
-
-
-def windows() -> bool:
-    """Whether the user's session shows pyplot's figures in windows (notebooks show what is returned)."""
-    if "matplotlib.pyplot" not in sys.modules:
-        return False
-    backend = sys.modules["matplotlib.pyplot"].get_backend().lower()
-    return backend not in ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template") and "inline" not in backend
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:

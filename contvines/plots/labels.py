@@ -23,6 +23,7 @@ WORST = (
 )  # cost above which a label is left out: of a point, and of what stands near its place or nowhere
 ALONG = 16.0  # half cells of a leader on a curve that count as much as crossing it
 EDGE = 1.5  # points between a text and the frame
+AS_NEAR = 1.25  # times its distance from its own mark: a text that near to another one could be either's
 CROWD = 9  # with more than so many further names at one place none of them says anything
 
 
@@ -99,7 +100,7 @@ def place_labels(
                 far = radius >= LEADER
                 line = (ax, ay, cx, cy) if far else None
                 cost = _cost(box, line, frame, ground, boxes, leaders, marks[:i] + marks[i + 1 :], unit)
-                cost += 0.3 * radius + (30.0 if _nearer(box, (ax, ay), others) else 0.0)
+                cost += 0.3 * radius + _claimed(box, (ax, ay), others)
                 if best is None or cost < best[0]:
                     best = (cost, cx, cy, box, radius)
             if best is not None and best[0] < RADII[0]:
@@ -261,15 +262,18 @@ def _write(
     )
 
 
-def _nearer(box: Box, own: tuple[float, float], others: np.ndarray) -> bool:
-    """Whether a text stands nearer to something else than to what it names."""
+def _claimed(box: Box, own: tuple[float, float], others: np.ndarray) -> float:
+    """What it costs that a text stands nearer to something else than to what it names, or about as near."""
 
     def gap(points: np.ndarray) -> np.ndarray:
         across = np.maximum(np.maximum(box[0] - points[:, 0], points[:, 0] - box[2]), 0.0)
         up = np.maximum(np.maximum(box[1] - points[:, 1], points[:, 1] - box[3]), 0.0)
         return np.hypot(across, up)
 
-    return bool(len(others)) and float(gap(others).min()) < float(gap(np.array([own]))[0]) - 1.0
+    if not len(others):
+        return 0.0
+    nearest, ours = float(gap(others).min()), float(gap(np.array([own]))[0])
+    return 30.0 if nearest < ours - 1.0 else 10.0 if nearest < AS_NEAR * ours else 0.0
 
 
 def _overlap(a: Box, b: Box) -> bool:

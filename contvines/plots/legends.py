@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
+
 from .figures import settle
 from .labels import text_widths
 from .style import LINES, PROVED, STATES, WIDTHS, Mark
@@ -107,8 +109,14 @@ def place_legend(
         What True means in a wide figure of ours; inside gives way to beside where it would cover something.
     remarks : sequence of str
         Labels among `handles` that are words alone; below they go to the label of the axis.
+
+    Raises
+    ------
+    ValueError
+        If `where` is no place.
     """
     from matplotlib.layout_engine import ConstrainedLayoutEngine
+    from matplotlib.legend import Legend
 
     if where is False or not handles:
         return
@@ -116,6 +124,11 @@ def place_legend(
     assert figure is not None
     options: dict[str, Any] = {"handles": handles, "handlelength": 2.4}
     if isinstance(where, str) and where not in PLACES:
+        known = [*PLACES, *Legend.codes]
+        if where not in known:
+            raise ValueError(
+                f"legend = {where!r} is unknown{did_you_mean(where, known)}; choose of {', '.join(known)}"
+            )
         axes.legend(**{**options, "loc": where})
         return
     narrow = figure.get_size_inches()[0] < NARROW

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 COLUMNS = 6  # at most, side by side
 ASIDE = 0.42  # columns: how far beside its column a bent arrow runs
 COMPACT = 0.85  # inches for a box and an arrow where boxes have labels alone
+ROW = 0.175  # inches that a row needs there
+ALONG = (0.5, 0.64, 0.36, 0.74, 0.26)  # where on its arrow a label may stand, the first free one
 
 
 @hinting
@@ -31,7 +33,8 @@ def plot_network(
     """Draw branches (boxes: label, word, range) from left to right by the number of switches that lead to them.
 
     A solid box is a real branch, a dotted one a virtual branch; a grey filling says that some of it is stable. After
-    `COLUMNS` columns the picture goes on below, from right to left and so on, as one ploughs a field.
+    `COLUMNS` columns the picture goes on below, from right to left and so on, as one ploughs a field. In a small figure boxes have
+    labels alone, and what is too many switches away to find room is left out and counted.
 
     Parameters
     ----------
@@ -50,12 +53,14 @@ def plot_network(
     needed = (max(4.5, 2.9 * wide), max(2.4, 1.15 * (top - low + 1) + 0.6))
     with styled(style):
         figure, axes = new_axes(axes, figsize=figsize or needed)
-        inches = axes.get_window_extent().width / figure.dpi
+        extent = axes.get_window_extent()
+        inches = extent.width / figure.dpi
         # boxes with labels alone, as many side by side as leave room for arrows
         compact = inches < 0.8 * needed[0] and (figsize is not None or figure.axes != [axes])
         size = 8.0 if not compact else 6.0
         if compact:
-            place = _places(layers, int(min(COLUMNS, max(2, inches / COMPACT))))
+            columns = int(min(COLUMNS, max(2, inches / COMPACT)))
+            place = _places(_that_fit(layers, columns, extent.height / figure.dpi / ROW), columns)
             wide = round(max((px for px, _ in place.values()), default=0.0)) + 1
             low, top = _ends(place)
         axes.set_axis_off()
@@ -80,14 +85,25 @@ def plot_network(
             )
         if graph.branches:
             told = "grey: partly stable; dotted: virtual"
-            axes.set_title(told if compact else f"{told}; arrows: switches at special points", fontsize=size)
+            less = len(graph.branches) - len(place)
+            more = (
+                f"; {less} more further on"
+                if less
+                else ""
+                if compact
+                else "; arrows: switches at special points"
+            )
+            axes.set_title(f"{told}{more}", fontsize=size)
         axes.set_xlim(-0.5 - (0.15 if compact else 0.0), wide - 0.5 + (0.2 if compact else 0.0))
         axes.set_ylim(low - 0.6, top + 0.6)
         settle(figure)
         if figure.axes == [axes]:
             freeze(figure)
+        taken = [box.get_window_extent() for box in boxes.values()]
         for pair, switches in _pairs(graph).items():
             source, target = pair
+            if source not in place or target not in place:
+                continue
             both = len({(s.source, s.target) for s in switches}) > 1
             bend = _bend(axes, place, source, target)
             arrow = FancyArrowPatch(
@@ -103,13 +119,10 @@ def plot_network(
                 zorder=1,
             )
             axes.add_patch(arrow)
-            (ax, ay), (bx, by) = axes.transData.transform([place[source], place[target]])
-            middle = ((ax + bx + bend * (by - ay)) / 2, (ay + by - bend * (bx - ax)) / 2)
-            tx, ty = axes.transData.inverted().transform(middle)
             beside = compact and bend == 0.0 and place[source][0] == place[target][0]  # a short arrow
-            axes.text(
-                tx + (0.06 if beside else 0.0),
-                ty,
+            written = axes.text(
+                0.0,
+                0.0,
                 ", ".join(dict.fromkeys(s.point for s in switches)),
                 ha="left" if beside else "center",
                 va="center",
@@ -117,7 +130,34 @@ def plot_network(
                 bbox={"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none"},
                 zorder=4,
             )
+            ends = axes.transData.transform([place[source], place[target]])
+            _stand(written, axes, ends, bend, 0.06 if beside else 0.0, taken)
     return figure
+
+
+def _stand(written: Any, axes: "Axes", ends: np.ndarray, bend: float, aside: float, taken: list[Any]) -> None:
+    """Put a label on its arrow where it covers no box and no other label, else in the arrow's middle."""
+    (ax, ay), (bx, by) = ends
+    corner = np.array([(ax + bx) / 2 + bend * (by - ay), (ay + by) / 2 - bend * (bx - ax)])
+    found = []
+    for t in ALONG:
+        on = (1 - t) ** 2 * ends[0] + 2 * t * (1 - t) * corner + t**2 * ends[1]
+        tx, ty = axes.transData.inverted().transform(on)
+        written.set_position((tx + aside, ty))
+        box = written.get_window_extent()
+        found.append((any(box.overlaps(other) for other in taken), len(found), (tx + aside, ty), box))
+    _, _, position, box = min(found, key=lambda entry: entry[:2])
+    written.set_position(position)
+    taken.append(box)
+
+
+def _that_fit(layers: list[list[str]], columns: int, rows: float) -> list[list[str]]:
+    """The first layers, as many as find room in so many rows; of a single one that does not, the first labels."""
+    for count in range(len(layers), 0, -1):
+        low, top = _ends(_places(layers[:count], columns))
+        if top - low + 1 <= rows:
+            return layers[:count]
+    return [layers[0][: max(int(rows), 1)]] if layers else []
 
 
 def _pairs(graph: "Graph") -> dict[tuple[str, str], list[Any]]:

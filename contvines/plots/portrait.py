@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
+
 from ..problems.abilities import Drawable
 from .figures import new_axes, styled
 
@@ -37,6 +39,11 @@ def plot_portrait(
         given = {"axes": axes, "figsize": figsize, "style": style, **options}
         drawn: Any = orbit.plot(**{name: value for name, value in given.items() if value is not None})
         return drawn if hasattr(drawn, "savefig") else drawn.get_figure()
+    for name in options:
+        known = ("axes", "figsize", "style")
+        raise TypeError(
+            f"this picture has no argument {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
+        )
     points = np.atleast_2d(np.asarray(getattr(orbit, "points", getattr(orbit, "u", orbit)), float))
     with styled(style):
         figure, axes = new_axes(axes, figsize=figsize or (4.6, 4.0))

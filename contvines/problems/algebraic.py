@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..hints import hinting
 from . import sparse
 from .callables import CallableProblem
 from .colouring import Colouring
@@ -80,6 +81,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         If F does not return N finite numbers at the start, or a given derivative disagrees with it.
     """
 
+    @hinting
     def __init__(
         self,
         F: Callable,

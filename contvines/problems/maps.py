@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..doors import above
+from ..hints import hinting
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
@@ -65,6 +66,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     spectrum = "map"
     flip_kind = "period-doubling"
 
+    @hinting
     def __init__(
         self,
         f: Callable,
@@ -304,11 +306,11 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         pieces = min(tuple(np.roll(signs, -first, axis=0).reshape(-1).tolist()) for first in range(n))
         return ("cycle", root, self.node, pieces), min(turned, key=in_order(np.tile(scale, root)))
 
+    @hinting
     def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
-        return above("MapPopulation")(
-            self if over in (None, self.parameter) else self.against(str(over)), box
-        )
+        problem = self if over in (None, self.parameter) else self.against(str(over))
+        return above("MapPopulation")(problem, box)
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from contvines_ground.near_names import did_you_mean
+
 
 class Parameters:
     """What ``F(u, p)`` reads: ``p.damping`` or ``p["damping"]``; values cannot be changed.
@@ -97,7 +99,10 @@ class ParameterSet:
         changed = dict(values or {})
         for name in (varying, *changed):
             if name not in self.values:
-                raise ValueError(f"there is no parameter {name!r}; the problem has {', '.join(self.values)}")
+                hint = did_you_mean(name, self.values)
+                raise ValueError(
+                    f"there is no parameter {name!r}{hint}; the problem has {', '.join(self.values)}"
+                )
         merged = {**self.values, **changed}
         return ParameterSet(merged if self.named else merged[varying], varying)
 

@@ -5,10 +5,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from ..hints import hinting
 from .database import Store
 from .header import TAILS, check_header
 
 
+@hinting
 def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
     """Write a graph to a file of its own; an existing .vines file is replaced in one step.
 
@@ -34,6 +36,7 @@ def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
             draft.unlink()
 
 
+@hinting
 def resume(path: str | Path, fingerprint: str = "run from Python") -> Store:
     """The journal kept in a file, made where there is none: `diagram(..., journal=resume("run.vines"))`.
 
@@ -48,6 +51,7 @@ def resume(path: str | Path, fingerprint: str = "run from Python") -> Store:
     return Store.attach(path, fingerprint)
 
 
+@hinting
 def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Any:
     """The graph kept in a .vines file; `graph.finished` says whether its run had ended.
 

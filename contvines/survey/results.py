@@ -15,6 +15,7 @@ import numpy as np
 
 from ..doors import above
 from ..graph.table import with_unit
+from ..hints import hinted
 from ..text_table import Table, fitted, terminal_width
 from .plan import Plan, PlanError
 from .work import Row
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@hinted
 @dataclass(frozen=True, eq=False, repr=False)
 class Survey:
     """The outcomes of all systems of a plan.

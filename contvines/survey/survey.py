@@ -33,7 +33,7 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
     if kind in MADE and argument:
         return partial(MADE[kind], **{ARGUMENTS[kind]: argument})
     forms = [f"{name}:..." for name in MADE]
-    raise PlanError(f"[survey] outcomes: {said!r} is unknown; choose of {', '.join([*known, *forms])}")
+    raise PlanError(f"[survey] outcomes: {said!r} is unknown; choose among {', '.join([*known, *forms])}")
 
 
 @hinting

@@ -20,8 +20,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from contvines.plots.figures import new_figure, settle, styled
+from contvines.plots.figures import settle
 from contvines.plots.legends import place_legend
+from contvines_ground.figures import new_figure, styled
 
 MASS_RATIO = 0.006
 DAMPING = 0.9

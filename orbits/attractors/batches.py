@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from orbits.compiling.ahead import wait_for
 from orbits.compiling.decorators import specialise
+from orbits.compiling.waiting import wait_for
 from orbits.machines.stepping import EVENTS_FULL, FAILED, HOLD, MODE, RATE, REST, V, W
 from orbits.simulation.driver import machine
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle
@@ -110,9 +111,7 @@ def sweep(
     """
     numbers = [float(value) for value in values]
     if over not in model.amount_names:
-        raise SimulationError(
-            f"{over!r} is no parameter of {model.name!r}; it has " + ", ".join(model.amount_names)
-        )
+        raise SimulationError(no_parameter(repr(over), f"the model {model.name!r}", model.amount_names))
     if not numbers:
         raise SimulationError(f"no values of {over} to sweep over: give at least one")
     vectors = [

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import NamedTuple
 
+from contvines_ground.near_arguments import hinted
 from orbits.contacts.changes import CLOSE, SHORT, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
 
@@ -236,6 +237,7 @@ def _settle(beats: Sequence[Beat], after: list[int | None]) -> None:
             spread([i])
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class DryFriction(FrictionLaw):
     """Dry friction between two bodies, or a body and the ground.

@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from contvines_ground.near_arguments import hinted
 from orbits.contacts.changes import CLOSE, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.riding import touched, withdrawn
@@ -148,6 +149,7 @@ class SwitchLaw:
         return self.weakened(site, j)
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class Switch(SwitchLaw):
     """A surface at which the equations of motion change: stops with springs, backlash, clutches.

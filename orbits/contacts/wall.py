@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from contvines_ground.near_arguments import hinted
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Letter
 
@@ -99,6 +100,7 @@ class WallLaw:
         return []
 
 
+@hinted
 @dataclass(frozen=True, eq=False)
 class Wall(WallLaw):
     """A unilateral contact with Newton's impact law.

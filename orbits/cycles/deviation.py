@@ -16,7 +16,7 @@ from orbits.cycles.sampling import sample
 from orbits.machines.states import states_of
 from orbits.machines.stepping import PSI, TURNS, W
 from orbits.simulation.driver import follow, machine, simulate
-from orbits.simulation.replay import replay
+from orbits.simulation.replay import one_by_one, replay
 
 AT_BORDER = 1e-4  # margins below this may make two events one
 DEFINITE = 1e-2  # speed after an event from which a simulation starts without doubt
@@ -30,18 +30,20 @@ def replay_error(orbit: Cycle, known: Callable[[], tuple[np.ndarray, np.ndarray]
 
     Nodes are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
     unstable orbits the relative position w is compared at many instants as well, stretch by stretch, and the smaller
-    deviation counts. Infinite if the simulation does something else. Lengths and speeds count in units of the machine's own size.
+    deviation counts. Where rounding grows within a period until the events differ, though multipliers are small, each event is
+    reached from the one before. Infinite if the simulation does something else. Lengths and speeds count in units of the machine's own size.
     """
     if not len(orbit.word):
         return _from_rest(orbit)
     length, rate = orbit.model.natural_units(orbit.params)
-    error = float(replay(orbit).error) / max(1.0, length, length * rate)
+    size = max(1.0, length, length * rate)
+    error = float(replay(orbit).error) / size
     if error < AGREED:
         return error
     if not math.isfinite(error):
         margins, multipliers = known()
         if not (np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(multipliers) > WILD)):
-            return error
+            return one_by_one(orbit) / size
     return min(error, position_error(orbit) / length)
 
 

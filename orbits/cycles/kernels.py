@@ -15,8 +15,8 @@ import numpy as np
 
 from orbits.compiling import arguments, trigonometry
 from orbits.compiling import decorators as compiling
-from orbits.compiling.ahead import wait_for
 from orbits.compiling.decorators import specialise
+from orbits.compiling.waiting import wait_for
 from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
 from orbits.machines import path
 from orbits.machines.base import Model
@@ -147,7 +147,7 @@ class Kernels:
     ) -> None:
         self.name, self.digest = name, digest
         self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
-        self.assign, self.flip, self.transpose = path.assign, flip, transpose
+        self.assign, self._flip, self.transpose = path.assign, flip, transpose
         self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
         self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
 
@@ -162,6 +162,12 @@ class Kernels:
         """Residual, and the row of `inspect`, of one solution."""
         wait_for(self.name, self._examine)
         return self._examine
+
+    @property
+    def flip(self) -> Any:
+        """The Jacobian of the motion that comes back with another sign."""
+        wait_for(self.name, self._flip)
+        return self._flip
 
 
 @cache

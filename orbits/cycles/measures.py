@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
@@ -53,7 +54,9 @@ def dimensionless(
     known = names(model)
     for name in wanted:
         if name not in known:
-            raise KeyError(f"measure {name!r} is unknown; choose one of {', '.join(known)}")
+            raise KeyError(
+                f"measure {name!r} is unknown{did_you_mean(name, known)}; choose one of {', '.join(known)}"
+            )
     if not len(word):
         return {name: _at_rest(model, name, params) for name in wanted}
     m = nodes.shape[0]

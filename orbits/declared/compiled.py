@@ -37,6 +37,13 @@ class Compiled:
             lambda: engine.Flight(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
+    def flights(self, key: PatternKey, active: tuple[int, ...]) -> engine.Flights:
+        """The same, several at once."""
+        return self._once(
+            ("flights", key, active),
+            lambda: engine.Flights(self.layout, self.equations.pattern(key).clock_rates, active),
+        )
+
     def run(self, key: PatternKey) -> engine.Run:
         """The flow up to the first guard that falls to zero."""
         pattern = self.equations.pattern(key)

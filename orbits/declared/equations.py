@@ -117,6 +117,8 @@ class Equations:
     gap, push, restitution; velocity, limit; surface : dict of int to Symbol (push: list of Symbol)
         Of the walls; the frictions; the switches.
     phase_rate : Symbol or None
+    formulas_of_motion : callable
+        As the page gives it.
     flips : dict of (wall, contact) to int or None
         What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
     """
@@ -130,7 +132,7 @@ class Equations:
         contacts: tuple[Any, ...],
     ) -> None:
         self.states, self.contacts = states, contacts
-        self._motion = motion
+        self.formulas_of_motion = motion
         self._patterns: dict[PatternKey, Pattern] = {}
         self.flips: Mapping[tuple[int, int], int | None] = {}
         signed = [j for j, c in enumerate(contacts) if isinstance(c, (DryFriction, Switch))]
@@ -194,7 +196,9 @@ class Equations:
                 given[contact.name] = forces[j]
             elif isinstance(contact, Switch):
                 given[contact.name] = self.sign[j]
-        rates = called("motion", self._motion, self.state, self.phase, self.p, Named("contact", given))
+        rates = called(
+            "motion", self.formulas_of_motion, self.state, self.phase, self.p, Named("contact", given)
+        )
         if rates is None:
             raise PageError("motion returns nothing; return one rate per state, in their order")
         if isinstance(rates, Symbol) or not hasattr(rates, "__len__"):

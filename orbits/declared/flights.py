@@ -17,10 +17,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from orbits.declared.engine import LANES
+
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
 TINY = 1e-300
 LONGEST = 1e3  # clock of one flight: Newton's method has lost its way beyond it
+TOGETHER = 4
+"""Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
+states 11 to 17 in place of 24 to 35. With fewer, half empty vectors gain less than another integrator costs to compile."""
 
 
 class Work(NamedTuple):
@@ -75,10 +80,9 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
     spans = end - begin
     if np.abs(spans).max() > LONGEST:
         return math.inf
+    if not _fly(data, nodes, begin, end, work):
+        return math.inf
     flown = work.flown
-    for i, flight in enumerate(data.flights):
-        if not flight(nodes[i, 1:], begin[i], end[i], numbers[i], flown[i]):
-            return math.inf
     arrival = work.arrival
     arrival[:] = flown[:, :n]
     sensitivity = flown[:, n:].reshape(length, n, -1)
@@ -144,6 +148,25 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
         work.still[row, 0], work.still[row, 1:] = table[n + 1], table[1 : n + 1]
     size = float(np.abs(residual).max())
     return size if math.isfinite(size) else math.inf
+
+
+def _fly(data: Any, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
+    """Integrate every flight, into `work.flown`; False if one blows up."""
+    numbers, flown = work.numbers, work.flown
+    for flight, many, places in data.flight_groups:
+        alone = places
+        if many is not None:
+            spare = len(places) % LANES
+            alone = places[-1:] if spare == 1 else places[:0]
+            together = places[: len(places) - len(alone)]
+            found = np.empty((len(together), flown.shape[1]))
+            if not many(nodes[together, 1:], begin[together], end[together], numbers[together], found):
+                return False
+            flown[together] = found
+        for i in alone:
+            if not flight(nodes[i, 1:], begin[i], end[i], numbers[i], flown[i]):
+                return False
+    return True
 
 
 def bordered(

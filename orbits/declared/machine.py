@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_arguments import hinting
+from contvines_ground.near_names import no_parameter
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
@@ -50,6 +52,7 @@ class Machine:
         If the page is no machine; the sentence names the contact and the way out.
     """
 
+    @hinting
     def __init__(
         self,
         *,
@@ -125,9 +128,7 @@ class Machine:
         given = dict(values or {})
         for key, value in given.items():
             if key not in self.parameters:
-                raise ParameterError(
-                    f"{key} is no parameter of the machine {self.name!r}; it has {', '.join(self.parameter_names)}"
-                )
+                raise ParameterError(no_parameter(key, f"the machine {self.name!r}", self.parameter_names))
             try:
                 number = float(value)
             except (TypeError, ValueError):
@@ -187,11 +188,7 @@ class Machine:
         """Modes that a state suggests: free walls, signs of velocities and surfaces."""
         absent = self.absent(params)
         numbers = np.concatenate([params, np.zeros(len(self.equations.signed))])
-        values = (
-            self.compiled.contact_values()(state[None], np.array([clock]), numbers[None])[0]
-            if self.contacts
-            else []
-        )
+        values = self.compiled.contact_values().one(state, clock, numbers) if self.contacts else []
         modes = []
         for j, (contact, value) in enumerate(zip(self.contacts, values)):
             if isinstance(contact, Wall):

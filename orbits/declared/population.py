@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from orbits.attractors.distinct import alike, distinct
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import Motion
 from orbits.contacts.letters import RELEASE
@@ -20,11 +21,12 @@ from orbits.declared.embedded import embedded_cycles
 from orbits.declared.growth import growth
 from orbits.declared.machine import Machine
 from orbits.declared.orbit import DeclaredOrbit
+from orbits.declared.returning import returning_cycles
 from orbits.declared.simulation import Trajectory, collect, letter_of, outside
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
-EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for in a chaotic motion
+EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for
 LONGEST = 16  # forcing periods of the longest recurrence looked for
 SURE = 1e-7  # a state so near to a known motion, relative to 1 + states, lies on it
 NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto it
@@ -174,16 +176,15 @@ class DeclaredPopulation:
         """Unstable cycles that the chaotic motion through a start passes near, each once, as problems with their unknowns."""
         stepper = Stepper(self.machine, self.vector(p))
         stepper.start(*self._parted(state))
-        found: list[tuple[Any, np.ndarray]] = []
-        forms: list[Any] = []
-        for orbit in embedded_cycles(stepper, EMBEDDED):
-            problem = orbit.problem(self.parameter)
-            u = orbit.seed(problem)[0]
-            form = problem.canonical(u, p)
-            if not any(_alike(form, known) for known in forms):
-                forms.append(form)
-                found.append((problem, u))
-        return found
+        return distinct(embedded_cycles(stepper, EMBEDDED), self.parameter, p)
+
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Cycles, stable or not, to which Newton's method leads from starts, each once; of a self-excited machine none."""
+        if not self.machine.forced:
+            return []
+        stepper = Stepper(self.machine, self.vector(p))
+        cycles = returning_cycles(stepper, np.asarray(starts, dtype=float), self.box(p), EMBEDDED)
+        return distinct(cycles, self.parameter, p)
 
     def _parted(self, start: np.ndarray) -> tuple[np.ndarray, float]:
         """States and phase of a start."""
@@ -293,7 +294,7 @@ class _Sorting:
         u, p = root.seed(problem)
         form = problem.canonical(u, p)
         for k, known in enumerate(self.forms):
-            if known is not None and _alike(form, known):
+            if known is not None and alike(form, known):
                 return k, self._side(k, stepper)
         place = len(self.motions)
         kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
@@ -330,11 +331,6 @@ class _Sorting:
             letter: rows[[k for k, own in enumerate(letters) if own == letter]] for letter in set(letters)
         }
         return _Marks(place, mirrored, table, known)
-
-
-def _alike(one: Any, other: Any) -> bool:
-    """Whether two canonical forms are those of one motion."""
-    return one[0] == other[0] and np.allclose(other[1], one[1], atol=1e-6)
 
 
 def _chatters(run: Trajectory) -> bool:

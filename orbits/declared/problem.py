@@ -109,7 +109,7 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
 
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle."""
-        return Section(self.machine, self.values(p), self.word, self.periods)
+        return Section(self.machine, self.values(p), self.word, self.periods, self.index)
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.declared.population.DeclaredPopulation`."""

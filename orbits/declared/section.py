@@ -9,6 +9,7 @@ import numpy as np
 
 from orbits.declared.machine import Machine
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.declared.variations import Variations
 from orbits.words.of_pages import PageWord
 
 LONGEST = 1e3  # clock without the event of the section after which a motion does not come back
@@ -25,9 +26,13 @@ class Section:
         Of the cycle.
     periods : int
         Forcing periods of the cycle.
+    index : int
+        Of the parameter by which `varied` differentiates.
     """
 
-    def __init__(self, machine: Machine, params: np.ndarray, word: PageWord, periods: int) -> None:
+    def __init__(
+        self, machine: Machine, params: np.ndarray, word: PageWord, periods: int, index: int
+    ) -> None:
         self.machine, self.params, self.periods = machine, params, periods
         self.modes = word.modes[0]
         letter = word.letter(0) if len(word) else None
@@ -36,6 +41,7 @@ class Section:
             (word.letter(i).contact, word.letter(i).kind) == self.event for i in range(len(word))
         )
         self.stepper = Stepper(machine, params)
+        self.index = index
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -82,3 +88,24 @@ class Section:
                 return np.full(self.machine.size, np.nan)
             left -= found[:2] == self.event
         return self.stepper.state.copy()
+
+    def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`step` with its derivatives by x, shape (d, d), and by the parameter, shape (d,); NaN where a wall holds the body."""
+        n, stepper = self.machine.size, self.stepper
+        nowhere = np.full(n, np.nan), np.full((n, n), np.nan), np.full(n, np.nan)
+        try:
+            stepper.start(x, 0.0, None if self.machine.forced else self.modes)
+            passage = Variations(stepper, self.index)
+            if self.machine.forced:
+                while passage.advance(TWO_PI * self.periods) is not None:
+                    pass
+            else:
+                left = self.times
+                while left:
+                    found = passage.advance(stepper.base + stepper.clock + LONGEST)
+                    if found is None:
+                        return nowhere
+                    left -= found[:2] == self.event
+        except SimulationError:
+            return nowhere
+        return stepper.state.copy(), *passage.derivatives

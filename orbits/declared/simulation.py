@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
 from orbits.declared.machine import Machine
@@ -125,7 +126,9 @@ def first_state(machine: Machine, start: Mapping[str, float] | None) -> tuple[np
     given = dict(start or {})
     for key, value in given.items():
         if key not in allowed:
-            raise SimulationError(f"start has no entry {key!r}; it may have {', '.join(allowed)}")
+            raise SimulationError(
+                f"start has no entry {key!r}{did_you_mean(key, allowed)}; it may have {', '.join(allowed)}"
+            )
         if not math.isfinite(float(value)):
             raise SimulationError(f"start: {key} = {value!r} is not finite; give a number")
     return np.array([float(given.get(s, 0.0)) for s in machine.states]), float(given.get("phase", 0.0))

@@ -11,6 +11,7 @@ from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 from orbits.contacts.wall import FREE, HELD, Wall
 from orbits.declared.machine import Machine
+from orbits.declared.singular import singular_at
 
 TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
@@ -94,7 +95,7 @@ class Stepper:
         if not self.machine.contacts:
             return np.zeros(0)
         numbers = self.compiled.numbers(self.params, self.modes)
-        return self.compiled.contact_values()(self.state[None], np.array([self.clock]), numbers[None])[0]
+        return self.compiled.contact_values().one(self.state, self.clock, numbers)
 
     def _impacts_at_start(self, values: np.ndarray) -> None:
         for j, contact in enumerate(self.machine.contacts):
@@ -119,7 +120,7 @@ class Stepper:
     def _guards(self, modes: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, Any]:
         """Values and rates of the guards in a mode, at the state, and the guards."""
         _, values, guards, numbers, _ = self._tools(modes)
-        row = values(self.state[None], np.array([self.clock]), numbers[None])[0]
+        row = values.one(self.state, self.clock, numbers)
         return row[: len(guards)], row[len(guards) :], guards
 
     def _with(self, contact: int, mode: int) -> tuple[int, ...]:
@@ -137,13 +138,13 @@ class Stepper:
 
     def _gap_rate(self, wall: int) -> float:
         numbers = self.compiled.numbers(self.params, self.modes)
-        row = self.compiled.impact_map(wall)(self.state[None], np.array([self.clock]), numbers[None])[0]
+        row = self.compiled.impact_map(wall).one(self.state, self.clock, numbers)
         return float(row[-1])
 
     def _impact(self, wall: int) -> int:
         """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
         numbers = self._tools(self.modes)[3]
-        row = self.compiled.impact_map(wall)(self.state[None], np.array([self.clock]), numbers[None])[0]
+        row = self.compiled.impact_map(wall).one(self.state, self.clock, numbers)
         before = float(row[-1])
         self.state[:] = row[:-1]
         if self._touched[wall]:
@@ -163,13 +164,13 @@ class Stepper:
         key = self.equations.pattern_key(self.modes)
         numbers = self.compiled.numbers(self.params, self.modes)
         values = self.compiled.gap_acceleration(wall, key)
-        return float(values(self.state[None], np.array([self.clock]), numbers[None])[0, 0])
+        return float(values.one(self.state, self.clock, numbers)[0])
 
     def _hold(self, wall: int) -> int:
         """Rest on a wall: the rate of the gap that is left is taken out."""
-        self.state[:] = self.compiled.settled(wall)(
-            self.state[None], np.array([self.clock]), self.compiled.numbers(self.params, self.modes)[None]
-        )[0]
+        self.state[:] = self.compiled.settled(wall).one(
+            self.state, self.clock, self.compiled.numbers(self.params, self.modes)
+        )
         tied = [j for (w, j), sign in self.machine.alphabet.flips.items() if w == wall and sign is not None]
         modes = list(self.modes)
         modes[wall] = HELD
@@ -196,6 +197,7 @@ class Stepper:
         end = until - self.base
         while True:
             run, _, guards, numbers, watch = self._tools(self.modes)
+            before, began = self.state.copy(), self.clock
             if self._fresh:
                 self._fresh = False
                 self._leave(watch, numbers, min(self.clock + OFF, end))
@@ -207,13 +209,20 @@ class Stepper:
                 self._rebase()
                 return None
             if place < 0:
-                raise SimulationError(
-                    f"the motion of {self.machine.name!r} left the range of numbers: give parameters and a start of moderate size"
-                )
+                raise SimulationError(self._lost(before, began))
             event = self._happened(guards[place])
             if event is not None:
                 self._rebase()
                 return event
+
+    def _lost(self, state: np.ndarray, clock: float) -> str:
+        """Why a flight from a state came to no number."""
+        name = repr(self.machine.name)
+        for x, c in ((state, clock), (self.state, self.clock)):
+            found = singular_at(self.equations, self.params, self.modes, x, c)
+            if found:
+                return f"the motion of {name} cannot go on: {found}; start elsewhere, or write the formula so that it is a number there"
+        return f"the motion of {name} left the range of numbers: give parameters and a start of moderate size"
 
     def _leave(self, watch: Any, numbers: np.ndarray, end: float) -> None:
         """Leave a surface on which a quantity starts without a rate, unless something else happens first."""

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.cycles.identity import canonical, size_of_one
@@ -97,7 +98,8 @@ class DeclaredSystem:
     ) -> None:
         if parameter not in machine.parameter_names:
             raise ValueError(
-                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}; choose one of "
+                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}"
+                f"{did_you_mean(parameter, machine.parameter_names)}; choose one of "
                 + ", ".join(machine.parameter_names)
             )
         if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):
@@ -166,7 +168,11 @@ class DeclaredSystem:
             word.modes[i % len(word.modes)][letter.contact] if letter.contact >= 0 else 0
             for i, letter in enumerate(self.letters)
         ]
-        self.flights = [compiled.flight(key, active) for key in keys]
+        self.flight_groups = []
+        for key in dict.fromkeys(keys):
+            places = np.array([i for i in range(self.length) if keys[i] == key])
+            many = compiled.flights(key, active) if len(places) >= flights.TOGETHER else None
+            self.flight_groups.append((compiled.flight(key, active), many, places))
         self.rate_groups = [
             (compiled.rates(key), np.array([i for i in range(self.length) if keys[i] == key]))
             for key in dict.fromkeys(keys)

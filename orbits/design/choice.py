@@ -25,7 +25,7 @@ class Choice:
     outcome : float
         The outcome there (over the samples: the worst, or the quantile).
     others : dict
-        The other outcomes there: what is sacrificed, or gained.
+        The other outcomes there (over the samples: the median of those that have one; nan where none has): what is sacrificed, or gained.
     tried : list of (dict, float)
         Every choice that was evaluated, and its outcome; nan where there was none.
     bracket : dict
@@ -149,7 +149,7 @@ def _judged(
     quantile: float | None,
     sign: float,
 ) -> tuple[float, dict[str, float]]:
-    """The outcome of a choice over the tolerances, lowest best, and all outcomes (their medians over the tolerances)."""
+    """The outcome of a choice over the tolerances, lowest best, and all outcomes (their medians over the tolerances that have one)."""
     rows = []
     for drawn in tolerances:
         try:
@@ -162,7 +162,13 @@ def _judged(
     if not np.all(np.isfinite(numbers)):
         return math.inf, {}
     number = float(numbers.max() if quantile is None else np.quantile(numbers, quantile))
-    return number, {name: float(np.median([row[name] for row in rows])) for name in rows[0]}
+    return number, {name: _middle([row[name] for row in rows]) for name in rows[0]}
+
+
+def _middle(numbers: Sequence[float]) -> float:
+    """The median of those that are numbers; nan where none is."""
+    finite = [number for number in numbers if math.isfinite(number)]
+    return float(np.median(finite)) if finite else math.nan
 
 
 def _refine(

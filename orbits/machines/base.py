@@ -21,7 +21,6 @@ The contract, in words
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields
 from types import ModuleType
@@ -29,6 +28,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean, no_parameter
 from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest
@@ -80,9 +80,9 @@ class Model(Varying):
         known = [entry.name for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
         for name in options:
             if name not in known:
-                close = difflib.get_close_matches(name, known, n=1)
-                hint = f" (did you mean {close[0]!r}?)" if close else ""
-                raise TypeError(f"{cls.__name__} has no parameter {name!r}{hint}; it has {', '.join(known)}")
+                raise TypeError(
+                    f"{cls.__name__} has no parameter {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
+                )
         return super().__new__(cls)
 
     def __post_init__(self) -> None:
@@ -117,9 +117,7 @@ class Model(Varying):
         for entry in cls.settable:
             if entry.name == name:
                 return entry
-        raise ParameterError(
-            f"{name} is no parameter of the model {cls.name!r}; it has " + ", ".join(cls.parameter_names)
-        )
+        raise ParameterError(no_parameter(name, f"the model {cls.name!r}", cls.parameter_names))
 
     @classmethod
     def field_names(cls) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.machines.parameters import Parameter, ParameterError
 from orbits.machines.path import single
 
@@ -94,7 +95,7 @@ class Varying:
         """
         if name not in self.amount_names:
             raise ParameterError(
-                f"parameter = {name!r} is unknown to the model {self.name!r}; choose one of "
+                f"parameter = {name!r} is unknown to the model {self.name!r}{did_you_mean(name, self.amount_names)}; choose one of "
                 + ", ".join(self.amount_names)
             )
         return self.amount_names.index(name)

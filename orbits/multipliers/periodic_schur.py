@@ -18,8 +18,8 @@ import numpy as np
 from llvmlite.binding import add_symbol
 from numba import types
 
-from orbits.compiling.ahead import wait_for
 from orbits.compiling.decorators import kernel
+from orbits.compiling.waiting import wait_for
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
 from orbits.multipliers.product_of_any import product_of_any

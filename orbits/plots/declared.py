@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.plots.figures import new_figure, styled
+from contvines_ground.figures import new_figure, styled
+from contvines_ground.near_arguments import hinting
 from orbits.plots.portrait import LOW, NARROW, ORBIT, title
 from orbits.plots.track import track
 
@@ -21,6 +22,7 @@ MARKS = "osD^v<>Ph*Xd"
 COLOURS = (ORBIT, "#b5531c", "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
 
 
+@hinting
 def portrait(
     orbit: DeclaredOrbit,
     points: int = 1200,

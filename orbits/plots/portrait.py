@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.plots.figures import new_figure, styled
+from contvines_ground.figures import new_figure, styled
+from contvines_ground.near_arguments import hinting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +36,7 @@ PANELS = ("both", "phase", "history")
 NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
 
 
+@hinting
 def portrait(
     orbit: Orbit,
     points: int = 1200,

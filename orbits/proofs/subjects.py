@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import no_parameter
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.margins import PER_NODE, margin_name
 from orbits.proofs.balls import Given, decimal
@@ -234,7 +235,7 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
     names = parameter_names(machine)
     for name in changed:
         if name not in names:
-            raise ProofError(f"{name} is no parameter of the machine {machine!r}; it has {', '.join(names)}")
+            raise ProofError(no_parameter(name, f"the machine {machine!r}", names))
     return {name: changed.get(name, own[name]) for name in names}
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import EVENTS_FULL, FAILED, MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
@@ -56,13 +57,13 @@ def simulate(
     SimulationError
         If the start lies outside the cavity or is not finite, or neither periods nor events are given.
     """
+    params = model.vector(parameters)
     if periods is None and events is None:
         raise SimulationError("neither periods nor events are given: say how long to simulate")
     if periods is not None and not (math.isfinite(periods) and periods >= 0.0):
         raise SimulationError(f"periods = {periods}: give a number of forcing periods, 0 or above")
     if events is not None and events < 0:
         raise SimulationError(f"events = {events}: give a number of events, 0 or above")
-    params = model.vector(parameters)
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
     length = FOREVER if periods is None else periods
@@ -116,7 +117,9 @@ def first_state(
             given = {"w": w, "w_rate": w_rate, "v": float(v), "v_rate": float(v_rate)} | given
     for key, value in given.items():
         if key not in allowed:
-            raise SimulationError(f"start has no entry {key!r}; it may have " + ", ".join(allowed))
+            raise SimulationError(
+                f"start has no entry {key!r}{did_you_mean(key, allowed)}; it may have {', '.join(allowed)}"
+            )
         state[_KEYS[key]] = float(value)
     _check(state, engine.walls(params))
     engine.launch(state, params)

@@ -44,8 +44,9 @@ def go_round(
     modes: np.ndarray,
     node: np.ndarray,
     times: int = 1,
+    events: int | None = None,
 ) -> Round:
-    """Start exactly at the first event of a cycle and simulate it `times` times.
+    """Start exactly at the first event of a cycle and simulate it `times` times, or so many events only.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def go_round(
     Round
         `nodes` has shape (times * n, NODE): events 1 ... n-1, the return to event 0, and so on.
     """
-    n = len(codes)
+    wanted = times * len(codes) if events is None else events
     state = state_of(engine, params, int(codes[0]), int(modes[0]), node)
     left, right = engine.walls(params)
     if not right <= state[W] <= left:
@@ -68,7 +69,7 @@ def go_round(
     state[TURNS] = 0.0
     if codes[0] < 2 and state[RATE] * modes[0] <= 0.0:
         return Round(np.empty((0, len(node))), "the first impact does not send the absorber off the wall")
-    seen, after, rows = buffers(engine, times * n)
+    seen, after, rows = buffers(engine, wanted)
     count, status = engine.advance(state, params, 1e7, seen, after, rows)
     seen, after, rows = seen[:count], after[:count], rows[:count]
     nodes = nodes_of(engine, params, seen, after, rows)
@@ -78,7 +79,7 @@ def go_round(
     if wrong.any():
         i = int(np.argmax(wrong))
         return Round(nodes[: i + 1], _difference(i, told[i], told_modes[i], seen[i], after[i]))
-    if count < times * n:
+    if count < wanted:
         why = {FAILED: "the motion is not finite", TIME_REACHED: "no event came"}.get(
             status, "the motion came to rest"
         )

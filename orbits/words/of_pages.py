@@ -109,6 +109,8 @@ def parse(
     WordError
         If a letter is unknown or the events cannot follow one another.
     """
+    if not isinstance(text, str):
+        raise WordError(f"word = {text!r} is no word: give the events of a period as text")
     letters = alphabet.letters
     tokens = sorted(letters, key=len, reverse=True)
     pattern = (

@@ -71,6 +71,8 @@ class Word(CyclicWord):
             if text.frictionless == frictionless:
                 return text
             text = text.text
+        if not isinstance(text, str | Sequence):
+            raise WordError(f"word = {text!r} is no word: give the events of a period as text, such as 'LR'")
         tokens = text.replace(",", " ").split() if isinstance(text, str) else [str(part) for part in text]
         tokens = [token.removeprefix("G_") for token in tokens]
         if len(tokens) > 1 and _are_chained_maps(tokens):

@@ -4,7 +4,7 @@ import numpy as np
 
 import contvines as cv
 from contvines.command.compose import checked_study, first_orbit, run_diagram
-from contvines.continuation import march as source
+from contvines.continuation import loop as source
 from contvines.continuation.binding import bind
 from contvines.continuation.corrector import Scratch
 from contvines.continuation.lengths import Metric

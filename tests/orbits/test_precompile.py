@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from orbits import precompile
-from orbits.compiling import ahead
+from orbits.compiling import waiting
 from orbits.cycles import kernels as kernel_module
 from orbits.machines.catalogue import usual
 
@@ -17,10 +17,10 @@ def kernels():
 
 
 @pytest.fixture(autouse=True)
-def no_helpers():
-    ahead.helpers.clear()
+def no_processes():
+    waiting.processes.clear()
     yield
-    ahead.helpers.clear()
+    waiting.processes.clear()
 
 
 @pytest.mark.parametrize("name", ["absorber", "coupled"])
@@ -59,27 +59,27 @@ def test_other_sources_are_not_compiled(monkeypatch):
 
 def test_waiting_ends_with_the_process_or_with_patience(monkeypatch):
     clock = [0.0]
-    monkeypatch.setattr(ahead, "cached", lambda function: False)
-    monkeypatch.setattr(ahead.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(ahead.time, "sleep", lambda seconds: clock.append(clock.pop() + seconds))
+    monkeypatch.setattr(waiting, "cached", lambda function: False)
+    monkeypatch.setattr(waiting.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(waiting.time, "sleep", lambda seconds: clock.append(clock.pop() + seconds))
     endless = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     missing = SimpleNamespace(overloads={})
-    ahead.helpers["absorber"] = endless
-    ahead.wait_for("absorber", SimpleNamespace(overloads={1: 2}))  # compiled here: no need of anybody
-    assert clock[0] == 0.0 and ahead.helpers
-    ahead.wait_for("absorber", missing)
-    assert clock[0] > ahead.PATIENCE and endless.poll() is None and not ahead.helpers
+    waiting.processes["absorber"] = endless
+    waiting.wait_for("absorber", SimpleNamespace(overloads={1: 2}))  # compiled here: no need of anybody
+    assert clock[0] == 0.0 and waiting.processes
+    waiting.wait_for("absorber", missing)
+    assert clock[0] > waiting.PATIENCE and endless.poll() is None and not waiting.processes
     endless.communicate()
-    ahead.helpers["absorber"] = endless  # has ended
+    waiting.processes["absorber"] = endless  # has ended
     waited = clock[0]
-    ahead.wait_for("absorber", missing)
-    assert clock[0] == waited and not ahead.helpers
+    waiting.wait_for("absorber", missing)
+    assert clock[0] == waited and not waiting.processes
 
 
 def test_waiting_ends_as_soon_as_the_function_is_kept(monkeypatch):
     found = iter([False, False, True])
-    monkeypatch.setattr(ahead, "cached", lambda function: next(found))
-    monkeypatch.setattr(ahead.time, "sleep", lambda seconds: None)
-    ahead.helpers["absorber"] = SimpleNamespace(poll=lambda: None)
-    ahead.wait_for("absorber", SimpleNamespace(overloads={}))
-    assert next(found, "none is left") == "none is left" and ahead.helpers
+    monkeypatch.setattr(waiting, "cached", lambda function: next(found))
+    monkeypatch.setattr(waiting.time, "sleep", lambda seconds: None)
+    waiting.processes["absorber"] = SimpleNamespace(poll=lambda: None)
+    waiting.wait_for("absorber", SimpleNamespace(overloads={}))
+    assert next(found, "none is left") == "none is left" and waiting.processes

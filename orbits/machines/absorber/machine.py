@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from contvines_ground.near_arguments import hinting
 from orbits.doors import above
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import LevelRest
@@ -90,6 +91,7 @@ class Absorber(Shaken):
         except ParameterError:
             return
 
+    @hinting
     def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Any:
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 

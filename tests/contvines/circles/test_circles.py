@@ -103,7 +103,8 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
         assert circle.radius == pytest.approx(circle.predicted, rel=0.15)
     circle, machine = found[-1], page("coupled")
     orbit = machine.orbit("LR", frequency=circle.value)
-    section = Section(machine, machine.vector({"frequency": circle.value}), orbit.word, 1)
+    index = machine.parameter_names.index("frequency")
+    section = Section(machine, machine.vector({"frequency": circle.value}), orbit.word, 1, index)
     assert found.names == ("w", "w_rate", "v", "v_rate")
     to_bodies, order = bodies(machine)
     phases = np.linspace(0.1, 6.0, 5)
@@ -129,7 +130,13 @@ def test_the_modulated_response_of_the_coupled_absorber_attracts():
     circle, machine = found[-1], page("coupled")
     assert circle.stable and circle.simulated == pytest.approx(circle.rotation, abs=1e-9)
     there = {"frequency": circle.value, "forcing": 1.05}
-    section = Section(machine, machine.vector(there), machine.orbit("LR", **there).word, 1)
+    section = Section(
+        machine,
+        machine.vector(there),
+        machine.orbit("LR", **there).word,
+        1,
+        machine.parameter_names.index("frequency"),
+    )
     to_bodies, order = bodies(machine)
     dense = circle.at(np.linspace(0.0, 2.0 * np.pi, 2001))
 

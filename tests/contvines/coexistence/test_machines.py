@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.coexistence.looking import look, told
+from contvines.coexistence.missing import look, told
 from orbits import Absorber
 from orbits.attractors import find_attractor
 
@@ -62,6 +62,21 @@ def test_results_do_not_depend_on_the_number_of_threads():
     first, second = one.settle(starts, 0.6), two.settle(starts, 0.6)
     assert np.array_equal(first[1], second[1]) and np.array_equal(first[2], second[2])
     assert all(np.array_equal(a.u, b.u) for a, b in zip(first[0], second[0], strict=True))
+
+
+def test_atlases_with_one_seed_are_equal_to_the_last_bit_on_one_core_and_on_two():
+    graphs = []
+    for workers in (1, 2, 2):
+        population = MACHINE.population("amplitude")
+        population.workers = workers
+        graphs.append(cv.atlas(population, within=(1.05, 1.15), values=[1.1], starts=1100, depth=0, scan=2))
+    first, *others = graphs
+    for other in others:
+        assert repr(other.attractors) == repr(first.attractors)
+        assert list(other.branches) == list(first.branches)
+        for one, two in zip(first, other, strict=True):
+            assert np.array_equal(one.points, two.points) and np.array_equal(one.values, two.values)
+            assert np.array_equal(one.multipliers, two.multipliers, equal_nan=True)
 
 
 def test_mirror_twins_are_one_motion_with_two_shares():

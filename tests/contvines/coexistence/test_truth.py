@@ -31,5 +31,5 @@ def test_everything_that_brute_force_meets_is_on_the_atlas(machine, over, within
     tally = on_atlas(graph, met, not isinstance(machine, Cavity), said.append)
     assert not tally.missing and not tally.unnamed, said
     assert not listed_twice(graph)
-    counted = shares(machine, over, met, starts, not isinstance(machine, Cavity), said.append)
+    counted = shares(machine.population(over), met, starts, not isinstance(machine, Cavity), said.append)
     assert counted.compared and not counted.apart, said

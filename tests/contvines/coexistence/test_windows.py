@@ -5,7 +5,8 @@ import pytest
 
 import contvines as cv
 from contvines.journal import MemoryJournal
-from orbits import Absorber
+from orbits import Absorber, Cavity, Coupled
+from orbits.attractors import find_attractor
 from tests.contvines.coexistence.isolas import window
 
 LOGISTIC = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
@@ -59,7 +60,10 @@ def test_an_atlas_with_chaos_is_the_same_when_it_is_resumed():
     whole = MemoryJournal()
     first = atlas(whole)
     kept = MemoryJournal()
-    kept.entries = {key: entry for key, entry in whole.entries.items() if not key.startswith("windows")}
+    assert any(key.startswith("returning") for key in whole.entries)
+    kept.entries = {
+        key: entry for key, entry in whole.entries.items() if not key.startswith(("windows", "returning"))
+    }
     again = atlas(kept)
     assert [b.label for b in again] == [b.label for b in first]
     for one, other in zip(again, first, strict=True):
@@ -81,3 +85,61 @@ def test_unstable_cycles_in_an_absorber_s_chaos_return(friction, amplitude):
         orbit = problem.orbit(u, amplitude)
         assert np.abs(orbit.multipliers).max() > 1.0
         assert orbit.replay() < 1e-7
+
+
+def test_newton_from_drawn_starts_finds_henon_s_cycles():
+    """Both fixed points are the roots of a x^2 + (1 - b) x - 1 = 0; the others are iterated."""
+    population = cv.MapProblem(henon, [0.6, 0.2], 1.0).population(box=[(-2.0, 2.0), (-2.0, 2.0)])
+    cycles = [u.reshape(-1, 2) for _, u in population.returning(population.starts(16, 0, 1.4), 1.4)]
+    fixed = sorted(points[0, 0] for points in cycles if len(points) == 1)
+    assert np.allclose(fixed, np.sort(np.roots([1.4, 0.7, -1.0])), rtol=0.0, atol=1e-10)
+    assert max(map(len, cycles)) > 4
+    for points in cycles:
+        images = np.array([henon(x, 1.4) for x in points])
+        assert np.abs(images - np.roll(points, -1, axis=0)).max() < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("machine", "over", "value"),
+    [
+        (Absorber(restitution=0.76, friction=0.05, gravity=0.211, mass_ratio=0.006), "amplitude", 1.0),
+        (Cavity(restitution_left=0.6, restitution_right=0.8, friction_left=0.05, friction_right=0.1, gravity=0.2, slope=0.05,
+                mass_ratio=0.006), "amplitude", 1.0),
+        (Coupled(forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211), "frequency", 0.9975),
+    ],
+    ids=["absorber", "cavity", "coupled"],
+)  # fmt: skip
+def test_newton_from_drawn_starts_finds_cycles_that_return(machine, over, value):
+    """Each is followed by the event-driven simulation for one cycle, and comes back; unstable ones are among them."""
+    population = machine.population(over)
+    cycles = population.returning(population.starts(8, 0, value), value)
+    orbits = [problem.orbit(u, value) for problem, u in cycles]
+    assert any(np.abs(orbit.multipliers).max() > 1.5 for orbit in orbits)
+    for orbit in orbits:
+        assert orbit.replay() < 1e-7
+
+
+def test_a_motion_that_hardly_any_start_meets_is_reached_from_afar():
+    """Ten impacts in five periods, reached at 0.979167 by 3 of 2000 starts of `witness.c`; the starts are at 1.02 only."""
+    machine = Absorber(restitution=0.76, friction=0.05, gravity=0.211, mass_ratio=0.006)
+    graph = cv.atlas(machine, over="amplitude", within=(0.95, 1.08), values=[1.02], starts=8, depth=0, scan=1)
+    value = 0.9791666666666667
+    rare = [
+        branch
+        for branch in graph
+        if branch.real
+        and branch.description["periods"] == 5
+        and any(low <= value <= high for low, high in branch.stable_intervals())
+    ]
+    assert [sum(letter in "LR" for letter in branch.description["word"]) for branch in rare] == [10]
+    # an impact of it as the witness tells it: phase, and the wall's velocity less the absorber's
+    phase, b = 1.66616698745339, -0.993345694857384
+    start = {"phase": phase, "w": -1.0, "w_rate": value * np.cos(phase) - b}
+    found = find_attractor(machine, start, amplitude=value)
+    assert (found.kind, found.periods, found.impacts) == ("periodic", 5, 10)
+    orbit = found.orbit.root()
+    problem = orbit.problem("amplitude")
+    assert (
+        problem.canonical(*orbit.seed(problem))[0]
+        == rare[0].problem.canonical(rare[0].points[0], rare[0].values[0])[0]
+    )

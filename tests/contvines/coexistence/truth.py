@@ -1,8 +1,9 @@
 """Is every attractor that brute force finds on the atlas? The brute force is `witness.c`, which shares nothing with the package.
 
 ``python -m tests.contvines.coexistence.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
-``python -m tests.contvines.coexistence.truth frequency``      the coupled machine, 40 frequencies, two forcings
-``python -m tests.contvines.coexistence.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``)
+``python -m tests.contvines.coexistence.truth frequency 200``  the coupled machine, 40 frequencies, two forcings, so many starts at each (2000)
+``python -m tests.contvines.coexistence.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``, ``declared``)
+``python -m tests.contvines.coexistence.truth absorber 5 10``  five of them, from the tenth on
 """
 
 from __future__ import annotations
@@ -24,10 +25,16 @@ import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
+from orbits.declared.loading import load_page
+from orbits.declared.orbit import DeclaredOrbit
+from tests.contvines.coexistence.drawn import OPTIONS, STARTS, drawn
 
 TWO_PI = 2.0 * np.pi
 SAME = 2e-6  # difference of phases and velocities of impacts
 SIGMAS = 3.0
+ENOUGH = 1000  # starts of our own for shares
+FEW_OF_A_PAGE = 100  # starts for shares: those of a page are followed one by one
+PAGE = Path(__file__).resolve().parents[3] / "examples" / "machines" / "absorber.py"
 NEAR = 0.01  # of the interval: so near an attractor of the atlas must be named that does not recur
 
 
@@ -162,9 +169,9 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
     return tally
 
 
-def shares(machine: Any, over: str, met: Sequence[Met], starts: int, mirror: bool, say: Any = print) -> Tally:
+def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: Any = print) -> Tally:
     """Compare the package's shares with the witness's."""
-    population, tally = machine.population(over), Tally()
+    tally = Tally()
     for here in met:
         motions, index, _ = population.settle(population.starts(starts, 99, here.value), here.value)
         own = [(m, int(np.sum(index == k))) for k, m in enumerate(motions) if m.problem is not None]
@@ -177,7 +184,13 @@ def shares(machine: Any, over: str, met: Sequence[Met], starts: int, mirror: boo
                     if m.kind == "periodic" and _same(row, _impacts(m.problem.orbit(m.u, here.value)), mirror)
                 )
             else:
-                ours = sum(n for m, n in own if m.kind == "sliding" and m.periods == periods)
+                ours = sum(
+                    n
+                    for m, n in own
+                    if m.kind in ("sliding", "periodic")
+                    and m.periods == periods
+                    and not set(m.word) & set("LR")
+                )
             one, other = number / total, ours / starts
             error = math.sqrt(
                 max(one, 1 / total) * (1 - one) / total + max(other, 1 / starts) * (1 - other) / starts
@@ -213,7 +226,20 @@ def _impacts_on(branch: Any, p: float, within: tuple[float, float], engines: dic
 
 
 def _impacts(orbit: Any) -> np.ndarray:
-    """Wall (1 left, -1 right), phase and B of every impact, shape (n, 3)."""
+    """Wall (1 left, -1 right), phase and B (velocity of the cavity less that of the mass in it) of every impact, shape (n, 3)."""
+    if isinstance(orbit, DeclaredOrbit):  # the absorber as a page: its states are w and w'
+        of = dict(zip(orbit.machine.parameter_names, orbit.params, strict=True))
+        letters = [orbit.word.letter(i).text for i in range(len(orbit.word))]
+        rows = [
+            (
+                1.0 if letter == "L" else -1.0,
+                phase,
+                of["amplitude"] * of["frequency"] * math.cos(phase) - rate,
+            )
+            for letter, (phase, _, rate) in zip(letters, orbit.nodes, strict=True)
+            if letter in "LR"
+        ]
+        return np.array(rows).reshape(-1, 3)
     rows = [
         (1.0 if letter == "L" else -1.0, node[0], node[1])
         for letter, node in zip(orbit.word.events, orbit.nodes, strict=True)
@@ -238,41 +264,31 @@ def _alike(one: np.ndarray, other: np.ndarray) -> bool:
     return bool(len(set(nearest)) == len(one) and gaps.min(axis=1).max(initial=0.0) < SAME)
 
 
-def drawn(kind: str, i: int) -> tuple[Any, str, tuple[float, float]]:
-    """The i-th machine of a kind, its parameter and interval."""
-    g = np.random.default_rng(7000 + i)
-    both = {"gravity": g.uniform(0.05, 0.5), "mass_ratio": 0.006, "frequency": g.uniform(0.7, 1.4)}
-    if kind == "absorber":
-        machine = Absorber(restitution=g.uniform(0.3, 0.95), friction=g.uniform(0.02, 0.6), **both)
-        return machine, "amplitude", (0.2, 1.3)
-    if kind == "cavity":
-        r, mu = g.uniform(0.3, 0.95, 2), g.uniform(0.02, 0.6, 2)
-        sides = {
-            "restitution_left": r[0],
-            "restitution_right": r[1],
-            "friction_left": mu[0],
-            "friction_right": mu[1],
-        }
-        return Cavity(**sides, slope=g.uniform(-0.3, 0.3), **both), "amplitude", (0.2, 1.3)
-    of = {"forcing": g.uniform(1, 4), "damping": g.uniform(0.3, 1.5), "mass_ratio": g.uniform(0.004, 0.02)}
-    contacts = {
-        "restitution": g.uniform(0.4, 0.9),
-        "friction": g.uniform(0.05, 0.6),
-        "gravity": g.uniform(0.1, 0.4),
-    }
-    return Coupled(**of, **contacts), "frequency", (0.97, 1.03)
-
-
 def studied(
-    machine: Any, over: str, within: tuple[float, float], values: Sequence[float], count: int, **options: Any
+    machine: Any,
+    over: str,
+    within: tuple[float, float],
+    at: Sequence[float],
+    count: int,
+    page: bool = False,
+    **options: Any,
 ) -> Tally:
-    """An atlas beside the witness; a line of what they have in common."""
+    """An atlas beside the witness, of the machine or of the same one declared on a page; a line of what they have in common."""
     begin = time.process_time()
-    graph = cv.atlas(machine, over=over, within=within, **options)
+    population = machine.population(over)
+    if page:
+        of = {
+            name: getattr(machine, name)
+            for name in ("restitution", "friction", "gravity", "mass_ratio", "frequency")
+        }
+        population = load_page(PAGE, "machine").population(over, **of)
+    graph = cv.atlas(population, within=within, **options)
     seconds = time.process_time() - begin
     mirror = not isinstance(machine, Cavity)
-    met = witness(machine, over, values, count, tries=4 if isinstance(machine, Coupled) else 5)
-    tally = on_atlas(graph, met, mirror) + shares(machine, over, met, count, mirror)
+    met = witness(machine, over, at, count, tries=4 if isinstance(machine, Coupled) else 5)
+    tally = on_atlas(graph, met, mirror) + shares(
+        population, met, min(count, FEW_OF_A_PAGE if page else ENOUGH), mirror
+    )
     twice = listed_twice(graph)
     print(f"{tally}; {len(graph)} branches in {seconds:.1f} s; listed twice: {twice or 'none'}", flush=True)
     return tally
@@ -288,19 +304,22 @@ def main() -> None:
             machine = Absorber(restitution=0.76, friction=friction, gravity=0.211, mass_ratio=0.006)
             tally += studied(machine, "amplitude", (0.2, 1.3), list(middles), 2000)
     elif what == "frequency":
+        starts = int(sys.argv[2]) if len(sys.argv) > 2 else 2000
         for forcing in (2.47, 3.3):
             machine = Coupled(
                 forcing=forcing, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
             )
             values = np.linspace(0.9705, 1.0295, 40)
-            tally += studied(machine, "frequency", (0.97, 1.03), list(values), 200, depth=0, starts=64)
+            tally += studied(machine, "frequency", (0.97, 1.03), list(values), starts, depth=0, starts=64)
     else:
-        for i in range(int(sys.argv[2]) if len(sys.argv) > 2 else 20):
+        count = int(sys.argv[2]) if len(sys.argv) > 2 else 20
+        first = int(sys.argv[3]) if len(sys.argv) > 3 else 0
+        for i in range(first, first + count):
             machine, over, (low, high) = drawn(what, i)
             values = low + (high - low) * np.sort(np.random.default_rng(i).random(6))
-            few = {"depth": 0, "starts": 64, "values": 8} if what == "coupled" else {"depth": 1}
+            print(f"{what} {i}", end=": ", flush=True)
             tally += studied(
-                machine, over, (low, high), list(values), 200 if what == "coupled" else 1000, **few
+                machine, over, (low, high), list(values), STARTS[what], what == "declared", **OPTIONS[what]
             )
     print(tally)
 

@@ -15,6 +15,7 @@
 #define LONGEST 24 /* forcing periods of a recurrence */
 #define KINDS 400  /* attractors at one value */
 #define HITS 400   /* impacts of a cycle that are told */
+#define PATIENCE 20000 /* forcing periods for which a motion that returns nearly is watched */
 #define FULL 6     /* starts that do not recur and are given all transients; later ones are given two */
 
 static int model;
@@ -163,8 +164,8 @@ static void stay(State *s, double until) {
   arrive(&f, until, s);
 }
 
-/* the next zero of w'', or a place before it */
-static double bend(const Flight *f, double x, int fresh) {
+/* the next zero of w'', or a place before it; of the moving cavity also w, w', w'' there, from those at x */
+static double bend(const Flight *f, double x, const double at[3], double there[3], int fresh) {
   if (model == 0) {
     double q = -(pull(f->mode) + slope) / (C * Om * Om);
     if (fabs(q) >= 1) return x + 2 * PI;
@@ -173,7 +174,8 @@ static double bend(const Flight *f, double x, int fresh) {
     return fmin(one, other);
   }
   double first = x + (fresh ? 1e-7 : 0), y = x + 2 * PI / 100;
-  if ((value(f, first, 2) > 0) != (value(f, y, 2) > 0)) {
+  relative(f, y, there);
+  if (((fresh ? value(f, first, 2) : at[2]) > 0) != (there[2] > 0)) {
     double zero = crossing(f, 2, 0, first, y);
     if (zero > x + 1e-9) return zero + 1e-12;
   }
@@ -191,16 +193,18 @@ static void strike(const Flight *f, double psi, State *s) {
 
 static void fly(State *s, double until) {
   Flight f = depart(s);
-  double wall = f.mode > 0 ? left : right;
+  double wall = f.mode > 0 ? left : right, at[3], there[3];
   int fresh = 1;
-  for (double x = s->psi;; fresh = 0) {
-    double y = fmin(bend(&f, x, fresh), until), end = y;
+  relative(&f, s->psi, at);
+  for (double x = s->psi;; fresh = 0, memcpy(at, there, sizeof at)) {
+    double next = bend(&f, x, at, there, fresh), y = fmin(next, until), end = y;
     int turns = 0;
-    if (f.mode * value(&f, y, 1) <= 0) {
-      double low = f.mode * value(&f, x, 1) > 0 ? x : x + 1e-9;
+    if (model == 0 || y != x + 2 * PI / 100) relative(&f, y, there);
+    if (f.mode * there[1] <= 0) {
+      double low = f.mode * at[1] > 0 ? x : x + 1e-9;
       turns = 1, end = low < y && f.mode * value(&f, low, 1) > 0 ? crossing(&f, 1, 0, low, y) : x;
     }
-    if (end > x && f.mode * value(&f, end, 0) >= wall && f.mode * value(&f, x, 0) < wall + 1e-14) {
+    if (end > x && f.mode * at[0] < wall + 1e-14 && f.mode * (turns ? value(&f, end, 0) : there[0]) >= wall) {
       strike(&f, crossing(&f, 0, f.mode * wall, x, end), s);
       return;
     }
@@ -243,15 +247,51 @@ static double growth(State s, int periods) {
   return sum / periods;
 }
 
+/* whether a state lies on a motion without impacts, which has the same course anywhere between the walls */
+static int drifted(const State *s, const State *one) {
+  State a = *s, b = *one;
+  a.v += eps * a.w, b.v += eps * b.w, a.w = b.w = 0;
+  if (apart(&a, &b) >= 1e-6) return 0;
+  a = *s, a.psi = a.hits = 0, advance(&a, 1);
+  return !a.hits;
+}
+
 /* the attractor on which a state lies and whether it is the image of what was found first; -1 for none */
 static int known(const State *s, int count, int *image) {
+  *image = 0;
   for (int j = 0; j < count; j++)
-    for (int q = 0; q < kinds[j].periods && !kinds[j].free; q++) {
+    for (int q = 0; q < kinds[j].periods; q++) {
+      if (kinds[j].free) {
+        if (drifted(s, &kinds[j].own[q])) return j;
+        continue;
+      }
       *image = apart(s, &kinds[j].image[q]) < 1e-6;
       if (apart(s, &kinds[j].own[q]) < 1e-6) { *image = 0; return j; }
       if (*image) return j;
     }
   return -1;
+}
+
+/* beside a bifurcation a motion returns nearly long before it has settled: on until it returns to rounding */
+static int settled(State *s, int periods, int count, int *image, State *seen) {
+  int j = -1;
+  for (double run = 0, gap = 1; run < PATIENCE && gap > 1e-12 && j < 0; run += periods) {
+    State before = *s;
+    before.psi = s->psi = s->hits = s->events = 0;
+    for (int q = 0; q < periods; q++) seen[q] = *s, s->psi = 0, advance(s, 1);
+    gap = apart(s, &before), j = known(s, count, image);
+  }
+  return j;
+}
+
+/* beside a doubling twice the period returns first: the shortest one, with its impacts and events */
+static int shortest(State *s, int periods, const State *seen) {
+  for (int q = 1; q < periods; q++)
+    if (periods % q == 0 && apart(&seen[0], &seen[q]) < 1e-9) {
+      *s = seen[0], s->psi = s->hits = s->events = 0, advance(s, q);
+      return q;
+    }
+  return periods;
 }
 
 static void learn(Kind *k, const State *seen, int periods, const State *end) {
@@ -286,9 +326,9 @@ int main(int argc, char **argv) {
       double length = transient;
       for (int t = 0; t < most && !found; t++, length *= 4) {
         State seen[LONGEST + 1];
-        for (double x = 0; x < length; x += 50) s.psi = 0, advance(&s, 50);
+        int j = -1, k, one;
+        for (double x = 0; x < length && j < 0; x += 50) s.psi = 0, advance(&s, 50), j = known(&s, count, &image);
         s.psi = s.hits = s.events = 0;
-        int j = known(&s, count, &image), k;
         if (j >= 0) { kinds[j].count++, kinds[j].mirrored += image, found = 1; break; }
         seen[0] = s;
         for (k = 1; k <= LONGEST; k++) {
@@ -301,6 +341,10 @@ int main(int argc, char **argv) {
         if (!s.events && !s.mode) { stuck++; break; }
         for (j = 0; j < count; j++)
           if (!s.hits && kinds[j].free && kinds[j].periods == k && kinds[j].events == s.events) break;
+        if (j == count && s.hits) {
+          if ((one = settled(&s, k, count, &image, seen)) >= 0) kinds[one].mirrored += image, j = one;
+          else k = shortest(&s, k, seen);
+        }
         if (j < count) kinds[j].count++;
         else if (count < KINDS) learn(&kinds[count++], seen, k, &s);
       }

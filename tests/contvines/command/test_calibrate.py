@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 
 from tests.orbits.design.laboratory import STUDY, measurement
 
@@ -20,16 +21,15 @@ def test_restitution_and_friction_of_a_free_decay(run, study, tmp_path):
     noisy = 1e3 * (hits + 0.35) + np.random.default_rng(3).normal(0.0, 0.05, hits.size)
     (tmp_path / "hits.csv").write_text("time [ms]\n" + "\n".join(f"{t:.5f}" for t in noisy))
     words = ["calibrate", study, "--impacts", tmp_path / "hits.csv", "--release", "12 mm"]
-    done = run(
-        *words, "--unknown", "restitution", "--unknown", "friction", "--json", "--plot", tmp_path / "c.png"
-    )
+    words += ["--unknown", "restitution", "--unknown", "friction"]
+    done = run(*words, "--json", "--plot", tmp_path / "c.png", "--size", 3.4, 2.4)
     found = json.loads(done[1])
     for name, true in (("restitution", 0.66), ("friction", 0.11)):
         low, high = found["intervals"][name]
         assert low < true < high
     low, high = found["intervals"]["restitution"]
     assert high - low < 0.02 and 3e-5 < found["scatter"] < 8e-5  # s: the noise is 5e-5
-    assert (tmp_path / "c.png").exists()
+    assert imread(tmp_path / "c.png").shape[:2] == (480, 680)  # at 200 dots an inch
 
 
 def test_restitution_from_a_sweep_in_hertz_and_metres(run, study, tmp_path):

@@ -87,3 +87,13 @@ def test_a_chart_as_a_frame_has_every_point_of_every_locus():
     frame = chart.to_pandas()
     flips = frame[frame["kind"] == "period-doubling"]
     assert len(flips) > 2 and np.allclose(flips["a"], 0.75 * (1 - flips["b"]) ** 2, atol=1e-9)
+    pytest.importorskip("xarray")
+    chart.units["a"] = "mm"
+    data = chart.to_xarray()
+    assert data.sizes == {"row": len(frame)} and list(data.attrs["parameters"]) == ["a", "b"]
+    assert data["locus"].values.tolist() == frame.index.get_level_values("locus").tolist()
+    assert (
+        np.array_equal(data["a"], frame["a"])
+        and data["a"].attrs["units"] == "mm"
+        and "units" not in data["b"].attrs
+    )

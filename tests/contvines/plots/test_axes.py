@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.coexistence.basins import Basins
 from contvines.graph.attractor import Attractor
 from contvines.plots import (
     plot_atlas,
@@ -20,10 +21,19 @@ from contvines.plots import (
     plot_survey,
     plot_sweep,
 )
+from contvines.plots.measured import plot_calibration, plot_transient
 from contvines.survey import Plan
 from contvines.survey.results import Survey
 from tests.contvines import fakes
 
+TIME = np.linspace(0.0, 1.5, 400)
+DECAY = [
+    ("time", "s", TIME),
+    ("oscillator", "mm", np.sin(90 * TIME)),
+    ("bare_oscillator", "mm", 2 * np.sin(90 * TIME)),
+]
+ENERGY = [("time", "s", TIME), ("energy", "", np.exp(-2 * TIME)), ("bare_energy", "", np.exp(-TIME))]
+LATE, LARGEST = "measured less computed [s]", "largest displacement of the oscillator [mm]"
 DOTS = [(x, x**2) for x in np.linspace(0, 1, 20)]
 
 
@@ -69,6 +79,16 @@ def functions(basins, circles):
         "circles": (3, lambda **k: plot_circles(circles, **k)),
         "portrait": (1, lambda **k: plot_portrait(np.array([[0.0, 1.0], [1.0, 0.0]]), **k)),
         "survey": (1, lambda **k: plot_survey(survey, **k)),
+        "transient": (1, lambda **k: plot_transient(DECAY, np.linspace(0.1, 1.4, 30), **k)),
+        "decay": (1, lambda **k: plot_transient(ENERGY, **k)),
+        "calibration": (
+            1,
+            lambda **k: plot_calibration(TIME, 1e-5 * np.sin(9 * TIME), xlabel="t", ylabel=LATE, **k),
+        ),
+        "response": (
+            1,
+            lambda **k: plot_calibration(TIME, 0.0 * TIME, TIME**2, xlabel="p", ylabel=LARGEST, **k),
+        ),
     }
 
 
@@ -83,6 +103,10 @@ NAMES = (
     "circles",
     "portrait",
     "survey",
+    "transient",
+    "decay",
+    "calibration",
+    "response",
 )
 
 
@@ -168,3 +192,40 @@ def test_a_key_below_given_axes_stands_under_their_label():
     figure.canvas.draw()
     assert axes.get_legend().get_window_extent().y1 < axes.xaxis.label.get_window_extent().y0 + 1
     plt.close(figure)
+
+
+def test_a_transient_has_its_impacts_at_the_lower_edge_and_the_bare_motion_behind():
+    hits = np.array([0.2, 0.4, 0.9])
+    axes = plot_transient(DECAY, hits).axes[0]
+    lines = {line.get_label(): line for line in axes.lines}
+    assert list(lines) == ["with absorber", "without absorber", "impacts"]
+    assert np.array_equal(lines["impacts"].get_xdata(), hits)
+    assert lines["impacts"].get_transform().transform((0.2, 0.0))[1] == pytest.approx(axes.bbox.y0)
+    assert lines["without absorber"].zorder < lines["with absorber"].zorder
+    relative = [*DECAY, ("relative", "mm", TIME)]
+    assert len(plot_transient(relative).axes[0].lines) == 2
+    assert plot_transient(ENERGY).axes[0].get_yscale() == "log"
+
+
+def test_a_calibration_shows_the_data_and_what_is_left_over():
+    left = 1e-5 * np.sin(9 * TIME)
+    shown = plot_calibration(TIME, left, xlabel="time", ylabel=LATE).axes[0].lines
+    assert np.array_equal(shown[-1].get_ydata(), -left)  # residuals are computed less measured
+    data, computed = plot_calibration(TIME, left, TIME**2, xlabel="p", ylabel=LARGEST).axes[0].lines
+    assert np.array_equal(data.get_ydata(), TIME**2) and data.get_linestyle() == "None"
+    assert np.array_equal(computed.get_ydata(), TIME**2 + left)
+
+
+def test_each_mirror_image_is_named_by_its_motion():
+    attractors = [
+        Attractor(value=1.0, word=w, periods=1, kind="periodic", branch=None, share=0.5, mirror_share=0.2)
+        for w in ("LRtt", "LRLt")
+    ]
+    index = np.array([[0, 1], [1, 0]])
+    ends, plane = np.array([0.0, 1.0]), ("w", "w_rate")
+    basins = Basins("p", 1.0, plane, ends, ends, {}, index, index > 5, attractors)
+    for size in (None, (3.4, 2.4)):
+        figure = plot_basins(basins, figsize=size)
+        legend = figure.axes[0].get_legend() or figure.legends[0]
+        texts = [text.get_text() for text in legend.get_texts()]
+        assert texts == ["LRtt: 50.0%", "LRtt, mirror image", "LRLt: 50.0%", "LRLt, mirror image"]

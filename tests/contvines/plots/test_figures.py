@@ -1,15 +1,14 @@
 """Figures: styles, sizes, files, notebooks; multipliers and portraits."""
 
 import itertools
-from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 
 from contvines.plots import plot_diagram, plot_multipliers, plot_portrait, save_figure
-from contvines.plots.figures import HOUSE as STYLE
 from contvines.plots.figures import check_picture
+from contvines_ground.figures import HOUSE as STYLE
 from tests.contvines import fakes
 
 
@@ -63,12 +62,6 @@ def test_colours_differ_in_grey():
     grey = [np.dot(mpl.colors.to_rgb(c["color"]), [0.299, 0.587, 0.114]) for c in style["axes.prop_cycle"]]
     assert max(grey) < 0.55  # dark enough on white
     assert min(abs(a - b) for a, b in itertools.pairwise(grey)) > 0.05
-
-
-def test_both_packages_draw_in_one_style():
-    root = Path(__file__).parents[3]
-    ours, theirs = root / "contvines/plots/contvines.mplstyle", root / "orbits/plots/house.mplstyle"
-    assert ours.read_text() == theirs.read_text()
 
 
 def test_the_users_own_settings_come_before_ours(graph):

@@ -50,3 +50,17 @@ def test_of_a_crowd_the_number_is_told_and_not_one_name(axes):
     crowd = [Label(f"LP{i}", 0.5, 0.5) for i in range(1, 38)]
     assert [label.text for label in grouped(axes, crowd)] == ["37 points"]
     assert [label.text for label in grouped(axes, crowd[:4])] == ["LP1, LP2 +2"]
+
+
+def test_a_label_stands_clearly_nearer_to_its_own_mark(axes):
+    """Two marks side by side, whose texts could be read as either's above and below the gap between them."""
+    marks = np.array([[0.45, 0.5], [0.56, 0.49]])
+    labels = [Label("PD2", *marks[0]), Label("WG1", *marks[1])]
+    written, _ = place_labels(axes, labels, marks, size=6)
+    places = axes.transData.transform(marks)
+    for text in written:
+        box = text.get_bbox_patch() and text.get_window_extent()
+        near = np.clip(places, (box.x0, box.y0), (box.x1, box.y1))
+        gaps = np.hypot(*(near - places).T)
+        own = [entry.text for entry in labels].index(text.get_text())
+        assert gaps[own] < 0.85 * gaps[1 - own], text.get_text()

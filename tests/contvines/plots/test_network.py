@@ -70,3 +70,20 @@ def test_network_captions_tell_ends_apart_and_shorten_words():
     assert texts[0] == "B1  (LtRLttR)^8  k=1\np 0.990001 to 0.990002"
     assert texts[1] == "B2  stuck  k=1\np 0.25"
     assert texts[2].startswith("B3  LR  k=1")
+
+
+def test_a_small_network_leaves_out_what_finds_no_room_and_says_how_much():
+    graph = chain(40)  # three leave the second, and nine each of these
+    graph.switches = [Switch("PD1", "B1", "B2", "period-doubling")]
+    graph.switches += [Switch(f"WG{i}", "B2", f"B{i}", "wall-graze") for i in (3, 4, 5)]
+    graph.switches += [Switch(f"VG{i}", f"B{3 + i % 3}", f"B{i}", "velocity-graze") for i in range(6, 33)]
+    graph.switches += [Switch(f"ST{i}", "B20", f"B{i}", "stick") for i in range(33, 41)]
+    figure = plot_network(graph, figsize=(3.4, 2.4))
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    texts = [text.get_text() for text in axes.texts]
+    assert texts == ["B1", "B2", "B3", "B4", "B5", "PD1", "WG3", "WG4", "WG5"]
+    assert axes.get_title(loc="left").endswith("; 35 more further on")
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+    assert len(plot_network(graph).axes[0].texts) == 40 + len(graph.switches)  # a large one has all

@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 
+import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.cycles.deviation import position_error
 from orbits.cycles.identity import is_symmetric
-from orbits.simulation.replay import replay
+from orbits.simulation.replay import one_by_one, replay
 from orbits.words import Word
+from tests.orbits.fuzz.drawing import draw
+from tests.orbits.fuzz.many_digits import exact
+from tests.orbits.fuzz.searching import LIMITS
 
 MACHINE = Absorber(restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006)
 H = 0.5 * np.pi * 1.006 * 0.2 * 0.211
@@ -63,3 +67,22 @@ def test_a_stick_whose_end_comes_before_its_beginning_by_rounding_is_compared():
     slip = orbit.word.events.index("u")
     nodes[slip - 1] = nodes[slip] + [3e-8, 0.0]
     assert position_error(type(orbit)(orbit.model, orbit.word, 1, nodes, orbit.params)) < 1e-2
+
+
+def test_orbits_on_which_rounding_grows_within_a_period_are_replayed_event_by_event():
+    """A fold beside a graze of the absorber: deviations grow 1e14 times on the way and shrink again. Many digits say that it is an orbit."""
+    drawn = draw("absorber", 404, 339)
+    fold = min(
+        (p for p in cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS).of_kind("fold")),
+        key=lambda p: abs(p.value - 1.8398599),
+    )
+    orbit = fold.orbit
+    known = exact(orbit)
+    assert known.moved < 1e-12 and abs(known.shift) < 1e-14
+    assert replay(orbit).error == np.inf  # from the first event alone
+    assert fold.replay == orbit.replay() < 1e-9
+    nodes = orbit.nodes.copy()
+    nodes[5, 1] += 1e-4
+    assert type(orbit)(orbit.model, orbit.word, orbit.periods, nodes, orbit.params).replay() > 5e-5
+    through_walls = MACHINE.orbit("tt", 1, amplitude=float(np.hypot(1.01, H)))
+    assert one_by_one(through_walls) == np.inf == through_walls.replay()

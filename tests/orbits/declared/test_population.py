@@ -120,11 +120,15 @@ def test_ranges_that_are_none(starts, sentence):
         )
 
 
-def test_cycles_in_the_chaos_of_a_bouncing_ball_are_those_of_the_closed_form():
+@pytest.mark.parametrize("way", ["in the chaos", "by Newton's method"])
+def test_cycles_of_a_bouncing_ball_are_those_of_the_closed_form(way):
     """One impact in k periods: the table moves with k pi g (1 - r) / (1 + r) there (P. J. Holmes, J. Sound Vib. 84 (1982) 173)."""
     gravity, restitution, amplitude = 0.1, 0.8, 0.2
     population = page("bouncing_ball").population("amplitude", gravity=gravity, restitution=restitution)
-    cycles = population.embedded(np.array([0.3, 3.0, 0.0]), amplitude)
+    if way == "in the chaos":
+        cycles = population.embedded(np.array([0.3, 3.0, 0.0]), amplitude)
+    else:
+        cycles = population.returning(population.starts(8, 0, amplitude), amplitude)
     assert len(cycles) > 1
     alone = []
     for problem, u in cycles:

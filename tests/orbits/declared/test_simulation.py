@@ -86,7 +86,7 @@ def test_orbits_against_an_independent_integrator(name):
     machine = page(name)
     orbit = machine.attractor(**CASES[name]).orbit
     assert orbit is not None and orbit.real and orbit.residual < 1e-10
-    assert deviation(orbit, machine.equations._motion) < 1e-8
+    assert deviation(orbit, machine.equations.formulas_of_motion) < 1e-8
     assert orbit.replay() < 1e-9
 
 
@@ -95,7 +95,7 @@ def test_stick_slip_on_a_belt_has_a_period_of_its_own():
     orbit = machine.attractor({"x": 1.0, "v": 0.5}).orbit
     assert orbit.word.text == "s-" and orbit.stable and len(orbit.multipliers) == 1
     assert abs(orbit.multipliers[0]) < 1e-12  # sticking forgets
-    assert deviation(orbit, machine.equations._motion) < 1e-8
+    assert deviation(orbit, machine.equations.formulas_of_motion) < 1e-8
 
 
 def test_a_motion_that_dies_out_is_simulated_for_as_long_as_asked():

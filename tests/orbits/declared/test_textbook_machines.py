@@ -70,12 +70,12 @@ def test_a_gear_pair_turns_between_the_crossings_of_a_side():
         orbit.word.canonical().events
         == machine.word("back- t back+ drive+ t drive-", orbit.params).canonical().events
     )
-    assert deviation(orbit, machine.equations._motion) < 1e-8
+    assert deviation(orbit, machine.equations.formulas_of_motion) < 1e-8
     # past two folds the far side of the backlash is only just reached
     graph = cv.diagram(orbit, over="frequency", within=(0.79, 0.95), depth=0)
     (graze,) = [p for p in graph.special.values() if p.kind == "switch-graze"]
     there = graph.branches[graze.branch].problem.orbit(graze.u, graze.value)
-    assert deviation(there, machine.equations._motion) < 1e-8
+    assert deviation(there, machine.equations.formulas_of_motion) < 1e-8
 
 
 def test_two_blocks_on_a_belt_that_hit_one_another():
@@ -83,4 +83,4 @@ def test_two_blocks_on_a_belt_that_hit_one_another():
     orbit = machine.attractor({"x1": 0.5, "x2": 0.6, "v1": 0.2}).orbit
     assert orbit.word.text == "H s2 taut+ u2- s taut- u-"
     assert orbit.real and orbit.stable and orbit.replay() < 1e-10
-    assert deviation(orbit, machine.equations._motion) < 1e-8
+    assert deviation(orbit, machine.equations.formulas_of_motion) < 1e-8

@@ -20,6 +20,7 @@ NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # the same for multipliers
 NEAREST = (1e-6, 1e-7, 1e-8, 1e-9)  # ... where these do not tell: some grow until they are as near as that
 UNBOUNDED = 1e14  # multipliers listed as large grow without bound, or so far
 LIMIT = 1e-3  # relative difference of characteristic polynomials
+UNRESOLVED = 1e-12  # differences of the parameter, relative, that are rounding
 ASIDE = 0.1  # of the distance, where crossings are looked for
 
 
@@ -34,6 +35,8 @@ def judge(graph: Any, tally: Tally) -> None:
                     _limits(between, i, graph[label], tally)
                 elif graph[label].branch == branch.label and branch.real and 0 < i < len(branch) - 1:
                     _crosses(between, i, graph[label], tally)
+                    if graph[label].kind == "fold":
+                        _turns(between, i, graph, graph[label], tally)
     for switch in graph.switches:
         _joined(graph, switch, tally)
 
@@ -136,18 +139,39 @@ def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
         return
     tally.count("bifurcations with both sides")
     before, after = (_past(orbit.multipliers) for orbit in sides)
-    p = point.parameter
-    values = [branch.problem.value(orbit.params) - point.value for orbit in sides]
-    if point.kind == "fold" and values[0] * values[1] < 0.0:
-        tally.find(
-            "fold", f"{point.label} on {branch.label}: {p} does not turn at {point.value:.12g}: {values}"
-        )
     if before == after:
         what = f"{_text(sides[0].multipliers)} and {_text(sides[1].multipliers)}"
         tally.find(
             "crossing",
             f"nothing crosses at {point.label} ({point.kind}, {branch.label}, {point.value:.10g}): {what} beside it",
         )
+
+
+def _turns(between: Between, i: int, graph: Any, point: Any, tally: Tally) -> None:
+    """At a fold the parameter turns: both sides where it first differs by more than rounding, before the next fold."""
+    if point.met_from is not None:
+        return
+    branch, gaps = between.branch, []
+    near = UNRESOLVED * max(1.0, abs(point.value))
+    folds = {
+        k for k, label in branch.marks if k != i and label in graph.special and graph[label].kind == "fold"
+    }
+    for way in (-1, 1):
+        aside = next((orbit for _, orbit in between.beside(i, way, (ASIDE,))), None)
+        k, gap = i, 0.0 if aside is None else branch.problem.value(aside.params) - point.value
+        while abs(gap) < near and 0 <= k + way < len(branch) and k + way not in folds:
+            k += way
+            gap = float(branch.values[k]) - point.value
+        gaps.append(gap)
+    if min(map(abs, gaps)) < near:
+        tally.count("folds beside another point, or an end, that floating point does not resolve")
+    elif gaps[0] * gaps[1] < 0.0:
+        tally.find(
+            "fold",
+            f"{point.label} on {branch.label}: {point.parameter} does not turn at {point.value:.12g}: {gaps}",
+        )
+    else:
+        tally.count("folds at which the parameter turns")
 
 
 def _past(multipliers: np.ndarray) -> tuple[int, int, int]:

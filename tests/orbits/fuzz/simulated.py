@@ -12,6 +12,7 @@ from orbits.simulation.driver import SimulationError, machine
 from orbits.simulation.return_map import monodromy
 from orbits.starts.find import polish
 from tests.orbits.fuzz.between import Between
+from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart
 from tests.orbits.fuzz.tally import Tally
 
@@ -20,7 +21,9 @@ STARTS = 3  # of each machine
 BESIDE = 1e-6  # margins as small make events a matter of rounding
 WILD = 1e6  # multipliers as large are lost within a period
 DIFFERENCES = 1e-4  # of characteristic polynomials, relative
-CURVED = 1e-6  # times the outermost multiplier: where it is large, differences are less exact
+EXACTLY = 1e-5  # of the same, in many digits
+PARAMETER = 1e-10  # by which the orbit in many digits may be another machine's: rounding of phases, times what an event's map amplifies
+UNRESOLVED = 1e-12  # stretches of the parameter, relative, that floating point does not resolve
 SMALLER = (1e-7, 1e-9)  # displacements
 MOST = 4  # events from which a return map is taken
 SETTLED = 0.999  # outermost multiplier of what a simulation can settle on
@@ -39,7 +42,7 @@ def judge(graph: Any, tally: Tally, rng: np.random.Generator) -> None:
                 continue
             settled = branch.stable[i] if branch.stable[i] == branch.stable[i + 1] else None
             if branch.real:
-                follow(orbit, branch.label, settled, tally)
+                follow(orbit, branch.label, settled, tally, width=_stretch(branch, int(i)))
             else:
                 _refused(orbit, branch.label, tally)
 
@@ -55,8 +58,21 @@ def _said(label: str, orbit: Any) -> str:
     )
 
 
-def follow(orbit: Any, label: str, stable: bool | None, tally: Tally) -> None:
-    """A real orbit: the simulation goes through its events, has its multipliers, and comes back if it is said to be stable."""
+def _stretch(branch: Any, i: int) -> float:
+    """Relative width in the parameter of the stretch between two changes of stability in which point i and the next one lie."""
+    changes = np.flatnonzero(branch.stable[1:] != branch.stable[:-1])
+    first = int(changes[changes < i].max(initial=-1)) + 1
+    last = int(changes[changes > i].min(initial=len(branch) - 1))
+    values = branch.values[first : last + 1]
+    return float(np.ptp(values) / max(1.0, np.abs(values).max()))
+
+
+def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: float = np.inf) -> None:
+    """A real orbit: the simulation goes through its events, has its multipliers, and comes back if it is said to be stable.
+
+    Where it is stable in a stretch of the parameter (of relative `width`) that floating point does not resolve, a simulation is that of
+    another machine, which need not have a stable orbit: multipliers in many digits say then what is true.
+    """
     growth = float(np.abs(orbit.multipliers).max(initial=0.0))
     said = _said(label, orbit)
     if orbit.margin < -BESIDE:
@@ -80,8 +96,7 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally) -> None:
     ):  # beside a border positions tell more than nodes
         tally.find("replay", f"{said}: nodes differ by {seen.error:.1e} (multipliers to {growth:.1e})")
     if len(seen.multipliers):
-        _compared(orbit, seen.multipliers, said, tally)
-        moved = _without_trivial(orbit, seen.multipliers)
+        moved = _compared(orbit, _without_trivial(orbit, seen.multipliers), said, tally)
         outermost = float(np.abs(moved).max())
         if stable is not None and abs(outermost - 1.0) > 1e-3 and (outermost < 1.0) != stable:
             tally.find(
@@ -90,7 +105,11 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally) -> None:
             )
     else:
         tally.count("orbits at which the return map has a kink")
-    if stable and seen.returned is not None:
+    if stable and width < UNRESOLVED:
+        tally.count("stable stretches narrower than floating point resolves")
+        if not in_many_digits(orbit):
+            tally.find("return", f"{said}: called stable, which many digits do not confirm")
+    elif stable and seen.returned is not None:
         tally.count("stable orbits simulated")
         if not seen.returned and growth < SETTLED:
             tally.find(
@@ -99,12 +118,15 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally) -> None:
             )
 
 
-def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> None:
-    """Multipliers against differences; where the return map is steep, and so curved within a displacement, against smaller ones."""
+def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> np.ndarray:
+    """Multipliers against differences; where the return map is steep, and so curved within a displacement, against smaller ones.
+
+    Where these cannot tell either, against those of the orbit in many digits. Returns the multipliers that are to be believed.
+    """
     tally.count("multipliers against differences")
-    gap = alike(orbit.multipliers, _without_trivial(orbit, seen))
+    gap = alike(orbit.multipliers, seen)
     if gap < DIFFERENCES:
-        return
+        return seen
     engine, (letters, modes) = machine(orbit.model.name), (orbit.word.codes, orbit.word.mode_codes)
     places = np.flatnonzero(letters < 2) if orbit.impacts else range(len(letters))
     for place in places[:MOST]:
@@ -114,11 +136,25 @@ def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> None:
             matrix = monodromy(engine, orbit.params, letters, modes, turned.nodes[0], step)
             if matrix is not None:
                 gap = min(gap, alike(orbit.multipliers, _without_trivial(orbit, np.linalg.eigvals(matrix))))
-        if gap < max(DIFFERENCES, CURVED * float(np.abs(orbit.multipliers).max())):
+        if gap < DIFFERENCES:
             tally.count("multipliers against smaller differences")
-            return
+            return orbit.multipliers
+    if in_many_digits(orbit):
+        tally.count("multipliers against many digits")
+        return orbit.multipliers
     tally.find(
         "multipliers", f"{said}: {orbit.multipliers} against {seen}, {gap:.1e} (margin {orbit.margin:.1e})"
+    )
+    return seen
+
+
+def in_many_digits(orbit: Any) -> bool:
+    """Whether the orbit, solved for in many digits, has these multipliers, at the same parameters but for rounding."""
+    found = exact(orbit)
+    return (
+        found is not None
+        and abs(found.shift) < PARAMETER
+        and alike(orbit.multipliers, found.multipliers) < EXACTLY
     )
 
 
@@ -181,4 +217,4 @@ def settle(draw: Any, tally: Tally, rng: np.random.Generator) -> None:
         if not gap < 1e-7:
             tally.find("attractor", f"{said}: solved for it differs by {gap:.1e}")
         if np.isfinite(found.multipliers).all() and solved.margin > BESIDE:
-            _compared(solved, found.multipliers, said, tally)
+            _compared(solved, _without_trivial(solved, found.multipliers), said, tally)

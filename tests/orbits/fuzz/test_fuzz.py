@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from orbits import Absorber, Coupled
 from tests.orbits.fuzz import finer, neighbours, simulated, structure
 from tests.orbits.fuzz.drawing import draw
+from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart, shortest
 from tests.orbits.fuzz.searching import search
 from tests.orbits.fuzz.tally import Tally
@@ -158,3 +159,56 @@ def test_motions(graph):
     assert apart(orbit, orbit.mirror()) < 1e-12 < 1e-2 < apart(orbit, orbit.mirror(), images=False)
     assert (shortest(orbit), shortest(orbit.repeat(4))) == (1, 1)
     assert alike(np.array([0.5, -0.2]), np.array([-0.2, 0.5])) < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed", "counted"),
+    [
+        ("absorber", 493, "folds at which the parameter turns"),  # a period doubling 5e-15 beside the fold
+        ("absorber", 132, "multipliers against many digits"),  # 3e7 times as steep as the parameter
+        ("cavity", 373, "stable stretches narrower than floating point resolves"),
+    ],
+)
+def test_true_results_at_the_edge_of_floating_point(kind, seed, counted):
+    tally = search(kind, 404, seed)
+    assert not tally.findings
+    assert tally.counts[counted] > 0
+
+
+def test_orbits_in_many_digits():
+    """The product of multipliers is r^4 (MODEL, section 3), and the fold of LR lies at its closed form (section 4)."""
+    r, h = 0.76, 0.5 * np.pi * 1.006 * 0.5 * 0.211
+    machine = Absorber(restitution=r, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    found = exact(machine.symmetric_orbit(amplitude=0.6))
+    assert abs(found.shift) < 1e-15 and found.moved < 1e-14
+    assert np.prod(found.multipliers) == pytest.approx(r**4, rel=1e-14)
+    lost = (1 - r) / (1 + r)
+    beta = (2 * np.pi - 4 * lost * h) / (np.pi**2 + 4 * lost**2)
+    fold = np.sqrt((1 - 0.5 * np.pi * beta) ** 2 + (lost * beta + h) ** 2)
+    beside = exact(machine.symmetric_orbit(amplitude=fold + 1e-13))
+    assert np.abs(beside.multipliers - 1.0).min() < 1e-5  # a square root
+    assert beside.steepness > 1e5
+    moved = machine.symmetric_orbit(amplitude=0.6)
+    moved = type(moved)(moved.model, moved.word, 1, moved.nodes * (1 + 1e-6), moved.params)
+    assert abs(exact(moved).shift) + exact(moved).moved > 1e-8
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_orbits_of_the_coupled_machine_in_many_digits(friction):
+    """Liouville: between events areas shrink with exp(-c t), at impacts by r^2 (the absorber's two dimensions)."""
+    machine = Coupled(
+        restitution=0.76, mass_ratio=0.006, forcing=2.47, damping=0.9, friction=friction, gravity=0.211
+    )
+    orbit = machine.symmetric_orbit(frequency=1.01)
+    found = exact(orbit)
+    period = 2 * np.pi / 1.01
+    shrunk = machine.restitution**4 * np.exp(-machine.mass_ratio * machine.damping * period)
+    assert np.prod(found.multipliers) == pytest.approx(shrunk, rel=1e-13)
+    assert alike(found.multipliers, orbit.multipliers) < 1e-10
+
+
+def test_multipliers_are_not_believed_for_want_of_digits(graph):
+    branch = word(graph, "LR")
+    orbit = branch.orbit(len(branch) // 2)
+    assert simulated.in_many_digits(orbit)
+    assert not simulated.in_many_digits(orbit.with_multipliers(orbit.multipliers * (1 + 1e-4)))

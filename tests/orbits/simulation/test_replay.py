@@ -87,3 +87,14 @@ def test_every_event_can_be_the_first(c2):
             MACHINE, found.params, np.roll(found.codes, -k), np.roll(found.modes, -k), nodes, found.periods
         )
         assert told.error < 1e-11, (k, told.message)
+
+
+def test_an_ill_conditioned_orbit_attracts_although_it_is_known_less_well_than_starts_come_back():
+    """Nodes that are off by 1e-7, as those of a steep orbit are by rounding: starts come to the orbit itself; off by 1e-5 they are no orbit's."""
+    found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.9))
+    for off, back in ((1e-7, True), (1e-5, False)):
+        nodes = found.nodes + [0.0, off]
+        told = replay_nodes(
+            MACHINE, found.params, found.codes, found.modes, nodes, found.periods, thorough=True
+        )
+        assert told.returned is back

@@ -6,22 +6,22 @@ import subprocess
 import time
 from typing import Any
 
-helpers: dict[str, subprocess.Popen[bytes]] = {}
+processes: dict[str, subprocess.Popen[bytes]] = {}
 """Processes that compile for the machine of that name, or the function of that name for many machines."""
 
 PATIENCE = 60.0  # seconds to wait for one function
 
 
 def wait_for(name: str, function: Any) -> None:
-    """Wait while the helper called `name` is at work and numba's cache lacks `function`.
+    """Wait while the process called `name` is at work and numba's cache lacks `function`.
 
     If that takes too long the function is compiled here as well.
     """
-    helper = helpers.get(name)
+    process = processes.get(name)
     deadline = time.monotonic() + PATIENCE
-    while helper is not None and not function.overloads and not cached(function):
-        if helper.poll() is not None or time.monotonic() > deadline:
-            helpers.pop(name, None)
+    while process is not None and not function.overloads and not cached(function):
+        if process.poll() is not None or time.monotonic() > deadline:
+            processes.pop(name, None)
             return
         time.sleep(0.005)
 

@@ -1,0 +1,132 @@
+"""Pictures beside a measurement: transients with and without the absorber, and what a calibration leaves over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..graph.table import with_unit
+from ..hints import hinting
+from .figures import new_axes, settle, styled, thin_ticks
+from .legends import place_legend
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+OURS, BARE, DATA = "#0b3c6f", "0.55", "#b5121b"
+PLAIN = (-2, 3)  # powers of ten that ticks show in full
+
+
+@hinting
+def plot_transient(
+    series: Sequence[tuple[str, str, np.ndarray]],
+    hits: np.ndarray | None = None,
+    *,
+    axes: Axes | None = None,
+    legend: bool | str = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
+    """Draw a motion, or its energy, with the absorber and without.
+
+    Parameters
+    ----------
+    series : sequence of (name, unit, values)
+        The first is time; what is named "bare_..." is without absorber, what is named "relative..." is not drawn. An "energy" has a
+        logarithmic axis.
+    hits : float array, optional
+        Instants of impacts, ticks at the lower edge.
+    axes : Axes, optional
+        Drawn on; without, a new figure of `figsize` inches.
+    legend : bool or str
+        Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
+    """
+    from matplotlib import rcParams
+
+    (clock, second, time), *curves = series
+    name, unit, _ = curves[0]
+    with styled(style):
+        own = axes is None
+        figure, axes = new_axes(axes, figsize=figsize)
+        thin = 0.65 * float(rcParams["lines.linewidth"])  # many periods stand side by side
+        for what, _, values in curves:
+            if what.startswith("relative"):
+                continue
+            bare = what.startswith("bare")
+            look: dict[str, Any] = (
+                {"color": BARE, "linestyle": (0, (4, 1.5)), "zorder": 1.9} if bare else {"color": OURS}
+            )
+            label = "without absorber" if bare else "with absorber"
+            axes.plot(time, values, linewidth=thin, label=label, **look)
+        if hits is not None and hits.size:
+            low = np.full(hits.size, 0.02)
+            ticks: dict[str, Any] = {"marker": "|", "linestyle": "none", "color": DATA, "label": "impacts"}
+            axes.plot(hits, low, transform=axes.get_xaxis_transform(), **ticks)
+        axes.set(xlabel=with_unit(clock, second), ylabel=with_unit(name.replace("_", " "), unit))
+        if name == "energy":
+            axes.set(yscale="log", ylabel="energy / first energy")
+        axes.margins(x=0.0)
+        _finish(figure, axes, legend, own)
+    return figure
+
+
+@hinting
+def plot_calibration(
+    places: np.ndarray,
+    residuals: np.ndarray,
+    heights: np.ndarray | None = None,
+    *,
+    xlabel: str,
+    ylabel: str,
+    axes: Axes | None = None,
+    legend: bool | str = True,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
+    """Draw a measured response and the computed one, or, of impact times, what is left over.
+
+    Parameters
+    ----------
+    places : float array (n,)
+        Instants of impacts, or values of the parameter that was swept.
+    residuals : float array (n,)
+        Computed less measured.
+    heights : float array (n,), optional
+        The measured response.
+    xlabel, ylabel : str
+    axes, legend, figsize, style
+        As for :func:`plot_transient`.
+    """
+    with styled(style):
+        own = axes is None
+        figure, axes = new_axes(axes, figsize=figsize)
+        if heights is None:
+            axes.axhline(0.0, color="0.6", linewidth=0.8)
+            axes.plot(places, -residuals, linestyle="none", marker="o", color=OURS)
+        else:
+            axes.plot(places, heights, linestyle="none", marker="o", color=DATA, mfc="none", label="measured")
+            axes.plot(places, heights + residuals, color=OURS, label="with the estimate")
+        axes.set(xlabel=xlabel, ylabel=ylabel)
+        axes.ticklabel_format(axis="y", scilimits=PLAIN)
+        _finish(figure, axes, legend, own)
+    return figure
+
+
+def _finish(figure: Figure, axes: Axes, legend: bool | str, own: bool) -> None:
+    place_legend(axes, axes.get_legend_handles_labels()[0], legend, own, usual="below")
+    if own:
+        settle(figure)
+        label = axes.yaxis.label
+        if label.get_window_extent().height > axes.bbox.height:  # two lines where one is longer than the axis
+            words = label.get_text().split()
+            half = min(
+                range(len(words)), key=lambda k: abs(len(" ".join(words[:k])) - len(" ".join(words[k:])))
+            )
+            axes.set_ylabel(" ".join(words[:half]) + "\n" + " ".join(words[half:]))
+            settle(figure)
+        thin_ticks(axes)

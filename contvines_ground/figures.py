@@ -1,0 +1,95 @@
+"""Figures in the house's style that pyplot does not keep; the user's own settings come before the house's."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HOUSE = Path(__file__).with_name("house.mplstyle")
+FULL_WIDTH = 6.5  # inches; in narrower figures texts, marks and lines shrink
+SMALLEST = 0.72  # but not below this share
+WINDOWLESS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends
+
+
+@contextmanager
+def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Draw in the house's style; what the user has set, and `style`, come before it; settings stay as they were.
+
+    Parameters
+    ----------
+    style : str, mapping or None
+        The name of a matplotlib style, the path of a style sheet, or rcParams.
+    """
+    import matplotlib as mpl
+    from matplotlib.style import context
+
+    default: Any = mpl.rcParamsDefault
+    # reading the backend would choose one, which imports pyplot
+    settings: Any = mpl.rcParams
+    names = [name for name in settings if not name.startswith("backend") and name in default]
+    own = {name: settings[name] for name in names if settings[name] != default[name]}
+    chosen: list[Any] = ["default", HOUSE, own]
+    if style is not None:
+        chosen.append(dict(style) if isinstance(style, Mapping) else style)
+    with context(chosen):
+        yield
+
+
+def shrinking(width: float) -> float:
+    """By how much texts, marks and lines shrink in a figure of a width in inches, below `FULL_WIDTH`."""
+    return float(min(1.0, max(SMALLEST, width / FULL_WIDTH)))
+
+
+def new_figure(figsize: tuple[float, float] | None = None, **options: Any) -> Figure:
+    """A figure that pyplot does not keep: notebooks show it once, as the value of a cell, and nothing piles up.
+
+    Where pyplot shows windows it is one of pyplot's. In a figure narrower than `FULL_WIDTH` all text is smaller.
+    """
+    import matplotlib as mpl
+
+    smaller = shrinking((figsize or mpl.rcParams["figure.figsize"])[0])
+    changed: dict[Any, Any] = {
+        name: mpl.rcParams[name] * smaller
+        for name in ("font.size", "lines.linewidth", "lines.markersize", "axes.linewidth")
+    } | {
+        name: mpl.rcParams[name] * smaller
+        for name in ("axes.labelsize", "axes.titlesize", "legend.fontsize")
+        if isinstance(mpl.rcParams[name], int | float)
+    }
+    mpl.rcParams.update(changed)  # inside `styled`, which puts everything back
+    if windows():
+        return sys.modules["matplotlib.pyplot"].figure(figsize=figsize, **options)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    made = _picture_class()(figsize=figsize, **options)
+    FigureCanvasAgg(made)
+    return made
+
+
+def windows() -> bool:
+    """Whether the user's session shows pyplot's figures in windows (notebooks show what is returned)."""
+    if "matplotlib.pyplot" not in sys.modules:
+        return False
+    backend = sys.modules["matplotlib.pyplot"].get_backend().lower()
+    return backend not in WINDOWLESS and "inline" not in backend
+
+
+def _picture_class() -> type[Figure]:
+    from matplotlib.figure import Figure
+
+    class Picture(Figure):
+        """A figure that shows itself in a notebook, whether or not pyplot has been imported there."""
+
+        def _repr_png_(self) -> bytes:
+            buffer = BytesIO()
+            self.savefig(buffer, format="png", dpi=110)
+            return buffer.getvalue()
+
+    return Picture
