@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..continuation.engine import Engine, Solved
-from ..continuation.march import MARGIN
+from ..continuation.loop import MARGIN
 from ..continuation.status import Status
 from ..events.leaps import SHORTEST
 from ..events.located import Located, Role

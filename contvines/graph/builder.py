@@ -287,6 +287,7 @@ def both_ways(
             if point is not None and engine.lower <= point.p <= engine.upper
         }
         if "ahead" in sides and sides["ahead"].status == Status.CLOSED:
+            assert sides["ahead"].first is not None
             ahead = sides["ahead"].since(sides["ahead"].first)
             return ahead, (ending(ahead), ending(ahead)), True
         if len(sides) == 2:

@@ -94,8 +94,8 @@ def same_border(run: Run, label: str, known: Branch) -> str:
 
 
 def _in_one_place(run: Run, one: SpecialPoint, other: SpecialPoint) -> bool:
-    places = (Place(point.value, point.location_error) for point in (one, other))
-    return in_one_place(*places, run.unit(one.value), ONE_VALUE)
+    here, there = Place(one.value, one.location_error), Place(other.value, other.location_error)
+    return in_one_place(here, there, run.unit(one.value), ONE_VALUE)
 
 
 def tie_borders(run: Run) -> None:
