@@ -47,6 +47,8 @@ class Work(NamedTuple):
     frozen: np.ndarray
     steep: np.ndarray
     state: np.ndarray
+    frame: np.ndarray
+    kept: np.ndarray
 
 
 class LocusProblem(ProblemDefaults):
@@ -197,7 +199,9 @@ class LocusProblem(ProblemDefaults):
             rows=self.rows,
             frozen=np.zeros(self.dimension + 1),
             steep=np.zeros((3, max(tests, 2))),
-            state=np.full(1, -1.0),
+            state=np.array([-1.0, 1.0, 0.0]),
+            frame=np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n),
+            kept=np.zeros(self.dimension),
         )
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:

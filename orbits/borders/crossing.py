@@ -29,12 +29,13 @@ from orbits.borders.neighbours import (
     turned,
 )
 from orbits.borders.rewriting import Edit, edits_at
-from orbits.borders.rounds import choices, rounds_at
+from orbits.borders.rounds import rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
 from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
 from orbits.cycles.kernels import assemble
+from orbits.cycles.rounds import MOST, choices, escape
 from orbits.cycles.solution import Solution
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of
@@ -45,8 +46,7 @@ BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends t
 AWAY = (
     1e-6,
     1e-7,
-)  # of the parameter's unit: how far from a border simulation begins, where nothing is found further away
-ROUNDS = 8  # up to so many rounds of a cycle are joined to one at a border
+)  # of the parameter's unit: how far from a border simulation begins, the second where the first finds nothing
 NEARER = (
     0.3,
     0.1,
@@ -137,14 +137,14 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
     """
     problem, _, p, index, orbit, edits = border
     known = [rounds_at(problem, orbit, p, edit, beside) for edit in edits]
-    hopeless = [set() if rounds is None else rounds.hopeless(ROUNDS) for rounds in known]
-    if hopeless and all(len(no) == len(choices(ROUNDS)) for no in hopeless):
+    hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
+    if hopeless and all(len(no) == len(choices(MOST)) for no in hopeless):
         return
     wider, whole = _repeated(problem, orbit, 2)
     first = edits_at(whole, index, problem.length)
     if [edit.change for edit in first] != [edit.change for edit in edits]:
         hopeless = [set() for _ in first]
-    for rounds in range(2, ROUNDS + 1):
+    for rounds in range(2, MOST + 1):
         for changed in (1, rounds - 1) if rounds > 2 else (1,):
             wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
             if not wanted:
@@ -160,7 +160,7 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
                 continue
             if not _followed(other, v, q, there):
                 continue
-            what = _escape(problem, rounds)
+            what = escape(problem.symmetric, rounds)
             yield Seed(
                 other, v, q, tangent, "border", f"{note}: {what}, the word becomes {other.spelling}", False
             )
@@ -192,14 +192,6 @@ def _grown_in(
         if found is not None:
             return found, edit.change.what.value
     return None
-
-
-def _escape(problem: CycleProblem, rounds: int) -> str:
-    if rounds == 2:
-        return f"the {'symmetry breaks' if problem.symmetric else 'period doubles'} at the border"
-    if problem.symmetric and rounds % 2 == 0:
-        return f"at the border the symmetry breaks and the period becomes {rounds // 2} times as long"
-    return f"at the border the period becomes {rounds} times as long"
 
 
 def _sides(

@@ -27,6 +27,24 @@ def test_the_absorber_on_its_oscillator_that_begins_to_slip_has_the_same_graph()
     assert [p.kind for p in graphs[1].special.values()].count("stick") == 2
 
 
+def test_periods_are_added_at_the_same_border():
+    # orbits of six and seven rounds with one more impact: their words and special points are the built-in machine's
+    values = {
+        "restitution": 0.15840379606858848,
+        "friction": 0.27062304650022073,
+        "gravity": 0.08085179925290478,
+    }
+    word, settings = "LttRtt", {"over": "amplitude", "within": (1.2875, 1.2887), "depth": 1}
+    own = orbits.Absorber(**values, mass_ratio=0.006).orbit(word, amplitude=1.288)
+    graphs = [
+        cv.diagram(orbit, **settings)
+        for orbit in (own, page("absorber").orbit(word, amplitude=1.288, mass_ratio=0.006, **values))
+    ]
+    found = compared("absorber", *graphs)
+    assert found.sentences == [] and found.points >= 7
+    assert {6, 7} < {branch.description["periods"] for branch in graphs[1]}
+
+
 def test_the_coupled_absorber_has_the_same_orbits():
     own = orbits.Coupled(forcing=2.47, frequency=1.01, **COUPLED).orbit("LR")
     orbit = page("coupled").orbit("LR")
