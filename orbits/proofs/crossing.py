@@ -17,15 +17,12 @@ from orbits.proofs.enclosing import Box, enclose, refine
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal
-from orbits.proofs.stability import basis_texts
+from orbits.proofs.stability import away_from_one, basis_texts
 from orbits.proofs.tiles import Along, Tile, lay
 from orbits.proofs.varying import Varying
 
-APART = (
-    "2e-11",
-    "2e-14",
-    "2e-17",
-)  # of either orbit from the special point; nearer where the branch bends sharply
+APART = ("2e-11", "2e-14", "2e-17", "2e-20", "2e-23")
+"""Of either orbit from the special point; nearer where the branch bends sharply or a long word's map is known too roughly in the tile."""
 TURN = ("1e-6", "1e-8", "1e-10", "1e-13")  # the same in the unknown that goes on where the parameter turns
 WIDTH = 1.25  # of the tile
 
@@ -38,6 +35,7 @@ def crossing(
     value: Any,
     bits: int,
     turn: Normal | None = None,
+    pair: bool = False,
 ) -> list[Entry]:
     """The chain orbit, tile, orbit about a special point.
 
@@ -46,6 +44,8 @@ def crossing(
     z, value : the point's nodes (with an eigenvector where there is one), and the parameter there.
     turn : Normal, optional
         At a fold the unknown along which the branch goes on.
+    pair : bool
+        A pair of multipliers crosses the circle: no multiplier is 1 or -1 in the tile.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def crossing(
         return [resting_box(motif, low), resting_box(motif, center, half), resting_box(motif, high)]
     for apart in APART if turn is None else TURN:
         try:
-            return _chain(motif, p, varying, z, value, bits, turn, apart)
+            return _chain(motif, p, varying, z, value, bits, turn, apart, pair)
         except Obstacle as obstacle:
             if apart in (APART[-1], TURN[-1]):
                 raise obstacle from None
@@ -74,6 +74,7 @@ def _chain(
     bits: int,
     turn: Normal | None,
     apart: str,
+    pair: bool,
 ) -> list[Entry]:
     """`crossing` with orbits this far from the point."""
     n = motif.node
@@ -96,6 +97,8 @@ def _chain(
     tile = lay(along, center, f"{float(apart) * WIDTH:.3g}", nodes, value)
     if tile is None:
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
+    if pair and not away_from_one(System(motif, {**p, **varying.at(tile.values())}), tile.balls()):
+        raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the multipliers about the point")
     boxes = [orbit_at(motif, p, varying, end, start, bits) for end, start in zip(ends, starts)]
     if not all(tile.holds(end, box) for end, box in zip(ends, boxes)):
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
