@@ -11,6 +11,7 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.loop import MARGIN
 from . import pairs
+from .borders import resolved
 from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
 from .leaps import inexact, leap
@@ -132,6 +133,7 @@ class Watch(Examiner):
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
             found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
+            found = [resolved(segment, e) if e.role is Role.BORDER else e for e in found]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
