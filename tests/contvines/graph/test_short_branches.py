@@ -8,7 +8,7 @@ from contvines.problems.protocol import Seed
 from tests.contvines.graph.test_borders import Line
 
 
-@pytest.mark.parametrize("gap", [3e-6, 0.02])
+@pytest.mark.parametrize("gap", [1e-9, 1e-7, 3e-6, 0.02])
 def test_a_branch_that_passes_by_does_not_begin_at_the_border(gap):
     """Word "b" lasts from 1/2 + gap to 0.9: a seed on it is real and close, but nothing joins it to the border at 1/2."""
 
