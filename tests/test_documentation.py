@@ -62,6 +62,55 @@ def test_the_glossary_has_the_words_of_the_readme():
         assert any(k in (entry, f"{entry} point") for k in known), word
 
 
+# terms of art that the README uses without explaining them there
+TERMS = (
+    "absorber", "atlas", "attractor", "ball arithmetic", "bifurcation", "border", "branch", "cavity", "chart", "continuation", "cycle",
+    "diagram", "equilibrium", "erosion curve", "extra", "forcing period", "frequency response", "friction", "graph", "gravity",
+    "impact", "kernel", "kick", "map", "margin", "mass ratio", "mirror image", "orbit", "phase portrait", "real",
+    "restitution", "robustness", "seed", "simulator", "slip", "special point", "stick", "study", "survey", "sweep", "switch",
+    "time history", "tolerance", "turn", "virtual", "word",
+)  # fmt: skip
+
+
+def test_the_glossary_has_the_terms_of_the_readme():
+    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8").lower()
+    rows = re.findall(r"^\| ([^|]+) \|", (DOCS / "glossary.md").read_text(encoding="utf-8"), re.MULTILINE)
+    known = {word.strip("* ").lower() for row in rows[1:] for word in row.split(",")}
+    for term in TERMS:
+        plural = term.replace("equilibrium", "equilibri")
+        if plural in readme.replace("\n", " "):
+            assert term in known, term
+    assert sum(term in readme for term in TERMS) > 35
+
+
+def test_every_option_of_a_command_in_the_pages_exists():
+    from typer.main import get_command
+
+    from contvines.command.cli import app
+
+    commands = get_command(app).commands  # type: ignore[attr-defined]
+    options = {
+        name: {text for entry in command.params for text in (*entry.opts, *entry.secondary_opts)} | {"--help"}
+        for name, command in commands.items()
+    }
+    seen = 0
+    for page in (DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))):
+        code = re.findall(
+            r"```sh\n(.*?)```|`(contvines [^`]+)`|^!(contvines .*)$",
+            page.read_text(encoding="utf-8"),
+            re.DOTALL | re.MULTILINE,
+        )
+        for line in "\n".join(part for parts in code for part in parts if part).splitlines():
+            match = re.match(r"(?:\.venv/bin/)?contvines ([a-z]+)\b([^#]*)", line.strip())
+            if match is None:
+                continue
+            assert match[1] in options, f"{page.name}: {line}"
+            for option in re.findall(r"(?<![\w-])(--?[a-z][\w-]*)", match[2]):
+                seen += 1
+                assert option in options[match[1]], f"{page.name}: {line.strip()}: {option}"
+    assert seen > 80
+
+
 def test_the_sketches_are_those_that_the_code_draws(tmp_path):
     spec = importlib.util.spec_from_file_location("pictures", DOCS / "pictures.py")
     pictures = importlib.util.module_from_spec(spec)

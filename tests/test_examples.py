@@ -4,7 +4,10 @@ import importlib.util
 import runpy
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from tests.orbits.fuzz.many_digits import exact
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCRIPTS = {"pitchfork", "henon", "absorber"}
@@ -153,3 +156,13 @@ def test_frequency_response_of_the_coupled_machine(tmp_path, monkeypatch):
         inside = [i for i in range(1, len(branch) - 1) if branch.stable[i - 1 : i + 2].all()]
         if inside:
             assert branch.orbit(inside[len(inside) // 2]).replay() < 1e-6, branch
+    # a pair passes the circle and comes back within 7e-6, in the step in which real multipliers meet; confirmed in many digits
+    pairs = [
+        point
+        for point in graph.of_kind("neimark-sacker")
+        if abs(point.value - 1.0015) < 2e-5 and graph[point.branch].description["word"] == "LRLttRLt"
+    ]
+    assert len(pairs) == 2
+    for point in pairs:
+        seen = exact(point.orbit).multipliers
+        assert np.abs(np.abs(seen[np.abs(seen.imag) > 0.05]) - 1.0).max() < 1e-9

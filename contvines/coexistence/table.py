@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
-from ..text_table import Table, fitted
+from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
     from .basins import Basins
@@ -19,33 +19,36 @@ ENDS = {
 
 def table(basins: Basins) -> str:
     """What the plane is, a line per attractor with its share and the interval of it, and how ragged the boundary is."""
-    lines = [_title(basins)]
-    for k, about in enumerate(basins.attractors):
-        low, high = basins.interval(k)
-        images = f", {about.mirror_share:.1%} of them the mirror image" if about.mirror_share else ""
-        periods = f"  k={about.periods}" if about.periods else ""
-        lines.append(f"  {about.name}{periods}  {about.share:.2%} ({low:.2%} to {high:.2%}{images})")
-    return fitted("\n".join([*lines, *(f"  {line}" for line in _boundary(basins))]))
+    shares, further = _shares(basins).lines(terminal_width()), _boundary(basins)
+    return "\n".join(
+        [fitted(_title(basins)), "", *shares, *([""] if further else []), *(fitted(line) for line in further)]
+    )
 
 
 def page(basins: Basins) -> str:
     """The same as HTML."""
+    shares = _shares(basins).html()
+    return "".join(
+        [f"<p>{html.escape(_title(basins))}</p>", shares, *(f"<p>{t}</p>" for t in _boundary(basins))]
+    )
+
+
+def _shares(basins: Basins) -> Table:
     rows = []
     for k, about in enumerate(basins.attractors):
         low, high = basins.interval(k)
         rows.append(
             (
                 about.name,
-                str(about.periods or ""),
+                f"k={about.periods}" if about.periods else "",
                 f"{about.share:.2%}",
                 f"{low:.2%} to {high:.2%}",
                 f"{about.mirror_share:.2%}" if about.mirror_share else "",
             )
         )
-    shares = Table(("motion", "periods", "share", "95 % interval", "mirror image"), rows).html()
-    return "".join(
-        [f"<p>{html.escape(_title(basins))}</p>", shares, *(f"<p>{t}</p>" for t in _boundary(basins))]
-    )
+    head = ("motion", "periods", "share", "95 % interval", "of it the mirror image")
+    images = any(row[-1] for row in rows)
+    return Table(head, rows) if images else Table(head[:-1], [row[:-1] for row in rows])
 
 
 def _title(basins: Basins) -> str:

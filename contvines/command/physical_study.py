@@ -6,6 +6,8 @@ in which the machine's quantity was given. What is left is a study like any othe
 
 from typing import Any
 
+import numpy as np
+
 from contvines_ground.near_names import did_you_mean
 
 OWN = ("name", "units", "unusual")
@@ -93,22 +95,27 @@ def _numbers(
         if not isinstance(values, dict) or section in ("start", "survey"):
             sections[section] = values
             continue
+        from orbits.machines.physical.quantities import near_quantity
+
         name = values.get("parameter", usual)
         changed = dict(values)
         if isinstance(name, str) and name not in known and "parameter" in values:
             wrong.append(
                 f"[{section}] parameter = {name!r}: the model {machine.name!r} has no such quantity"
-                f"{did_you_mean(name, known)}; it has {', '.join(known)}."
+                f"{near_quantity(name, known)}; it has {', '.join(known)}."
             )
             changed["within"] = [0.0, 1.0]
         for key in ("within", "values"):
             if isinstance(values.get(key), list) and isinstance(name, str) and name in known:
                 told = machine.told_by(name)
-                changed[key] = []
-                for i, value in enumerate(values[key]):
-                    number, refusal = number_of(told, name, value, f"[{section}] {key}[{i}]")
-                    changed[key].append(number)
-                    wrong += [refusal] if refusal else []
+                places = [f"[{section}] {key}[{i}]" for i in range(len(values[key]))]
+                pairs = [number_of(told, name, *pair) for pair in zip(values[key], places, strict=True)]
+                refused = [refusal for _, refusal in pairs if refusal]
+                wrong += refused
+                # numbers that nothing is wrong with in place of refused ones, so that these are refused once
+                usual_value = told.quantities.get(name) or 1.0
+                sound = np.linspace(0.5 * usual_value, usual_value, len(pairs)).tolist()
+                changed[key] = sound if refused else [number for number, _ in pairs]
         sections[section] = changed
     return machine, sections, wrong
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from contvines.command.options import SizeOption
-from contvines.text_table import fitted
+from contvines.text_table import Table, terminal_width
 
 if TYPE_CHECKING:
     from contvines.command.study import Study
@@ -59,7 +59,7 @@ def sweep(
     rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
     if not quiet:
-        typer.echo(fitted(_summary(rows, read.parameter)))
+        typer.echo(_summary(rows, read.parameter))
     if plot is not None:
         from contvines.command.sweep_picture import picture
         from contvines.plots.figures import save_figure
@@ -148,16 +148,16 @@ class _counter:
 
 def _summary(rows: "list[Kept]", parameter: str) -> str:
     """Runs of equal attractors, one line each."""
-    lines = []
+    runs = []
     first = 0
     for i in range(1, len(rows) + 1):
         if i == len(rows) or _kind(rows[i]) != _kind(rows[first]):
-            word = f" {rows[first].word}  k = {rows[first].periods}" if rows[first].word else ""
-            lines.append(
-                f"{parameter} {rows[first].value:.6g} to {rows[i - 1].value:.6g}: {rows[first].attractor}{word}"
-            )
+            row, last = rows[first], rows[i - 1]
+            periods = f"k={row.periods}" if row.word else ""
+            runs.append((f"{row.value:.6g} to {last.value:.6g}", row.attractor, periods, row.word))
             first = i
-    return "\n".join(lines)
+    head = (parameter, "settles on", "periods", "word")
+    return "\n".join(Table(head, runs, spare=("periods",)).lines(terminal_width()))
 
 
 def _kind(row: "Kept") -> tuple[Any, ...]:

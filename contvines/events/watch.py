@@ -6,13 +6,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.loop import MARGIN
+from . import pairs
+from .borders import resolved
 from .dips import before_border, below_zero
-from .examine import ROUNDING, Examiner, changes
+from .examine import REACHED, ROUNDING, Examiner, changes
 from .leaps import inexact, leap
 from .located import Located, Role
 from .multipliers import LIMIT, balance, counts, nearest_to_circle
@@ -31,12 +32,11 @@ from .scan import (
 )
 from .segment import Segment
 
-# beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice
-USER, TWICE, PAIRS = 256, 512, 1024
-NEARLY = 0.2  # part of the largest of three distances from the circle up to which their parabola counts as touching it
-ROUNDED = 1e-12
-CONSERVED = 1e-9  # pairs that stay closer to the circle are on it
-AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
+# beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about
+USER, TWICE, PAIRS, BORN = 256, 512, 1024, 2048
+NO_MARGIN = 1e-13  # something has no length or speed at all
+AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
+AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
 REACH, EDGE = (
     1.5,
     0.9,
@@ -94,7 +94,8 @@ class Watch(Examiner):
             flags[changes(np.nan_to_num(sums))] |= MULTIPLIER
             flags[self._twice(wide)[own:]] |= TWICE
         if self.engine.m > 2 and self.kind in ("map", "flow"):
-            flags[self._pairs(wide)[own:]] |= PAIRS
+            flags[pairs.touching(self.engine, self.kind, wide)[own:]] |= PAIRS
+            flags[pairs.born(self.engine, self.kind, wide)[own:]] |= BORN
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             flags[changes(values)] |= USER
@@ -114,7 +115,7 @@ class Watch(Examiner):
                 s, middle = split
                 plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
-            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS):
+            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN):
                 found = self.examine(segment, real=real)
                 border = min(
                     (e for e in found if e.role is Role.BORDER), key=lambda e: e.position, default=None
@@ -131,7 +132,8 @@ class Watch(Examiner):
             leaping = leap(segment, found)
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
-            found = [e for e in found if e.kind != "astray"]
+            found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
+            found = [resolved(segment, e) if e.role is Role.BORDER else e for e in found]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
@@ -145,7 +147,7 @@ class Watch(Examiner):
         return events
 
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
-        """The special points between a branch point and the first point of a branch that leaves it, in order.
+        """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
 
         The beginning of the segment, where every solution is that of a nearly singular system, is left out.
         """
@@ -157,18 +159,21 @@ class Watch(Examiner):
         found = self.examine(segment, real=real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
+        found.sort(key=lambda e: e.position)
+        leaping = leap(segment, found)
         # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = ROUNDING * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
             e
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
-            if not (e.role is Role.SPECIAL and inexact(segment, e))
+            if e.kind != "astray"
+            and not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= flat)
         ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
-        return before_stop(sorted(found, key=lambda e: e.position))
+        return before_stop(found) + ([] if leaping is None else [leaping])
 
     def _suspects(self, chunk: Chunk, i: int) -> list[int]:
         """The margins that may pass zero and come back in a segment: the parabola through three of their values does."""
@@ -233,39 +238,6 @@ class Watch(Examiner):
                 found[i : i + 2] = True
         return found
 
-    def _pairs(self, chunk: Chunk) -> np.ndarray:
-        """Segments in which the outermost complex pair may pass the circle and come back, whatever the other multipliers do: where the
-
-        parabola through its distances comes close to zero, as bends are not all alike near a fold.
-        """
-        distance = self._outermost_pair(self.engine.spectrum(chunk.rows))
-        found = np.zeros(len(chunk) - 1, dtype=bool)
-        outside = distance < 0.0
-        level = np.isfinite(distance[:-2] + distance[1:-1] + distance[2:])
-        level &= (outside[:-2] == outside[1:-1]) & (outside[1:-1] == outside[2:])
-        size = np.abs(distance)
-        level &= (size[1:-1] < size[:-2]) | (size[1:-1] < size[2:])
-        if not level.any():
-            return found
-        steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
-        lengths = np.sqrt((steps**2) @ self.engine.weights)
-        for i in np.flatnonzero(level):
-            low = NEARLY * size[i : i + 3].max()
-            left, middle, right = np.maximum(size[i : i + 3] - low, ROUNDED)
-            if low > CONSERVED and dips(left, middle, right, lengths[i], lengths[i + 1]):
-                found[i : i + 2] = True
-        return found
-
-    def _outermost_pair(self, spectrum: NDArray[np.complex128]) -> np.ndarray:
-        """Distance of the outermost complex pair of each row from the circle (the axis), positive inside; infinite without pairs."""
-        size = np.abs(spectrum) - 1.0 if self.kind == "map" else spectrum.real
-        return -np.where(spectrum.imag > 0.0, size, -np.inf).max(axis=-1, initial=-np.inf)
-
-    def _pair(self, point: Solved, other: Solved) -> float:
-        """Distance of the outermost pair from the circle; negative where it is on another side than at another point."""
-        here, there = self._outermost_pair(self.engine.spectrum(np.array([point.row, other.row])))
-        return float(min(here, 1.0) * np.sign(there)) if np.isfinite(there) else 1.0
-
     def _split(self, segment: Segment, bits: int, suspects: list[int]) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin, or one of those suspected, is negative, the parameter turns back, or
 
@@ -280,9 +252,11 @@ class Watch(Examiner):
             HUMP: lambda point: float(side * point.tangent[-1]),
             DAMPED: lambda point: float(self._damping(point.row)),
             TWICE: lambda point: self._side(point, segment.a),
-            PAIRS: lambda point: self._pair(point, segment.a),
+            PAIRS: lambda point: pairs.side(self.engine, self.kind, point, segment.a),
         }
         wanted = [test for bit, test in tests.items() if bits & bit]
+        if bits & BORN and (outside := pairs.outside(segment, self.kind)) is not None:
+            return outside
         wanted += [lambda point, j=j: float(self.engine.margins(point.row)[j]) for j in suspects]
         for test in wanted:
             found = below_zero(segment, test)
@@ -305,9 +279,20 @@ class Watch(Examiner):
         with np.errstate(divide="ignore"):
             return -np.log(np.abs(spectrum).max(axis=-1))
 
+    def _of_rounding(self, event: Located) -> bool:
+        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well."""
+        if event.role is not Role.SPECIAL or event.name:
+            return False
+        return bool(abs(self.engine.smallest_margin(event.point.row)) < NO_MARGIN)
+
     def _apart(self, event: Located, stop: Located) -> bool:
-        engine, a, b = self.engine, event.point, stop.point
-        return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > AT_BORDER
+        """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
+        own = event.kind not in ("fold", "branch-point") or self._at_one(event.point)
+        return self.engine.distance(event.point, stop.point) > (AT_END if own else AT_BORDER)
+
+    def _at_one(self, point: Solved) -> bool:
+        spectrum = self.engine.spectrum(point.row)
+        return self.kind == "map" and bool(np.abs(spectrum - 1.0).min(initial=1.0) <= REACHED)
 
 
 def _wide(chunk: Chunk) -> Chunk:

@@ -105,6 +105,7 @@ class Forms:
             self.whole = np.array(embedding.u, dtype=float) / self._twice
         self.open_calls = (self.open.kernels, self.open.data, self.open_work)
         self.lines: dict[bytes, Line] = {}
+        self._nulls: dict[complex, tuple[np.ndarray, np.ndarray]] = {}
 
     @property
     def eigenvalues(self) -> NDArray[np.complex128]:
@@ -175,8 +176,10 @@ class Forms:
     # ------------------------------------------------------------------ one real critical direction
     def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
         """Right null vector of J closed by a multiplier, of length one as normal forms measure it, and the left one."""
-        left, _, right = np.linalg.svd(self.closed_by(factor))
-        return self.unit(right[-1].conj()), left[:, -1].conj()
+        if factor not in self._nulls:
+            left, _, right = np.linalg.svd(self.closed_by(factor))
+            self._nulls[factor] = self.unit(right[-1].conj()), left[:, -1].conj()
+        return self._nulls[factor]
 
     def unit(self, vector: np.ndarray) -> np.ndarray:
         """A direction with length one over the user's unknowns, of a cycle over its first point."""

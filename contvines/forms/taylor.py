@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 NODES = 12
+FEW = 5  # nodes where a few digits do
 RADIUS = 0.4  # relative to the scale of the unknowns
 SMALLER = 0.6
 ENOUGH = 1e-10  # relative difference of two radii that asks for no other
@@ -47,7 +48,8 @@ def along_line(
     scale : float
         Typical size of the unknowns.
     rough : bool
-        One radius and no estimate: a few digits, for scanning.
+        One radius and few nodes: a few digits, for scanning. The error of the second derivative is then that of its differences
+        over the inner and the outer nodes, which is more than that of the fit.
     """
     size = float(np.abs(x).max())
     if size == 0.0:
@@ -55,8 +57,13 @@ def along_line(
         return None if here is None else Line(np.zeros_like(here), np.zeros_like(here), 0.0, 0.0)
     radius = RADIUS * scale / size
     if rough:
-        once = _fit(jacobian, u, x, ROUGH * radius)
-        return None if once is None else Line(*once, 0.0, 0.0)
+        samples = _sampled(jacobian, u, x, ROUGH * radius, FEW)
+        if samples is None:
+            return None
+        inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * _nodes(FEW)[i]) for i in (1, 0))
+        return Line(
+            *_fitted(samples, ROUGH * radius), float(np.abs(inner - outer).max()) / (ROUGH * radius), 0.0
+        )
     best: Line | None = None
     narrow = _fit(jacobian, u, x, radius)
     for _ in range(14):
@@ -76,31 +83,46 @@ def along_line(
 def _fit(
     jacobian: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray, x: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    first, second = _weights()
+    samples = _sampled(jacobian, u, x, radius, NODES)
+    return None if samples is None else _fitted(samples, radius)
+
+
+def _sampled(
+    jacobian: Callable[[np.ndarray], np.ndarray | None],
+    u: np.ndarray,
+    x: np.ndarray,
+    radius: float,
+    count: int,
+) -> np.ndarray | None:
+    """The Jacobians at the nodes; None where one cannot be evaluated."""
     samples = []
-    for t in _nodes():
+    for t in _nodes(count):
         found = jacobian(u + radius * t * x)
         if found is None:
             return None
         samples.append(found)
-    values = np.array(samples)
-    shape = values.shape[1:]
-    flat = values.reshape(NODES, -1)
+    return np.array(samples)
+
+
+def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """First and second derivative at the middle."""
+    first, second = _weights(len(samples))
+    shape, flat = samples.shape[1:], samples.reshape(len(samples), -1)
     return (first @ flat).reshape(shape) / radius, (second @ flat).reshape(shape) / radius**2
 
 
 @cache
-def _nodes() -> np.ndarray:
+def _nodes(count: int) -> np.ndarray:
     """The zeros of the Chebyshev polynomial of this degree."""
-    return np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
+    return np.cos((2.0 * np.arange(count) + 1.0) * np.pi / (2 * count))
 
 
 @cache
-def _weights() -> tuple[np.ndarray, np.ndarray]:
+def _weights(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the samples in the first and second derivative at 0 of the polynomial through them, on [-1, 1]."""
     chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(_nodes(), NODES - 1))
-    unit = np.eye(NODES)
+    series = np.linalg.inv(chebyshev.chebvander(_nodes(count), count - 1))
+    unit = np.eye(count)
     first = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row)) for row in unit])
     second = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row, 2)) for row in unit])
     return first @ series, second @ series

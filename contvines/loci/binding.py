@@ -17,7 +17,7 @@ from ..continuation.binding import OPTIONS, copy_with
 from ..problems.kernels import Kernels, kernels_digest
 from ..problems.protocol import Problem
 from . import kernels as source
-from . import probing
+from . import probing, spanning
 
 HELPERS: tuple[Any, ...] = (
     probing.null_test,
@@ -26,8 +26,16 @@ HELPERS: tuple[Any, ...] = (
     probing.tests,
     probing.slopes_along,
     probing.frozen,
+    spanning.rotate,
+    spanning.turn,
+    spanning.parted,
+    spanning.plain_row,
+    spanning.solve,
+    spanning.span,
+    spanning.particular,
     source.close,
     source.renew,
+    source.worn,
 )
 NAMES = ("linearise", "bordered", "inspect", "assign", "flip", "transpose")
 _interpreted: dict[tuple[Any, ...], Kernels] = {}
@@ -63,7 +71,8 @@ def _compiled_once() -> Kernels:
     from .addresses import callers
 
     sources = [
-        Path(__file__).with_name(f"{name}.py") for name in ("kernels", "probing", "layout", "addresses")
+        Path(__file__).with_name(f"{name}.py")
+        for name in ("kernels", "probing", "spanning", "layout", "addresses")
     ]
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=6).hexdigest()
     return _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")

@@ -97,7 +97,7 @@ def _at_end(locus: Locus, point: PlanePoint) -> bool:
 
 
 def _along(plane: Plane, places: list[Place], look: Look, problem: LocusProblem) -> list[float]:
-    """A coefficient at all points, to a few digits where it is of third order."""
+    """A coefficient at all points, to a few digits."""
     values = []
     at: References | None = None
     for place in places:

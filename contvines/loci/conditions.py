@@ -74,11 +74,11 @@ def own_conditions(plane: Plane, locus: LocusProblem, at: References) -> list[Te
 def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False) -> Test | None:
     """The test function of something to look for; None where it cannot be asked here.
 
-    Coefficients of third order are computed to a few digits with ``rough``.
+    Coefficients are computed to a few digits with ``rough``.
     """
     plus, minus = at.plus, at.minus
     if look.test == "quadratic":
-        return lambda x: _bend(x, plus)
+        return lambda x: _bend(x, plus, rough)
     if look.test == "cubic":
         return lambda x: _forms(x, rough).cubic(-1.0).value
     if look.test == "lyapunov":
@@ -98,12 +98,14 @@ def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False
     return lambda x: x.pair(at.reference)[1] - look.value
 
 
-def _bend(plane: Plane, null: Null) -> float:
+def _bend(plane: Plane, null: Null, rough: bool = False) -> float:
     """The quadratic coefficient of a fold, along the null vector that goes with the reference; NaN if it is not known."""
     v, _ = plane.first.null(null.column, null.row)
-    forms = _forms(plane)
+    forms = _forms(plane, rough)
     found = forms.quadratic(v)
-    return found.value if found.error <= UNSURE * forms.size_of_quadratic(v) else np.nan
+    if found.error <= UNSURE * forms.size_of_quadratic(v):
+        return found.value
+    return _bend(plane, null) if rough else np.nan
 
 
 def _forms(plane: Plane, rough: bool = False) -> Forms:

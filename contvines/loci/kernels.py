@@ -14,10 +14,12 @@ Dynamical Equilibria, 2000, chapters 3 and 4). With borders b and c, M = [[F_u, 
     margin           one margin of admissibility
     pair             m1 m2 - 1 for the multipliers of a pair, l1 + l2 for eigenvalues of a flow
 
-Every solve is one elimination of the problem's own kernel with b in the place of F_p. What is left are two (at branch points
-three) directions in which F = 0 holds to first order; the tests are differentiated along these alone, by differences, and not
-again where Newton's method has hardly moved: the tests themselves stay exact, so nothing of the location is lost. The borders are renewed at each accepted point: c becomes the
-null vector, b the left one.
+Every solve is one elimination of the problem's own kernel with another column in the place of F_p. What is left are two (at branch
+points three) directions in which F = 0 holds to first order (:mod:`contvines.loci.spanning`) from the point at which the residuals of F are made up
+for. There the tests are evaluated, so that a Newton step has a residual g of the second order; they are differentiated along these directions alone, by
+differences. Directions and slopes are not worked out again where Newton's method has hardly moved: the residuals stay exact, so nothing of
+the location is lost. The borders are renewed after a few accepted points, sooner
+where the null vector turns: c becomes the null vector, b the left one.
 
 This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
 """
@@ -26,9 +28,6 @@ import math
 from typing import Any
 
 from .layout import (
-    AT_F,
-    AT_P,
-    AT_Q,
     BASE,
     BASE_F,
     BASE_Q,
@@ -43,12 +42,14 @@ from .layout import (
     FLIP_C,
     FLOW,
     FOLD,
+    KEPT,
     KIND,
+    KNOWN,
     LEFT,
     LINES,
+    LONGEST,
     MASKED,
     MULTIPLIERS,
-    NULL,
     PAIR,
     POINT,
     REFERENCE,
@@ -56,20 +57,24 @@ from .layout import (
     ROWS,
     SCALES,
     SECOND,
+    SERVED,
+    SIGN,
     SLOPES,
     SMALL,
     SOLUTIONS,
-    SPARE,
     STATE,
     STEEP,
+    TESTED,
     TRIAL,
     TRIAL_F,
+    TURNED,
     UNIT,
     VALUES,
     B,
     C,
 )
 from .probing import frozen, pair_of, slopes_along, tests
+from .spanning import particular, span
 
 # the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
 linearise: Any = None
@@ -83,49 +88,51 @@ transpose: Any = None
 def locus_linearise(data, U, q, work):
     """F, F_u, F_p, F_q and the tests at (U, q); see `linearise` in the protocol."""
     first, second, base = data[FIRST], data[SECOND], work[BASE]
-    F, Q, point, columns, solutions = work[BASE_F], work[BASE_Q], work[POINT], work[COLUMNS], work[SOLUTIONS]
-    borders, lines, values, residuals = work[BORDERS], work[LINES], work[VALUES], work[RESIDUAL]
+    F, Q, point, columns, directions = (
+        work[BASE_F],
+        work[BASE_Q],
+        work[POINT],
+        work[COLUMNS],
+        work[DIRECTIONS],
+    )
+    borders, values, residuals, kept = work[BORDERS], work[VALUES], work[RESIDUAL], work[KEPT]
+    state = work[STATE]
     n, size = F.shape[0], U.shape[0]
     kind, calls = data[KIND], data[CALLS]
     u, p = U[:n], data[UNIT] * U[n]
-    for i in range(size):
-        point[i] = U[i]
-    point[size] = q
-    assign(calls, second, first, p)
-    largest = linearise(calls, second, u, q, base)
-    if not largest < 1e300:
-        return math.inf
-    for i in range(n):
-        columns[1, i] = Q[i]
-    assign(calls, first, data[SECOND], q)
+    still = frozen(work, U, q)
+    if not still:
+        state[KNOWN] = min(state[KNOWN], 0.0)
+        assign(calls, second, first, p)
+        largest = linearise(calls, second, u, q, base)
+        if not largest < 1e300:
+            return math.inf
+        for i in range(n):
+            columns[1, i] = Q[i]
+    assign(calls, first, second, q)
     largest = linearise(calls, first, u, p, base)
     if not largest < 1e300:
         return math.inf
     for i in range(n):
-        columns[0, i] = data[UNIT] * Q[i]
         residuals[i] = F[i]
         if kind == BRANCH:
             residuals[i] += U[n + 1] * borders[B, i]
-    for i in range(n):
-        Q[i] = borders[B, i]
-        lines[0, i] = borders[C, i]
-    lines[0, n] = 0.0
-    for column in range(2):
+    if not still:
         for i in range(n):
-            F[i] = columns[column, i]
-        bordered(calls, first, base, lines[0], 0.0, solutions[AT_P + column], solutions[NULL])
-    if kind == FOLD:
-        values[0] = solutions[NULL, n]
-    elif kind == BRANCH:
-        values[0] = solutions[NULL, n]
-        values[1] = solutions[AT_P, n]
-    else:
-        tests(data, work, u, p, q, values)
+            columns[0, i] = data[UNIT] * Q[i]
+        span(data, work)
+    state[SIGN] = particular(data, work)
+    for i in range(size):
+        point[i] = U[i] + directions[0, i]
+    point[size] = q + directions[0, size]
+    tests(data, work, point[:n], data[UNIT] * point[n], point[size], values)
     for k in range(size - n):
         residuals[n + k] = values[k]
         if not abs(values[k]) < math.inf:
             return math.inf
         largest = max(largest, abs(values[k]))
+    for i in range(size):
+        kept[i] = residuals[i]
     return largest
 
 
@@ -159,60 +166,22 @@ def close(small, size):
 
 def locus_bordered(data, work, border, target, step, tangent):
     """Solve the bordered system of the locus; see `bordered` in the protocol."""
-    base = work[BASE]
-    F, Q, solutions, directions = work[BASE_F], work[BASE_Q], work[SOLUTIONS], work[DIRECTIONS]
-    borders, lines, residuals, slopes = work[BORDERS], work[LINES], work[RESIDUAL], work[SLOPES]
-    small, scales, steep = work[SMALL], work[SCALES], work[STEEP]
-    n, last = F.shape[0], work[POINT].shape[0] - 1
+    directions, residuals, kept, state = work[DIRECTIONS], work[RESIDUAL], work[KEPT], work[STATE]
+    small, steep, slopes = work[SMALL], work[STEEP], work[SLOPES]
+    n, last = work[BASE_F].shape[0], work[POINT].shape[0] - 1
     count = last - n  # tests; there are as many directions, and the one along the locus
-    for i in range(n):
-        F[i] = residuals[i]
-        Q[i] = borders[B, i]
-        lines[0, i] = borders[C, i]
-    lines[0, n] = 0.0
-    sign = bordered(data[CALLS], data[FIRST], base, lines[0], 0.0, solutions[AT_F], solutions[NULL])
-    # (u, p, e, q) = particular + dp first + dq second + a third, with one condition on (dp, dq, a)
-    for i in range(n):
-        for k in range(4):
-            directions[k, i] = solutions[k, i]
-    for k in range(4):
-        for i in range(n, last + 1):
-            directions[k, i] = 0.0
-    directions[AT_P, n] = 1.0
-    directions[AT_Q, last] = 1.0
-    pivots = 0.0  # which direction is expressed by the others
-    if data[KIND] == BRANCH:
-        for k in range(4):
-            directions[k, n + 1] = solutions[k, n]
-    else:
-        # the one with the largest part in the condition
-        pivot, largest = 1, -1.0
-        for k in range(1, 4):
-            part = abs(solutions[k, n])
-            if k == AT_P:
-                part *= scales[n]
-            elif k == AT_Q:
-                part *= scales[last]
-            if part > largest:
-                pivot, largest = k, part
-        by = solutions[pivot, n]
-        if by == 0.0:
-            by = 1e-300
-        if (by < 0.0) != (pivot == 2):
-            sign = -sign
-        for k in range(4):
-            if k == pivot:
-                continue
-            share = solutions[k, n] / by
-            for i in range(last + 1):
-                directions[k, i] -= share * directions[pivot, i]
-        for k in range(pivot, 3):
-            for i in range(last + 1):
-                directions[k, i] = directions[k + 1, i]
-        pivots = 1.0 * pivot
     total = count + 1
-    known = frozen(work, pivots)
-    slopes_along(data, work, directions[0], slopes)
+    own = True  # the residuals are those of the point, for which the particular direction stands
+    for i in range(last):
+        if residuals[i] != kept[i]:
+            own = False
+    for k in range(count):
+        slopes[k] = 0.0
+    if not own:
+        state[SIGN] = particular(data, work)
+        slopes_along(data, work, directions[0], slopes)
+        for i in range(last):
+            kept[i] = math.nan
     across = 0.0
     for i in range(last + 1):
         across += border[i] * directions[0, i]
@@ -222,7 +191,7 @@ def locus_bordered(data, work, border, target, step, tangent):
     small[count, 3] = target - across
     small[count, 4] = 1.0
     for column in range(total):
-        if not known:
+        if state[KNOWN] < 1.0:
             slopes_along(data, work, directions[1 + column], steep[column])
         for k in range(count):
             small[k, column] = steep[column, k]
@@ -230,10 +199,11 @@ def locus_bordered(data, work, border, target, step, tangent):
         for i in range(last + 1):
             along += border[i] * directions[1 + column, i]
         small[count, column] = along
+    state[KNOWN] = 1.0
     for i in range(total):
         for column in range(total, 3):
             small[i, column] = 0.0
-    sign *= close(small, total)
+    sign = state[SIGN] * close(small, total)
     for i in range(last + 1):
         step[i] = directions[0, i]
         tangent[i] = 0.0
@@ -272,23 +242,38 @@ def renew(data, work, b, c, null):
         b[i] = left[i] * rows[i] * rows[i] / size
 
 
+def worn(work, null):
+    """Whether borders are due: the null vector has turned away from c, or they have served a few points."""
+    state, scales = work[STATE], work[SCALES]
+    size = 0.0
+    for i in range(null.shape[0] - 1):
+        size += (null[i] / scales[i]) ** 2
+    state[SERVED] += 1.0
+    if state[SERVED] < LONGEST and size < TURNED * TURNED:
+        return False
+    state[SERVED] = 0.0
+    return True
+
+
 def locus_inspect(data, U, q, work, row):
     """Multipliers and margins of the problem, then of the locus: p within its bounds, and the pair still a pair.
 
-    The borders are renewed.
+    The borders are renewed where they are due.
     """
     first, base = data[FIRST], work[BASE]
     borders, solutions, reference = work[BORDERS], work[SOLUTIONS], work[REFERENCE]
     kind, multipliers = data[KIND], data[MULTIPLIERS]
     n = work[BASE_F].shape[0]
-    work[STATE][0] = -1.0  # slopes belong to the borders
-    if kind != BRANCH:  # there e is measured along b
-        renew(data, work, borders[B], borders[C], solutions[NULL])
-    if kind == FLIP:
-        flip(data[CALLS], first, base, -1.0)
-        renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[SPARE])
-        flip(data[CALLS], first, base, 1.0)
+    if kind in (FOLD, FLIP) and worn(work, solutions[TESTED]):
+        work[STATE][KNOWN] = min(work[STATE][KNOWN], 0.0)  # slopes belong to the borders
+        if kind == FOLD:
+            renew(data, work, borders[B], borders[C], solutions[TESTED])
+        else:
+            flip(data[CALLS], first, base, -1.0)
+            renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[TESTED])
+            flip(data[CALLS], first, base, 1.0)
     own = row.shape[0] - 3
+    assign(data[CALLS], first, data[SECOND], q)  # the tests have asked nearby
     inspect(data[CALLS], first, U[:n], data[UNIT] * U[n], base, row[:own])
     row[own] = U[n] - reference[3]
     row[own + 1] = reference[4] - U[n]

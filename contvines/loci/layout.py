@@ -32,9 +32,16 @@ FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW, UNIT = range(8)
     FROZEN,
     STEEP,
     STATE,
-) = range(25)
+    FRAME,
+    KEPT,
+) = range(27)
 
 STEP = 1e-7  # of the differences, relative to the scales of unknowns and parameters
 STILL = 1e-7  # relative distance within which slopes are not worked out again
-AT_F, AT_P, AT_Q, NULL, LEFT, SPARE = range(6)  # rows of SOLUTIONS
+ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of SOLUTIONS, the last one with another after it
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
+KNOWN, SIGN, ANGLE, SERVED = range(
+    4
+)  # entries of STATE; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
+LONGEST = 4  # points that borders serve
+TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more

@@ -19,6 +19,7 @@ from .layout import (
     FOLD,
     FROZEN,
     KIND,
+    KNOWN,
     LINES,
     MARGIN,
     MULTIPLIERS,
@@ -29,10 +30,10 @@ from .layout import (
     SECOND,
     SHIFTED,
     SOLUTIONS,
-    SPARE,
     STATE,
     STEP,
     STILL,
+    TESTED,
     TRIAL,
     TRIAL_F,
     TRIAL_Q,
@@ -117,11 +118,11 @@ def tests(data, work, u, p, q, values):
         return residual
     if kind == FOLD:
         values[0] = null_test(
-            calls, first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[SPARE]
+            calls, first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[TESTED]
         )
     elif kind == FLIP:
         values[0] = flipped_test(
-            calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[SPARE]
+            calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[TESTED]
         )
     elif kind == BRANCH:
         for i in range(n):
@@ -129,8 +130,8 @@ def tests(data, work, u, p, q, values):
             Q[i] = borders[B, i]
             lines[0, i] = borders[C, i]
         lines[0, n] = 0.0
-        bordered(calls, first, trial, lines[0], 0.0, lines[1], solutions[SPARE])
-        values[0] = solutions[SPARE, n]
+        bordered(calls, first, trial, lines[0], 0.0, lines[1], solutions[TESTED])
+        values[0] = solutions[TESTED, n]
         values[1] = lines[1, n]
     else:
         row = work[ROW]
@@ -164,19 +165,20 @@ def slopes_along(data, work, direction, slopes):
         slopes[k] = (slopes[k] - values[k]) / h
 
 
-def frozen(work, pivots):
-    """Whether the slopes along the directions are those of the last call, because the point has hardly moved; keeps the point if not.
+def frozen(work, U, q):
+    """Whether directions and slopes are those of the last call, because the point has hardly moved; keeps the point if not.
 
     Slopes are known to about STEP; a point that has moved less than STILL has them to that accuracy.
     """
-    point, kept, scales, state = work[POINT], work[FROZEN], work[SCALES], work[STATE]
-    still = state[0] == pivots
-    for i in range(point.shape[0]):
-        if still and not abs(point[i] - kept[i]) < STILL * max(scales[i], abs(point[i])):
+    kept, scales, state = work[FROZEN], work[SCALES], work[STATE]
+    last = U.shape[0]
+    still = state[KNOWN] > 0.0 and abs(q - kept[last]) < STILL * max(scales[last], abs(q))
+    for i in range(last):
+        if still and not abs(U[i] - kept[i]) < STILL * max(scales[i], abs(U[i])):
             still = False
     if still:
         return True
-    state[0] = pivots
-    for i in range(point.shape[0]):
-        kept[i] = point[i]
+    for i in range(last):
+        kept[i] = U[i]
+    kept[last] = q
     return False

@@ -10,7 +10,7 @@ import numpy as np
 from ..problems.protocol import Problem, ProblemDefaults
 from .binding import locus_kernels
 from .kinds import condition
-from .layout import BRANCH, FLIP, MARGIN, PAIR
+from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
 
 LEAST = (
     1e-6  # of its interval: a second parameter that starts closer to zero than this says nothing of its size
@@ -47,6 +47,8 @@ class Work(NamedTuple):
     frozen: np.ndarray
     steep: np.ndarray
     state: np.ndarray
+    frame: np.ndarray
+    kept: np.ndarray
 
 
 class LocusProblem(ProblemDefaults):
@@ -197,7 +199,9 @@ class LocusProblem(ProblemDefaults):
             rows=self.rows,
             frozen=np.zeros(self.dimension + 1),
             steep=np.zeros((3, max(tests, 2))),
-            state=np.full(1, -1.0),
+            state=np.array([-1.0, 1.0, 0.0, LONGEST]),
+            frame=np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n),
+            kept=np.zeros(self.dimension),
         )
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:

@@ -9,6 +9,8 @@ from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
 from orbits.simulation.trajectory import TWO_PI
 
 ALIKE = 1e-7
+PATIENT = 2  # steps that do not make the gap smaller
+SHRINKS = 0.5  # of steps from then on
 NO_SPEED = 1e-7  # of the machine's own: a touch, not an impact
 AT_ONCE = 1e-6  # phase from a touch to the stick that follows it
 _MIRROR = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
@@ -29,6 +31,7 @@ def polish(
     """
     node = nodes[0].copy()
     best, error, matrix = nodes, np.inf, None
+    step, failures = np.full(len(node), np.inf), 0
     for _ in range(40):  # a handful as a rule; near a pitchfork or fold each one gains only a factor
         there = go_round(engine, params, codes, modes, node)
         if there.message:
@@ -39,8 +42,10 @@ def polish(
         if size < error:
             error = size
             best = np.concatenate([node[None, :], there.nodes[:-1]])
-        else:
+        elif failures == PATIENT:
             break
+        else:
+            failures += 1
         if size < 3e-15:
             break
         if matrix is None or size > 1e-11:
@@ -48,8 +53,11 @@ def polish(
         if matrix is None:
             break
         left = np.eye(len(node)) - matrix
-        step = np.linalg.lstsq(left, gap, rcond=1e-7)[0]
+        before, step = float(np.abs(step).max()), np.linalg.lstsq(left, gap, rcond=1e-7)[0]
         if not np.all(np.isfinite(step)) or np.abs(step).max() > 0.1:
+            break
+        # beside a bifurcation the gap may grow at first: what a step along the slow direction leaves is quick to close, but wider
+        if failures and np.abs(step).max() > SHRINKS * before:
             break
         node = node + step
     matrix = monodromy(engine, params, codes, modes, best[0])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -17,24 +17,25 @@ from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends_to
+from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
     SIZES,
     Grown,
     Place,
     grown,
     margins_of,
-    parameter_unit,
     placed,
     proposals,
     turned,
 )
 from orbits.borders.rewriting import Edit, edits_at
-from orbits.borders.rounds import choices, rounds_at
+from orbits.borders.rounds import rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
 from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
 from orbits.cycles.kernels import assemble
+from orbits.cycles.rounds import MOST, choices, escape
 from orbits.cycles.solution import Solution
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of
@@ -42,7 +43,10 @@ from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import polish
 
 BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
-ROUNDS = 8  # up to so many rounds of a cycle are joined to one at a border
+AWAY = (
+    1e-6,
+    1e-7,
+)  # of the parameter's unit: how far from a border simulation begins, the second where the first finds nothing
 NEARER = (
     0.3,
     0.1,
@@ -133,14 +137,14 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
     """
     problem, _, p, index, orbit, edits = border
     known = [rounds_at(problem, orbit, p, edit, beside) for edit in edits]
-    hopeless = [set() if rounds is None else rounds.hopeless(ROUNDS) for rounds in known]
-    if hopeless and all(len(no) == len(choices(ROUNDS)) for no in hopeless):
+    hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
+    if hopeless and all(len(no) == len(choices(MOST)) for no in hopeless):
         return
     wider, whole = _repeated(problem, orbit, 2)
     first = edits_at(whole, index, problem.length)
     if [edit.change for edit in first] != [edit.change for edit in edits]:
         hopeless = [set() for _ in first]
-    for rounds in range(2, ROUNDS + 1):
+    for rounds in range(2, MOST + 1):
         for changed in (1, rounds - 1) if rounds > 2 else (1,):
             wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
             if not wanted:
@@ -156,7 +160,7 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
                 continue
             if not _followed(other, v, q, there):
                 continue
-            what = _escape(problem, rounds)
+            what = escape(problem.symmetric, rounds)
             yield Seed(
                 other, v, q, tangent, "border", f"{note}: {what}, the word becomes {other.spelling}", False
             )
@@ -188,14 +192,6 @@ def _grown_in(
         if found is not None:
             return found, edit.change.what.value
     return None
-
-
-def _escape(problem: CycleProblem, rounds: int) -> str:
-    if rounds == 2:
-        return f"the {'symmetry breaks' if problem.symmetric else 'period doubles'} at the border"
-    if problem.symmetric and rounds % 2 == 0:
-        return f"at the border the symmetry breaks and the period becomes {rounds // 2} times as long"
-    return f"at the border the period becomes {rounds} times as long"
 
 
 def _sides(
@@ -235,8 +231,8 @@ def _simulated(
     engine = stepper(problem.model.name)
     here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
     place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
-    for side in (1.0, -1.0):
-        q = p + side * 1e-6 * parameter_unit(problem, p)
+    for away, side in product(AWAY, (1.0, -1.0)):
+        q = p + side * away * parameter_unit(problem, p)
         params = problem.values(q)
         state = state_of(
             engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
@@ -260,18 +256,21 @@ def _simulated(
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
         other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
-        if not tends_to(orbit, _nearer(other, v, q, p), found):
+        nearer = _nearer(other, v, q, p)
+        if nearer is None or not tends_to(orbit, nearer, found):
             continue  # an attractor somewhere else: nothing joins it to the border
         yield other, v, q, None, "the simulator goes on"
 
 
-def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solution:
-    """The orbit at q, followed towards the border at p as far as it can be solved for."""
+def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solution | None:
+    """The orbit at q, followed towards the border at p as far as it can be solved for; None if it stops being real on the way."""
     found = problem.orbit(u, q)
     for part in NEARER:
         there = p + part * (q - p)
         u, residual = solved_at(problem.equations, u, there)
         if not residual < 1e-10:
             break
+        if margins_of(problem, u, there).min() < REAL:
+            return None
         found = problem.orbit(u, there)
     return found

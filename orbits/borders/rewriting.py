@@ -7,7 +7,6 @@ At the border the old and the new description are the same motion, so an inserte
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +20,7 @@ from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
 from orbits.words import Word
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT
-from orbits.words.rewriting import Watch, applied, changes_at, spliced
+from orbits.words.rewriting import Watch, applied, changes_at, later, spliced
 
 NO_SPEED = 1e-7  # an impact slower than this vanishes
 FIRST = 2e-3  # size of what grows from nothing: radians of phase, or speed
@@ -38,22 +37,10 @@ class Edit(NamedTuple):
         """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
         if rounds == 0:
             return self
-        change, places, alphabet = self.change, rounds * problem.length, problem.word.alphabet
-        nodes, events, modes = self.nodes.copy(), change.events, change.modes
-        if problem.symmetric and rounds % 2:
-            nodes = -nodes
-            events = tuple(alphabet.images[text] for text in events)
-            modes = tuple(alphabet.mirrored_mode(mode) for mode in modes)
+        turned = problem.symmetric and rounds % 2 == 1
+        nodes = -self.nodes if turned else self.nodes.copy()
         nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
-        spots = tuple(
-            spot._replace(
-                node=None if spot.node is None else spot.node + places,
-                clock=None if spot.clock is None else spot.clock + places,
-            )
-            for spot in change.spots
-        )
-        start, stop = change.start + places, change.stop + places
-        return Edit(replace(change, start=start, stop=stop, events=events, modes=modes, spots=spots), nodes)
+        return Edit(later(self.change, rounds * problem.length, problem.word.alphabet, turned), nodes)
 
 
 class _Touch(NamedTuple):

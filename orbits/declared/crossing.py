@@ -21,6 +21,7 @@ from orbits.declared.edits import edits_at
 from orbits.declared.margins import per_node
 from orbits.declared.neighbours import Found, grown, margins_of
 from orbits.declared.orbit import DeclaredOrbit
+from orbits.declared.rounds import escapes
 from orbits.declared.solving import SOLVED, newton
 from orbits.declared.stepper import SimulationError, Stepper
 from orbits.declared.system import DeclaredSystem
@@ -28,6 +29,7 @@ from orbits.protocol import Seed
 
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border
 CLOSE = 0.05  # of one that goes on from the border
+BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
 ROOM = 4  # events that may stand before that of the margin
 
 
@@ -35,7 +37,10 @@ def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
     """Seeds of the branches on the other side of a border (as `orbits.borders.crossing.cross`)."""
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     index = int(point.margin_index)
-    old_side = _real_side(problem, u, p, np.asarray(point.tangent, dtype=float), index)
+    tangent_here = np.asarray(point.tangent, dtype=float)
+    found = [_real_part(problem, u, p, tangent_here, index, length) for length in BESIDE]
+    nearby = [side for side in found if side is not None]
+    old_side = 0.0 if found[0] is None else float(np.sign(found[0][1] - p))
     seeds = []
     for other, v, q, tangent, note in (*proposals(problem, u, p, index), *_simulated(problem, u, p)):
         if not _followed(DeclaredOrbit.of(other, v, q)):
@@ -46,7 +51,7 @@ def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
         text = f"{note}: {kind}, the word becomes {smallest.word.text or 'free of events'}"
         seeds.append(Seed(smallest, v, q, tangent, "border", text, persistence))  # type: ignore[arg-type]
         break
-    return seeds + list(_escapes(problem, u, p, index))
+    return seeds + list(_escapes(problem, u, p, index, nearby))
 
 
 def _followed(orbit: DeclaredOrbit) -> bool:
@@ -130,45 +135,34 @@ def _unslipped(found: Found) -> Found:
     return _rotated(found, len(word) - 1) if slips else found
 
 
-def _real_side(problem: DeclaredSystem, u: np.ndarray, p: float, tangent: np.ndarray, index: int) -> float:
-    """Sign of the parameter's change from the border into the branch's real part."""
-    length = 1e-4 / max(float(np.abs(tangent).max()), 1e-12)
+def _real_part(
+    problem: DeclaredSystem, u: np.ndarray, p: float, tangent: np.ndarray, index: int, length: float
+) -> tuple[np.ndarray, float] | None:
+    """A solution (u, p) in the branch's real part, close to the border."""
+    length /= max(float(np.abs(tangent).max()), 1e-12)
     sides = []
     for sign in (1.0, -1.0):
         v, q, residual, _ = newton(
             problem, u + sign * length * tangent[:-1], p + sign * length * float(tangent[-1]), tangent
         )
         if residual < SOLVED:
-            sides.append((float(margins_of(problem, v, q)[index]), q - p))
-    return float(np.sign(max(sides)[1])) if sides else 0.0
+            sides.append((v, q))
+    return max(sides, key=lambda side: float(margins_of(problem, *side)[index]), default=None)
 
 
-def _escapes(problem: DeclaredSystem, u: np.ndarray, p: float, index: int) -> Iterator[Seed]:
-    """Orbits of less symmetry that leave at the border itself: the change happens in one half only, or every other time."""
+def _escapes(
+    problem: DeclaredSystem, u: np.ndarray, p: float, index: int, nearby: list[tuple[np.ndarray, float]]
+) -> Iterator[Seed]:
+    """Orbits of less symmetry or longer period that leave at the border itself."""
     if not len(problem.word):
         return
-    problem, u, index = turned(problem, u, p, index, usual_room(problem, index))
-    orbit = DeclaredOrbit.of(problem, u, p)
-    if problem.symmetric:
-        wider, what = (
-            problem.sibling(problem.word, problem.periods, False),
-            "the symmetry breaks at the border",
-        )
-    else:
-        orbit = orbit.repeat(2)
-        wider = problem.sibling(orbit.word, orbit.periods, False)
-        what = "the period doubles at the border"
-    for edit in edits_at(orbit, index):
-        found = grown(wider, orbit, p, [edit])
-        if found is None:
-            continue
-        other, v, q, tangent = found
-        there = DeclaredOrbit.of(other, v, q)
-        if there.symmetric or len(there.root().word) != len(other.word) or not _followed(there):
-            continue
-        note = f"{edit.change.what.value}: {what}, the word becomes {other.word.text}"
-        yield Seed(other, v, q, tangent, "border", note, False)  # type: ignore[arg-type]
-        return
+    room = usual_room(problem, index)
+    beside = [(*turned(problem, v, q, index, room)[:2], q) for v, q in nearby]
+    read, there, place = turned(problem, u, p, index, room)
+    for (other, v, q, tangent), note in escapes(read, there, p, place, beside):
+        if _followed(DeclaredOrbit.of(other, v, q)):
+            text = f"{note}, the word becomes {other.word.text}"
+            yield Seed(other, v, q, tangent, "border", text, False)  # type: ignore[arg-type]
 
 
 def _simulated(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from orbits.contacts.changes import Change, Grows, What
@@ -20,8 +22,42 @@ GROWING = 1e-4  # least growth of the margins with the distance from a border
 Found = tuple[DeclaredSystem, np.ndarray, float, np.ndarray]
 
 
-def grown(problem: DeclaredSystem, orbit: DeclaredOrbit, p: float, edits: list[Edit]) -> Found | None:
-    """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges."""
+def grown(
+    problem: DeclaredSystem,
+    orbit: DeclaredOrbit,
+    p: float,
+    edits: list[Edit],
+    ways: Sequence[tuple[float, ...]] = SIZES,
+    steady: bool = False,
+) -> Found | None:
+    """Solve for the new word with the vanishing quantity at small sizes; the smallest that converges.
+
+    None if there is no real orbit, nor, if `steady`, if it is unstable at all of the sizes.
+    """
+    start = with_edits(problem, orbit, edits)
+    if start is None:
+        return None
+    other, guess, first, change = start
+    if change.grows is Grows.MARGIN:
+        found = _beside(other, guess, p)
+        return None if found is None or (steady and not stable_at(found)) else found
+    for sizes in ways:
+        climbed = climb(other, guess, first, change, p, sizes)
+        if (
+            climbed and steady
+        ):  # beside a graze the multipliers grow without bound: stable from a flip close to it on
+            climbed = [found for found in climbed if stable_at(found)]
+            if not climbed:
+                return None
+        if climbed and margins_of(*climbed[-1][:3]).min() >= REAL:
+            return climbed[-1]
+    return None
+
+
+def with_edits(
+    problem: DeclaredSystem, orbit: DeclaredOrbit, edits: list[Edit]
+) -> tuple[DeclaredSystem, np.ndarray, int, Change] | None:
+    """The problem of the new word, its unknowns at the border, and where what grows stands, with its change; None for no word."""
     length = problem.length
     forced = problem.forced
     empty = not len(problem.word)
@@ -48,14 +84,13 @@ def grown(problem: DeclaredSystem, orbit: DeclaredOrbit, p: float, edits: list[E
         return None
     if not len(word):
         nodes = _strobed(orbit)
-    guess = np.ascontiguousarray(nodes, dtype=float).ravel()
-    if changes[0].grows is Grows.MARGIN:
-        return _beside(other, guess, p)
-    for sizes in SIZES:
-        found = _climb(other, guess, first, changes[0], p, sizes)
-        if found is not None and margins_of(found[0], found[1], found[2]).min() >= REAL:
-            return found
-    return None
+    return other, np.ascontiguousarray(nodes, dtype=float).ravel(), first, changes[0]
+
+
+def stable_at(found: Found) -> bool:
+    """Whether all multipliers of a solution lie inside the unit circle."""
+    values = examined(found[0], found[1], found[2])[1]
+    return bool(np.all(np.abs(found[0].to_multipliers(values)) < 1.0))
 
 
 def margins_of(problem: DeclaredSystem, u: np.ndarray, p: float) -> np.ndarray:
@@ -102,12 +137,12 @@ def _strobed(orbit: DeclaredOrbit) -> np.ndarray:
     return np.array([[0.0, *(table[name][k] for name in orbit.machine.states)]])
 
 
-def _climb(
+def climb(
     other: DeclaredSystem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
-) -> Found | None:
-    """Solve with what grows beyond the border held at each of the sizes in turn; the last that converges."""
+) -> list[Found]:
+    """Solve with what grows beyond the border held at each of the sizes in turn, until one does not converge."""
     d, size = other.size + 1, other.dimension
-    best = None
+    found: list[Found] = []
     u, q = guess.copy(), p
     for wanted in sizes:
         border = np.zeros(size + 1)
@@ -132,8 +167,8 @@ def _climb(
         if not residual < SOLVED or abs(q_new - p) > NEAR * max(1.0, abs(p)):
             break
         u, q = trial, q_new
-        best = (other, u.copy(), q, tangent / np.abs(tangent).max())
-    return best
+        found.append((other, u.copy(), q, tangent / np.abs(tangent).max()))
+    return found
 
 
 def _approach(

@@ -14,6 +14,9 @@ import numpy as np
 
 from orbits.machines.base import ParameterError
 
+NEAR, WIDEST = 1e-6, 0.1  # steps of differences, as parts of the limits' span
+AGREEING = 0.3  # relative difference of slopes from one step and from four times that, where data are smooth
+
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
@@ -99,17 +102,18 @@ def fit(
     data, unknowns = found.fun.size - spent, len(names)
     if data <= unknowns:
         raise ParameterError(f"{data} data do not fix {unknowns} parameters: measure more, or estimate fewer")
-    jacobian = _slopes(residuals, found.x, low, high)
+    scatter = math.sqrt(float(found.fun @ found.fun) / (data - unknowns))
+    wide = float(t.ppf(0.5 + 0.5 * confidence, data - unknowns))
+    jacobian = _effects(residuals, found.x, low, high, wide * scatter)
     _, sizes, axes = np.linalg.svd(jacobian * span, full_matrices=False)
     if sizes[-1] <= 1e-10 * sizes[0]:
         flat = names[int(np.argmax(np.abs(axes[-1])))]
         raise ParameterError(
             f"the data do not depend on {flat} (alone): leave it out, or measure something that does"
         )
-    scatter = math.sqrt(float(found.fun @ found.fun) / (data - unknowns))
     covariance = scatter**2 * np.linalg.inv(jacobian.T @ jacobian)
     deviations = np.sqrt(np.diag(covariance))
-    reach = float(t.ppf(0.5 + 0.5 * confidence, data - unknowns)) * deviations
+    reach = wide * deviations
     return Calibration(
         dict(zip(names, map(float, found.x))),
         {
@@ -123,14 +127,41 @@ def fit(
     )
 
 
-def _slopes(
-    residuals: Callable[[np.ndarray], np.ndarray], x: np.ndarray, low: np.ndarray, high: np.ndarray
+def _effects(
+    residuals: Callable[[np.ndarray], np.ndarray],
+    x: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    scatter: float,
 ) -> np.ndarray:
-    """Central differences, shape (m, n), with steps of a millionth of the limits' span; at a limit to one side."""
+    """How the residuals change per change of a parameter, shape (m, n).
+
+    By derivatives where the data are smooth. Responses also jump from one motion to another, and jitter where the motion does not
+    settle: there a derivative says nothing, or much too much. Where differences over four times the step do not agree, steps are
+    widened until they reach as far as a residual of size `scatter` lets the parameter go.
+    """
     columns = []
     for j in range(x.size):
-        below, above = x.copy(), x.copy()
-        step = 1e-6 * (high[j] - low[j])
-        below[j], above[j] = max(x[j] - step, low[j]), min(x[j] + step, high[j])
-        columns.append((residuals(above) - residuals(below)) / (above[j] - below[j]))
+        step = NEAR * (high[j] - low[j])
+        slope = _slope(residuals, x, j, step, low, high)
+        while step < WIDEST * (high[j] - low[j]) and np.linalg.norm(slope) * step > scatter:
+            wider = _slope(residuals, x, j, 4.0 * step, low, high)
+            if np.linalg.norm(wider - slope) < AGREEING * np.linalg.norm(slope):
+                break
+            step, slope = 4.0 * step, wider
+        columns.append(slope)
     return np.column_stack(columns)
+
+
+def _slope(
+    residuals: Callable[[np.ndarray], np.ndarray],
+    x: np.ndarray,
+    j: int,
+    step: float,
+    low: np.ndarray,
+    high: np.ndarray,
+) -> np.ndarray:
+    """Central difference with respect to parameter j; at a limit to one side."""
+    below, above = x.copy(), x.copy()
+    below[j], above[j] = max(x[j] - step, low[j]), min(x[j] + step, high[j])
+    return (residuals(above) - residuals(below)) / (above[j] - below[j])

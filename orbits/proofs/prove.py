@@ -163,7 +163,8 @@ def prove_special(
             )
         reality = examine(motif, p | varying.at(extras[0]), inside, zero)
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
-        chain = crossing(motif, p, varying, z, e[0], at, turn if kind == "fold" else None)
+        turning = turn if kind == "fold" else None
+        chain = crossing(motif, p, varying, z, e[0], at, turning, pair=kind == "neimark-sacker")
         chain[1]["kind"] = kind if vanishing is None else "border"
         if vanishing is not None:
             chain[1]["conditions"] = conditions(motif, vanishing)

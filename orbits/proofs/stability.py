@@ -22,6 +22,10 @@ from orbits.proofs.obstacles import Obstacle, Remedy, Step
 
 SQUARINGS = 26
 LARGE = 1e12
+ROUGH = 1e-3  # relative error of a determinant that another arithmetic finds apart from 0, too
+CRITICAL = 1e-9  # multipliers this close to the circle are told from it by eigenvectors of
+DIGITS = 60  # digits
+ROUNDING = 1e-20  # share of a multiplier's imaginary part that is none
 MIXED = 1e3  # condition from which on eigenvectors are nearly parallel
 
 
@@ -53,6 +57,20 @@ def _verdict(product: Any, squarings: int = SQUARINGS) -> bool | None:
             return True
         product = product * product
     return None
+
+
+def away_from_one(system: System, nodes: Sequence[Sequence[Any]]) -> bool:
+    """Whether the plain product of the maps, as a checker forms it, shows that no multiplier is 1 or -1, with room to spare."""
+    try:
+        factors = factor_matrices(system, nodes)
+    except ZeroDivisionError:
+        return False
+    product, size = factors[0], factors[0].nrows()
+    for factor in factors[1:]:
+        product = factor * product
+    one = library().arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    both = [(one - product).det(), (one + product).det()]
+    return all(float(det.rad()) < ROUGH * abs(float(det.mid())) for det in both)
 
 
 def _definite(matrix: Any) -> bool:
@@ -123,12 +141,13 @@ def stable_in_basis(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[boo
 
 
 def basis_texts(system: System, nodes: Sequence[Sequence[Any]]) -> list[list[str]]:
-    """That basis alone."""
+    """That basis alone; of eigenvectors with many digits where multipliers hardly lie on one side of the circle."""
     try:
-        bases = _bases(_middle(factor_matrices(system, nodes)))
+        product = _middle(factor_matrices(system, nodes))
     except ZeroDivisionError:
         return []
-    basis = _written(bases[0]) if bases else []
+    bases = _bases(product)
+    basis = _eigenvectors(product) or _written(bases[0]) if bases else []
     if basis and system.motif.impact_free:  # the direction of the shift, which takes w's place, is left open
         basis = [[*row[:1], "0", *row[1:]] for row in basis]
         basis.insert(1, ["0", "1", *("0" for _ in basis[0][2:])])
@@ -140,6 +159,28 @@ def _middle(factors: Sequence[Any]) -> Any:
     for factor in factors[1:]:
         product = (factor.mid() * product).mid()
     return product
+
+
+def _eigenvectors(product: Any) -> list[list[str]]:
+    """Eigenvectors, real and imaginary parts of complex ones, at the precision in force; empty if none is near the circle."""
+    flint = library()
+    try:
+        values, vectors = flint.acb_mat(product).eig(right=True)
+    except ValueError:  # multiple ones
+        return []
+    if not any(abs(abs(complex(value)) - 1.0) < CRITICAL for value in values):
+        return []
+    columns = []
+    for j in sorted(range(len(values)), key=lambda j: -abs(complex(values[j]))):
+        vector = [vectors[i, j] for i in range(len(values))]
+        angle = complex(values[j]).imag
+        if abs(angle) < ROUNDING * abs(complex(values[j])):
+            columns.append([entry.real for entry in vector])
+        elif angle > 0.0:
+            columns += [[entry.real for entry in vector], [entry.imag for entry in vector]]
+    if len(columns) != len(values):
+        return []
+    return [[entry.mid().str(DIGITS, radius=False) for entry in row] for row in zip(*columns)]
 
 
 def _written(basis: Any) -> list[list[str]]:

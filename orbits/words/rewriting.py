@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from enum import IntEnum
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -80,6 +81,23 @@ def applied(word: W, changes: Sequence[Change]) -> tuple[W, int]:
     if not events and len(word):  # nothing is left: what the contacts did before goes on
         return word.like((), (word.mode(first - 1),)), 0
     return word.like(events, modes), first
+
+
+def later(change: Change, places: int, alphabet: Any, turned: bool) -> Change:
+    """The same change so many events later, of the mirror image if it is turned."""
+    events, modes = change.events, change.modes
+    if turned:
+        events = tuple(alphabet.images[text] for text in events)
+        modes = tuple(alphabet.mirrored_mode(mode) for mode in modes)
+    spots = tuple(
+        spot._replace(
+            node=None if spot.node is None else spot.node + places,
+            clock=None if spot.clock is None else spot.clock + places,
+        )
+        for spot in change.spots
+    )
+    start, stop = change.start + places, change.stop + places
+    return replace(change, start=start, stop=stop, events=events, modes=modes, spots=spots)
 
 
 def spliced(

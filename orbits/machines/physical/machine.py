@@ -20,7 +20,7 @@ from orbits.machines.base import Model
 from orbits.machines.parameters import POSITIVE, Parameter
 from orbits.machines.path import along
 from orbits.machines.physical import units
-from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent
+from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
 
 HEAVY = 0.5  # share of the oscillator's mass from which on an absorber is none
 
@@ -78,7 +78,8 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
     for key, value in given.items():
         if key not in known:
             raise QuantityError(
-                f"{section}{key} = {value!r}: the machine {name!r} has no such quantity; it has {', '.join(known)}"
+                f"{section}{key} = {value!r}: the machine {name!r} has no such quantity{near_quantity(key, known)}; "
+                f"it has {', '.join(known)}"
             )
         if isinstance(value, str) and key in base.parameter_names:
             value = base.parameter(key).words.get(value, value)

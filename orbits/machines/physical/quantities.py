@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from contvines_ground.near_names import did_you_mean
 from orbits.machines.base import ParameterError
 
 
@@ -142,3 +143,25 @@ def independent(quantities: Mapping[str, Quantity], given: Collection[str]) -> t
         else:
             chosen[choice] = quantity
     return tuple(chosen.values())
+
+
+# what people call them elsewhere
+OTHERWISE = {
+    "acceleration": "base_acceleration",
+    "amplitude": "base_amplitude",
+    "cavity": "half_width",
+    "clearance": "half_width",
+    "excitation_frequency": "frequency",
+    "force": "force_amplitude",
+    "gap": "half_width",
+    "omega": "frequency",
+    "rpm": "frequency",
+    "speed": "frequency",
+    "spring": "stiffness",
+}
+
+
+def near_quantity(given: str, known: Collection[str]) -> str:
+    """ " (did you mean ...?)" where a quantity is called otherwise, or nearly so, else empty."""
+    other = OTHERWISE.get(given.lower())
+    return f" (did you mean {other!r}?)" if other in known else did_you_mean(given, known)

@@ -23,6 +23,16 @@ _KINDS = {
     "s": "time",
     "rad": "angle",
 }
+_USUAL = {
+    "kg": ("g", "kg", "mg"),
+    "m": ("mm", "cm", "um", "m"),
+    "Hz": ("Hz", "kHz", "rpm", "rad/s"),
+    "N/m": ("N/m", "N/mm", "kN/m"),
+    "N": ("N", "mN", "kN"),
+    "m/s^2": ("m/s^2", "mm/s^2"),
+    "s": ("s", "ms"),
+    "rad": ("rad", "deg"),
+}
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:[^\W\d]|%).*?|)\s*")
 
 
@@ -104,13 +114,20 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
     if factor is None:
         kind = _KINDS.get(quantity.unit, quantity.unit)
         other = next((name for known, name in _KINDS.items() if size(unit, known) is not None), None)
-        what = (
-            f"{unit!r} is the unit of {_with_article(other)}"
-            if other
-            else f"the unit {unit!r} is not one of {_with_article(kind)}"
-        )
+        meant = _meant(unit, quantity)
+        if other is None:
+            raise QuantityError(f"{shown}: {unit!r} is no unit of {_with_article(kind)}{meant}; {would}")
+        what = f"{unit!r} is the unit of {_with_article(other)}{meant}"
         raise QuantityError(f"{shown}: {what}, but {quantity.name} is {_with_article(kind)}; {would}")
     return _finite(quantity, number, shown, would), unit
+
+
+def _meant(unit: str, quantity: Quantity) -> str:
+    """ " (did you mean ...?)" where a usual unit differs in capitals or in one letter, else empty."""
+    usual = [unit_of(quantity), *_USUAL.get(quantity.unit, ())]
+    alike = [one for one in usual if one.lower() == unit.lower()]
+    alike += [one for one in usual if len(one) == len(unit) and sum(map(str.__ne__, one, unit)) == 1]
+    return f" (did you mean {alike[0]!r}?)" if alike else ""
 
 
 def _with_article(kind: str) -> str:

@@ -62,9 +62,26 @@ def test_basins_tell_their_shares_in_a_line_in_lines_and_in_a_table():
     lines = str(found).splitlines()
     low, high = found.interval(0)
     assert lines[0] == "400 starts in the plane x, y at p = 0.5"
-    assert lines[1].split()[:3] == ["LR", "k=1", "75.00%"] and f"{low:.2%} to {high:.2%}" in lines[1]
-    assert lines[2].split()[:2] == ["escaped", "25.00%"]
+    assert lines[2].split() == ["motion", "periods", "share", "95", "%", "interval"]
+    assert lines[3].split()[:3] == ["LR", "k=1", "75.00%"] and f"{low:.2%} to {high:.2%}" in lines[3]
+    assert lines[4].split()[:2] == ["escaped", "25.00%"] and len(lines) == 7
     assert found._repr_html_().count("<tr>") == 3 and "25.00%" in found._repr_html_()
+
+
+@pytest.mark.parametrize("width", [60, 80, 200])
+def test_the_table_of_basins_fits_its_terminal(width, monkeypatch):
+    found = plane(np.arange(400).reshape(20, 20) % 2, np.zeros((20, 20), bool))
+    words = ("(LtRLttR)^64", "LRttLRttLRtt")
+    found.attractors = [Attractor(0.5, w, 12, "periodic", None, 0.5, mirror_share=0.2) for w in words]
+    for place in ("coexistence.table", "text_table"):
+        monkeypatch.setattr(f"contvines.{place}.terminal_width", lambda: width)
+    lines = str(found).splitlines()
+    assert max(map(len, lines)) <= width
+    for word in words:
+        (row,) = [line for line in lines if word in line]
+        assert width == 60 or (row.split()[:3] == [word, "k=12", "50.00%"] and row.endswith("20.00%"))
+    if width == 60:  # a line for each cell
+        assert sum("k=12" in line for line in lines) == sum("20.00%" in line for line in lines) == 2
 
 
 def test_a_motion_has_the_same_word_in_basins_as_on_the_graph():

@@ -84,7 +84,7 @@ def test_start_replaces_what_the_model_says_of_the_same_thing():
         ({"continue__within": ["7 mm", "8 Hz"]}, "[continue] within[0] = '7 mm': 'mm' is the unit of a length"),
         ({"continue__within": ["8 Hz", "7 Hz"]}, "is reversed"),
         ({"continue__within": ["7 Hz"]}, "[continue] within = "),
-        ({"continue__parameter": "speed"}, "has no such quantity"),
+        ({"continue__parameter": "speed"}, "has no such quantity (did you mean 'frequency'?); it has"),
         ({"model__halfwidth": "3 mm"}, "there is no such quantity (did you mean 'half_width'?)"),
         ({"model__stiffness": "9 kN/m"}, "natural_frequency and stiffness say the same thing twice"),
         ({"model__name": "pendulum"}, "'pendulum'"),
@@ -95,6 +95,17 @@ def test_bad_studies_get_a_sentence(change, says):
     with pytest.raises(StudyError) as caught:
         check_study(nested(**change))
     assert says in str(caught.value)
+
+
+@pytest.mark.parametrize("within", [["7 mm", "8 Hz"], ["7 Hz", "8 mm"], ["7 Hy", "8 Hz"]])
+def test_an_interval_in_a_wrong_unit_is_refused_once(within):
+    wrong = next(text for text in within if not text.endswith("Hz"))
+    with pytest.raises(StudyError) as caught:
+        check_study(nested(continue__within=within))
+    said = str(caught.value)
+    assert said.count(f"= {wrong!r}") == 1 and said.count("within") == 1 and "8 Hz" in said.split(wrong)[1], (
+        said
+    )
 
 
 def test_tables_json_and_csv_speak_the_study_s_units(tmp_path, monkeypatch, capsys):

@@ -137,3 +137,18 @@ def test_what_is_proved_is_marked_in_tables_pictures_and_the_report(kept, capsys
     told = contents(graph, "marked.vines")
     assert [branch["proof"] for branch in told["branches"]] == ["0.55..0.57 real, stable"]
     assert next(point for point in told["special"] if point["label"] == "SB1")["proof"] == "proved"
+
+
+def test_points_of_the_response_are_verified_where_the_branch_bends_and_words_are_long(tmp_path, capsys):
+    """Pairs that cross the circle, folds and doublings of 2 to 8 events: by another arithmetic, tile and all."""
+    path = tmp_path / "f.vines"
+    assert run(capsys, "diagram", STUDY.with_name("frequency.toml"), "-o", path, "--quiet")[0] == 0
+    labels = [
+        label
+        for kind in ("neimark-sacker", "fold", "period-doubling")
+        for label in (point.label for point in cv.load(path).of_kind(kind))
+    ]
+    assert len(labels) > 12
+    assert run(capsys, "prove", path, *labels)[0] == 0
+    status, out, _ = run(capsys, "prove", path, "--check")
+    assert status == 0 and out.count(": verified") == len(labels)

@@ -185,3 +185,51 @@ def test_a_vertical_branch_has_no_folds():
     problem = cv.AlgebraicProblem(lambda u, p: (p - 1.0 / 3.0) * (1.0 + u**2), [0.2], 1.0 / 3.0)
     graph = cv.diagram(problem, within=(-1.0, 1.0))
     assert not graph.of_kind("fold") and "run away" in graph["B1"].ended[0]
+
+
+class Pair(Line):
+    """u = p; two real multipliers meet, as a pair pass the circle and come back, x = (p - centre) / half: their product is D(x), their sum T(x)."""
+
+    n_multipliers, n_margins = 3, 0
+
+    def __init__(self, centre, half):
+        def inspect_pair(data, u, p, work, row):
+            x = (p - centre) / half
+            product, mean = (
+                0.3 + 0.9 * np.exp(-(x**2)),
+                0.5 * (0.825 - 0.325 * np.tanh(2.0 * (x + 1.2))),
+            )
+            root = np.sqrt(complex(mean**2 - product))
+            pair = sorted((mean + root, mean - root), key=lambda z: (-abs(z), -z.imag))
+            row[:] = pair[0].real, pair[0].imag, pair[1].real, pair[1].imag, 0.1, 0.0
+
+        super().__init__()
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_pair)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(6e-3, 0.03))
+def test_a_pair_that_passes_the_circle_and_comes_back_in_the_step_in_which_it_comes_about(centre, half):
+    """D = 1 at x^2 = ln(9/7)."""
+    graph = cv.diagram(Pair(centre, half), within=(-1.0, 1.0))
+    off = half * np.sqrt(np.log(9.0 / 7.0))
+    found = sorted(point.value for point in graph.of_kind("neimark-sacker"))
+    assert found == pytest.approx([centre - off, centre + off], abs=1e-9)
+
+
+def test_multipliers_that_are_rounding_where_a_branch_begins_at_a_border_cross_nothing():
+    """At the border itself something has no length, and its multiplier is -1.002 by rounding; next to it, and in the limit, -0.992."""
+    forged = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -1.002 if p + 0.95 < 1e-14 else -0.992)
+    assert not cv.diagram(forged, within=(-1.0, 1.0)).of_kind("period-doubling")
+    crossing = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -0.9999 - (p + 0.95))
+    doubling = cv.diagram(crossing, within=(-1.0, 1.0)).of_kind("period-doubling")  # just beside the border
+    assert [point.value for point in doubling] == pytest.approx([-0.9499], abs=1e-12)
+
+
+@pytest.mark.parametrize("slope", [1.0, 1e-4, 1e-8])
+def test_told_errors_of_borders_cover_the_rounding_of_flat_margins(slope):
+    """A margin that comes from 1 - (1 - m), so that it is known to 1.1e-16, passes zero at 0.3."""
+    flat = Line(margin=lambda p: 1.0 - (1.0 - slope * (0.3 - p)), multiplier=lambda p: 0.5)
+    border = cv.diagram(flat, within=(-1.0, 1.0))["VG1"]
+    assert abs(border.value - 0.3) <= border.location_error
+    assert 1e-16 / slope < border.location_error < 1e-15 / slope + 1e-15

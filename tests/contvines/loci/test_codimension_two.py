@@ -123,9 +123,24 @@ def test_co_oxidation_has_one_cusp_and_two_generalized_hopf_points(oxidation):
     hopf = sorted(p.value for p in oxidation.of_kind("generalized-hopf"))
     assert hopf[0] == pytest.approx((0.8913189828755895, 0.23248736), abs=1e-8)
     assert hopf[1] == pytest.approx((0.924255, 0.305879), abs=1e-6)
-    # on the fold locus a cusp is where (q2, k) turn back: the locus parametrised by y has dq2/dy = dk/dy = 0
+    # F = 0, J v = 0, J^T w = 0 and w.B(v, v) = 0, B(v, v) = d/dh J(u + h v) v
     point = oxidation.of_kind("cusp")[0]
-    assert point.value == pytest.approx((1.00640832967832, 0.35599127320868), abs=1e-11)
+
+    def system(*a):
+        F, J = _co_mp(a[:5])
+        v, w = mp.matrix([1, *a[5:7]]), mp.matrix([1, *a[7:9]])
+        h = mp.mpf(10) ** -15
+        ends = [_co_mp([*(u + s * h * d for u, d in zip(a[:3], v)), *a[3:5]])[1] * v for s in (1, -1)]
+        return [*F, *(J * v), *(J.T * w), (w.T * (ends[0] - ends[1]))[0] / h]
+
+    J = np.array(_co_mp([*map(mp.mpf, point.u), *map(mp.mpf, point.value)])[1].tolist(), dtype=float)
+    left, _, right = np.linalg.svd(J)
+    v, w = right[-1] / right[-1, 0], left[:, -1] / left[0, -1]
+    with mp.workdps(40):
+        exact = mp.findroot(system, [*point.u, *point.value, *v[1:], *w[1:]], tol=1e-50, solver="mdnewton")
+        assert [float(exact[3]), float(exact[4])] == pytest.approx(point.value, abs=1e-11)
+    # where BifurcationKit's test detects it, to three digits
+    assert point.value[1] == pytest.approx(0.35665351, rel=2e-3)
     assert len({locus.kind for locus in oxidation.loci.values()}) == 2
     assert len(oxidation.loci) == 2  # every fold is on one curve, every Hopf point on another
 

@@ -33,7 +33,7 @@ RANGES = {
 SETTLING = 500  # forcing periods (events of a self-excited machine) before a recurrence is looked for
 RECURS = 1e-8  # difference, relative to 1 + states, of states that recur
 MOST = 4  # forcing periods
-KICK = 1e-6
+KICKS = (1e-6, 1e-8)  # an orbit may have so narrow a basin that only the smaller one stays in it
 LEAVES = 1e-3  # distance from an orbit, relative to 1 + states, at which a simulation has left it
 ROUNDS = 40  # of the orbit
 CALM = 0.95  # orbits whose multipliers are smaller draw a kicked motion back within the periods it is watched
@@ -85,10 +85,15 @@ def stays(orbit) -> bool:
         return False
     if not len(orbit.multipliers) or np.abs(orbit.multipliers[0]) > CALM or orbit.margin < 1e-3:
         return True
+    return any(comes_back(orbit, kick) for kick in KICKS)
+
+
+def comes_back(orbit, kick) -> bool:
+    """Whether a simulation that is kicked off an orbit is back on it after some rounds."""
     machine, nodes = orbit.machine, orbit.nodes
     stepper = Stepper(machine, orbit.params)
     clock = float(nodes[0, 0]) if machine.forced else 0.0
-    stepper.start(outside(stepper, nodes[0, 1:] * (1.0 + KICK), clock), clock, orbit.word.modes[0])
+    stepper.start(outside(stepper, nodes[0, 1:] * (1.0 + kick), clock), clock, orbit.word.modes[0])
     loose = orbit.system(symmetric=False).loose
     known = [j for j in range(machine.size) if j not in loose]
     try:

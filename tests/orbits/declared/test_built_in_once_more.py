@@ -1,9 +1,15 @@
 """The built-in absorber declared on a page: the same words and the same special points, found by other means."""
 
+import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import contvines as cv
 import orbits
+from orbits.declared.crossing import turned, usual_room
+from orbits.declared.neighbours import margins_of
+from orbits.declared.orbit import DeclaredOrbit
+from orbits.declared.rounds import escapes
 from tests.orbits.declared.pages import page
 from tests.orbits.declared.same_graph import both, compared
 
@@ -25,6 +31,36 @@ def test_the_absorber_on_its_oscillator_that_begins_to_slip_has_the_same_graph()
     found = compared("coupled", *graphs)
     assert found.sentences == []
     assert [p.kind for p in graphs[1].special.values()].count("stick") == 2
+
+
+def test_periods_are_added_at_a_border_of_the_page_too():
+    # orbits of six and seven rounds with one more impact, as `borders.test_doubled_words` has them of the built-in machine
+    values = {
+        "restitution": 0.15840379606858848,
+        "friction": 0.27062304650022073,
+        "gravity": 0.08085179925290478,
+    }
+    machine = page("absorber")
+
+    def solved(amplitude, guess=None):
+        return machine.orbit("LttRtt", 1, guess, amplitude=amplitude, mass_ratio=0.006, **values)
+
+    nodes = solved(1.288).nodes
+    p = brentq(lambda a: solved(a, nodes).margin, 1.288, 1.289, xtol=1e-14)
+    problem = solved(p, nodes).problem("amplitude", symmetric=False)
+    here, beside = (solved(a, nodes).seed(problem)[0] for a in (p, p - 1e-5))
+    index = int(np.argmin(margins_of(problem, here, p)))
+    room = usual_room(problem, index)
+    read, u, place = turned(problem, here, p, index, room)
+    near = (*turned(problem, beside, p - 1e-5, index, room)[:2], p - 1e-5)
+    added = {}
+    for (other, v, q, _), note in escapes(read, u, p, place, [near]):
+        if "times as long" in note:
+            added[other.periods] = DeclaredOrbit.of(other, v, q)
+    assert set(added) == {6, 7}
+    for orbit in added.values():
+        assert orbit.stable and orbit.real and orbit.replay() < 1e-9
+        assert orbit.word.impacts == 2 * orbit.periods + 1
 
 
 def test_the_coupled_absorber_has_the_same_orbits():

@@ -122,3 +122,24 @@ def test_bad_data_get_a_sentence(tmp_path):
         read_columns(tmp_path / "a.csv", 2)
     (tmp_path / "b.csv").write_text("time,acceleration\n0,1\n0.5,2\n")
     assert read_columns(tmp_path / "b.csv", 2).tolist() == [[0.0, 1.0], [0.5, 2.0]]
+
+
+@pytest.mark.parametrize("width", [0.0, 3e-7, 4e-6, 3e-5])
+def test_a_narrow_window_of_another_motion_at_the_estimate_makes_it_no_surer(width):
+    """A straight line through the origin: its slope and the interval in closed form (Student's t with n - 1 degrees of freedom)."""
+    from scipy.stats import t
+
+    x = np.linspace(1.0, 2.0, 9)
+    data = 0.62 * x + np.random.default_rng(4).normal(0.0, 3e-3, 9)
+    slope = float(x @ data / (x @ x))
+    rest = data - slope * x
+    half = float(t.ppf(0.975, 8)) * np.sqrt(rest @ rest / 8.0 / (x @ x))
+
+    def residuals(p):
+        window = 0.2e-6 < p[0] - slope < 0.2e-6 + width  # where the response is another one
+        return p[0] * x - data + np.where(x < 1.2, float(window), 0.0)
+
+    found = fit(residuals, {"slope": 0.7}, {"slope": (0.01, 1.0)})
+    low, high = found.intervals["slope"]
+    assert found.values["slope"] == pytest.approx(slope, abs=1e-6)
+    assert (low, high) == pytest.approx((slope - half, slope + half), abs=0.1 * half)

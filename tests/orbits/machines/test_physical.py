@@ -169,7 +169,11 @@ def test_the_shaken_cavity_has_units_too():
         ({"half_width": "15 kg"}, "half_width = '15 kg': 'kg' is the unit of a mass, but half_width is a length; \"15 mm\" would do"),
         ({"half_width": "15"}, "half_width = '15' has no unit"),
         ({"half_width": 15}, "half_width = 15 has no unit"),
-        ({"half_width": "15 furlogs"}, "the unit 'furlogs' is not one of a length"),
+        ({"half_width": "15 furlogs"}, "half_width = '15 furlogs': 'furlogs' is no unit of a length; \"15 mm\" would do"),
+        ({"half_width": "15 mn"}, "'mn' is no unit of a length (did you mean 'mm'?); \"15 mm\" would do"),
+        ({"half_width": "15 MM"}, "'MM' is no unit of a length (did you mean 'mm'?)"),
+        ({"natural_frequency": "8 hz"}, "'hz' is no unit of a frequency (did you mean 'Hz'?)"),
+        ({"stiffness": "9 kn/m"}, "(did you mean 'kN/m'?), but stiffness is a stiffness"),
         ({"half_width": "3,5 mm"}, "half_width = '3,5 mm' is not a number with a unit"),
         ({"half_width": "-3 mm"}, "is out of range; give a value above 0"),
         ({"half_width": "nan mm"}, "is not a number with a unit"),
@@ -183,6 +187,7 @@ def test_the_shaken_cavity_has_units_too():
         ({"damping": "2.7 N s/m"}, "damping_ratio and damping say the same thing twice"),
         ({"restitution": 1.4}, "implausible for a coefficient of restitution"),
         ({"colour": "blue"}, "the machine 'coupled' has no such quantity"),
+        ({"clearance": "15 mm"}, "has no such quantity (did you mean 'half_width'?)"),
     ],
 )  # fmt: skip
 def test_bad_quantities_get_a_sentence(change, says):

@@ -8,6 +8,8 @@ from orbits import Absorber, Coupled
 from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
 from orbits.simulation import simulate
 from orbits.starts.find import polish
+from tests.orbits.fuzz.drawing import draw
+from tests.orbits.fuzz.many_digits import exact
 
 EPS, MU, G, R = 0.006, 0.5, 0.211, 0.76
 A = (1 + EPS) * MU * G
@@ -163,3 +165,18 @@ def test_a_slow_transient_beside_a_symmetry_breaking_is_no_chaos():
     rows = sweep(machine, "amplitude", [breaking - 1e-3, breaking + 6e-5])
     assert [row.attractor for row in rows] == ["periodic", "periodic"]
     assert [row.detail.symmetric for row in rows] == [True, False]
+
+
+def test_a_slow_alternating_approach_is_no_doubled_period():
+    """Beside a period doubling: the multiplier of LRLt is -0.99887 in many digits, so that it is the attractor, and nothing of twice its period."""
+    drawn = draw("absorber", 405, 121)
+    values = {"amplitude": 1.1306491017684182}
+    rng = np.random.default_rng([405, 121])
+    assert rng.uniform(*drawn.options["within"]) == values["amplitude"]
+    start = drawn.machine.random_start(drawn.machine.vector(values), rng)
+    for patience in (1, 2):
+        found = find_attractor(drawn.machine, start, max_period=4, patience=patience, **values)
+        assert (found.orbit.spelling, found.periods) == ("LRLt", 1)
+        known = exact(found.orbit)
+        assert abs(known.shift) < 1e-14 and known.moved < 1e-12
+        assert np.abs(known.multipliers).max() < 0.9989

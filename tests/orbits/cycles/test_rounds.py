@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.borders.rounds import Rounds
+from orbits.cycles.rounds import Rounds
 
 ROUNDS = 8
 
