@@ -28,7 +28,8 @@ from .pending import Origin, Pending
 from .run import Run
 
 NOWHERE = 1e-12  # a branch shorter than this is none, and ...
-BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along
+BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along, and ...
+BEYOND = -1e-13  # ... one whose margins are less all along, though no less than what counts as rounding
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
@@ -181,6 +182,8 @@ def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
     whole = half.joined()
     across = engine.join(np.ptp(whole.points, axis=0), 0.0)
     length, unit = np.ptp(whole.values), run.unit(half.end)
+    if whole.smallest[1:-1].max(initial=-np.inf) < BEYOND and len(half) > 2:
+        return True
     if length <= BRIEF * unit and whole.smallest.max() <= NOWHERE:
         return True
     return bool(length <= NOWHERE * unit and engine.norm(across) <= NOWHERE)
