@@ -46,11 +46,12 @@ def piece_of(engine: Engine, point: Solved) -> Piece:
 
 @dataclass
 class HalfBranch:
-    """Points of a branch in order, and the events with their indices among them."""
+    """Points of a branch in order, and the events with their indices among them; `first` are the unknowns where the loop began."""
 
     pieces: list[Piece]
     events: list[tuple[int, Located]] = field(default_factory=list)
     status: Status = Status.RUNNING
+    first: np.ndarray | None = None
 
     def __len__(self) -> int:
         return sum(len(piece.values) for piece in self.pieces)

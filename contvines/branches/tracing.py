@@ -6,16 +6,14 @@ from collections.abc import Callable
 from itertools import count as count_from
 from typing import Any
 
-import numpy as np
-
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
-from ..events.located import Located, Role
+from ..events.located import Role
 from ..events.watch import Watch
 from .half_branch import HalfBranch, Piece, piece_of, single
-
-SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
+from .opening import SHORTER, opening
+from .records import pack, unpack
 
 
 def trace_half(
@@ -51,9 +49,12 @@ def trace_half(
     """
     half = single(engine, start)
     if origin is not None:
-        half = _opening(engine, origin, start, watch, journal, f"{key}/opening", real)
+        half, closer = opening(engine, origin, start, watch, journal, f"{key}/opening", real)
         if half.status != Status.RUNNING:
             return half
+        if closer is not start:
+            start, first_step = closer, engine.distance(origin, closer)
+    half.first = start.u
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
     retrace = None
@@ -102,82 +103,3 @@ def trace_half(
         if status != Status.RUNNING:
             break
     return half
-
-
-def _opening(
-    engine: Engine, origin: Solved, start: Solved, watch: Watch, journal: Any, key: str, real: bool
-) -> HalfBranch:
-    """From a special point to the first point of a branch that leaves it."""
-    known = journal.recall(key)
-    if known is None:
-        events = watch.beside(origin, start, real)
-        journal.record(key, pack(events, engine))
-    else:
-        events = unpack(known)
-    half = single(engine, origin)
-    for i, event in enumerate(events):
-        half.pieces.append(piece_of(engine, event.point))
-        half.events.append((i + 1, event))
-    if events and events[-1].ends_branch:
-        half.status = Status.BORDER
-    else:
-        half.pieces.append(piece_of(engine, start))
-    return half
-
-
-def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
-    """Located events as arrays and JSON scalars, for a journal."""
-    n, m = engine.n, engine.row_size
-    points = [e.point for e in events]
-    return {
-        "kind": [e.kind for e in events],
-        "role": [e.role.value for e in events],
-        "name": [e.name for e in events],
-        "index": [int(e.index) for e in events],
-        "numbers": np.array(
-            [
-                [
-                    e.position,
-                    e.error,
-                    *e.bracket,
-                    e.point.p,
-                    e.point.sign,
-                    e.point.residual,
-                    e.point.correction,
-                ]
-                for e in events
-            ]
-        ).reshape(len(events), 8),
-        "u": np.array([p.u for p in points]).reshape(len(events), n),
-        "tangent": np.array([p.tangent for p in points]).reshape(len(events), n + 1),
-        "row": np.array([p.row for p in points]).reshape(len(events), m),
-    }
-
-
-def unpack(record: dict[str, Any]) -> list[Located]:
-    """Located events from a journal."""
-    events = []
-    for i, kind in enumerate(record["kind"]):
-        position, error, low, high, p, sign, residual, correction = (float(x) for x in record["numbers"][i])
-        point = Solved(
-            np.array(record["u"][i]),
-            p,
-            np.array(record["tangent"][i]),
-            np.array(record["row"][i]),
-            sign,
-            residual,
-            correction,
-        )
-        events.append(
-            Located(
-                position,
-                kind,
-                int(record["index"][i]),
-                point,
-                (low, high),
-                error,
-                Role(record["role"][i]),
-                record["name"][i],
-            )
-        )
-    return events

@@ -79,6 +79,8 @@ def _without_texts(plain: dict[str, Any]) -> dict[str, Any]:
         for key in ("within", "values") if isinstance(values, dict) else ():
             if isinstance(values.get(key), list) and any(isinstance(value, str) for value in values[key]):
                 found[section][key] = [float(i) for i in range(len(values[key]))]
+        if isinstance(values, dict) and isinstance(values.get("bounds"), dict):
+            found[section].pop("bounds")
     return found
 
 
@@ -116,8 +118,29 @@ def _numbers(
                 usual_value = told.quantities.get(name) or 1.0
                 sound = np.linspace(0.5 * usual_value, usual_value, len(pairs)).tolist()
                 changed[key] = sound if refused else [number for number, _ in pairs]
+        if isinstance(values.get("bounds"), dict):
+            changed["bounds"], refused = _bounds(machine.units, values["bounds"], section)
+            wrong += refused
         sections[section] = changed
     return machine, sections, wrong
+
+
+def _bounds(own: dict[str, str], bounds: dict[str, Any], section: str) -> tuple[dict[str, Any], list[str]]:
+    """Bounds of measures counted in the units in which these are shown, and refusals; plain numbers are counted in them already."""
+    from orbits.machines.physical import units
+    from orbits.machines.physical.quantities import QuantityError
+
+    found, wrong = {}, []
+    for name, pair in bounds.items():
+        found[name] = list(pair) if isinstance(pair, list) else pair
+        for i, value in enumerate(pair if isinstance(pair, list) else []):
+            if isinstance(value, str):
+                found[name][i] = float(i)
+                try:
+                    found[name][i] = units.counted(name, value, own.get(name, ""))
+                except QuantityError as error:
+                    wrong.append(f"[{section}] bounds: {error}.")
+    return found, wrong
 
 
 def number_of(machine: Any, name: str, value: Any, place: str) -> tuple[Any, str | None]:

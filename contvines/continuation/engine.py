@@ -108,6 +108,10 @@ class Engine:
         """Length of a vector."""
         return math.sqrt(max(self.inner(a, a), 0.0))
 
+    def distance(self, a: Solved, b: Solved) -> float:
+        """Length of the way from one point to another."""
+        return self.norm(self.join(b.u - a.u, b.p - a.p))
+
     def amplitude(self, a: np.ndarray) -> float:
         """Length of a unit vector as normal forms measure it."""
         return self.problem.amplitude(a)
@@ -174,7 +178,7 @@ class Engine:
         sweeps: int,
     ) -> Solved | None:
         here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
-        with self.section:
+        with self.section, np.errstate(all="ignore"):
             p, sweeps, residual, sign, size = self.bound.point(
                 self.data,
                 self.work,

@@ -61,6 +61,7 @@ class Scout:
         self.rows = np.zeros(self.n)
         self.rates: list[float] = []
         self.noise = 0.0
+        self.known = np.asarray(problem.known)
         self.given = given is not None
         if given is not None:
             self.first, self.scale = given, given.copy()
@@ -118,24 +119,27 @@ class Scout:
             border[i] = 1.0
             found = self._correct(z, border, 40)
             if found is not None and self.within[0] <= found[0][-1] <= self.within[1]:
-                self._take_from_tangent(found[1])
+                self._take_from_tangent(*found)
                 self._saw(found[0], True)
                 return found
         return None
 
-    def _take_from_tangent(self, tangent: np.ndarray) -> None:
-        """Sizes of unknowns of which nothing is known: how far they get while another one, or the parameter, covers its own."""
-        known = np.asarray(self.problem.known)
+    def _take_from_tangent(self, z: np.ndarray, tangent: np.ndarray) -> None:
+        """Sizes of unknowns of which nothing is known: how far they get while another one, or the parameter, covers its own.
+
+        Those that do not move are as large as makes them weigh in an equation what others do.
+        """
+        known = self.known
         if self.given or known.all():
             return
         rates, sizes = np.abs(tangent), np.append(self.first, self.width)
         moving = np.append(known, True) & (rates > 0.0)
         free = ~known & (rates[:-1] > 0.0) & self._confirmed(tangent)[:-1]
-        if not moving.any() or not free.any():
-            return
-        way = float((sizes[moving] / rates[moving]).min())
-        self.first = np.where(free, np.maximum(rates[:-1] * way, 1e-300), self.first)
-        self.scale = self.first.copy()
+        if moving.any() and free.any():
+            way = float((sizes[moving] / rates[moving]).min())
+            self.first = np.where(free, np.maximum(rates[:-1] * way, 1e-300), self.first)
+        self.first, told = self.problem.weighed(self.work, z[:-1], float(z[-1]), self.first, known | free)
+        self.known, self.scale = known | (told & ~free), self.first.copy()
 
     def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
         """Which entries of a tangent are no rounding: they are the same when it is solved for with another border."""
@@ -202,7 +206,7 @@ class Scout:
         lost = self._rounding(size)
         size[list(lost)] = 0.0
         bends, first = np.asarray(self.problem.bends), self.first
-        sure = bends | np.asarray(self.problem.known)
+        sure = bends | self.known
         # a zero that rounding has moved has no size of its own
         least = np.where(np.asarray(self.problem.u0) == 0.0, FAINT, 1.0 / BEYOND)
         own = np.where(size > np.where(sure, least * first, 0.0), size, first)
@@ -223,7 +227,8 @@ class Scout:
         unit = float(seen_unit) if travelled and extent[-1] > 0.0 else self.width
         rows = np.where(self.rows > 0.0, self.rows, 1.0)
         rate = float(np.exp(np.mean(np.log(self.rates)))) if self.rates else 1.0
-        return Scales(unknowns, unit, rows, rate, self.noise)
+        untold = np.flatnonzero(~sure & ~moved & (size == 0.0)) if given is None else ()
+        return Scales(unknowns, unit, rows, rate, self.noise, tuple(int(i) for i in untold))
 
 
 def learn(problem: Any, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:

@@ -128,6 +128,20 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
     problem = engine.problem
     if not isinstance(problem, Rough) or engine.problem.kernels.compiled:
         return ""
+    return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem.scales)) if part)
+
+
+def _untold(scales: Any) -> str:
+    """A sentence on unknowns of which nothing tells how large they become; empty if there is none."""
+    if scales is None or not scales.untold:
+        return ""
+    names = ", ".join(f"u{i}" for i in scales.untold[:3]) + (", ..." if len(scales.untold) > 3 else "")
+    return f"at the start nothing tells how large {names} may become: 1 is taken; scale= would say it"
+
+
+def _moved(engine: Engine, u: Any, p: float, found: Solved) -> str:
+    """A sentence on a start that was no solution; empty if it was one."""
+    problem: Any = engine.problem
     u = np.asarray(u, dtype=float).reshape(-1)
     moved = np.abs(found.u - u) / engine.scale[:-1]
     shift = abs(found.p - float(p)) / float(engine.scale[-1])

@@ -11,11 +11,14 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from .kinds import BORDERS
 from .locate import Root, locate
+from .located import Located
 from .segment import Segment
 
 TIED = 1e-9  # margins that differ by less vanish together
 BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
 SLOPED = 1e-6  # distance (in the metric) from which the slope of a margin can be told
+MARGIN_ROUNDING = 4e-16  # of margins, in units of the machine's own size
+TOLD = 10.0  # times that: a difference of margins which is no rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
 
@@ -90,6 +93,39 @@ def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray
             if len(passing):
                 return passing
     return falling
+
+
+def resolved(segment: Segment, border: Located) -> Located:
+    """The border with an error that covers rounding of the margins that vanish there.
+
+    Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
+    passes zero.
+    """
+    engine, place = segment.engine, border.position
+    here = _finite(engine.margins(border.point.row))
+    known = np.abs(here) >= TOLD * MARGIN_ROUNDING
+    known[border.index] = False
+    towards = -1.0 if place * segment.length > SLOPED else 1.0
+    room = place if towards < 0.0 else 1.0 - place
+    reach, error = min(SLOPED / segment.length, room), border.error
+    while reach > 0.0 and (aside := segment.at(place + towards * reach)) is not None:
+        rises, moved = np.abs(_finite(engine.margins(aside.row)) - here), abs(aside.p - border.point.p)
+        told = ~known & (rises > TOLD * MARGIN_ROUNDING)
+        if told.any():
+            error = max(error, moved * MARGIN_ROUNDING / float(rises[told].min()))
+        known |= told
+        if known.all():
+            break
+        if reach == room:
+            error = max(error, moved)
+            break
+        reach = min(30.0 * reach, room)
+    return border._replace(error=error)
+
+
+def _finite(margins: np.ndarray) -> np.ndarray:
+    """Margins, those that do not apply or have no bound as large ones."""
+    return np.where(np.isfinite(margins), margins, 1.0)
 
 
 def _which(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> int:

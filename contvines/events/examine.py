@@ -12,17 +12,18 @@ from ..problems.abilities import Nearing
 from .blur import blurred
 from .borders import find_border
 from .determinant import DeterminantTest, passes, turned
+from .leaps import SHORTEST
 from .limits import one_sided
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
 from .multipliers import balance, counts, crossing
 from .scan import FLAT
 from .segment import Segment
+from .singular import singular
 from .symmetry import SymmetryTest
 from .users import user_function
 
 NAMES = ("plus", "minus", "pair")
-FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 EXACT = (
     1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
@@ -90,7 +91,7 @@ class Examiner:
         a, b = segment.a, segment.b
         met = [e.position for e in events]
         folds = self._fold(segment, met)
-        singular = 0
+        counted = 0
         discarded = False
         crossings: list[Located] = []
         before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
@@ -130,17 +131,17 @@ class Examiner:
         events += folds
         for event in self._sharpen(segment, crossings):
             events.append(event)
-            singular += event.kind == "branch-point"
-        if not singular and (double := self._exchange(segment)) is not None:
+            counted += event.kind == "branch-point"
+        if not counted and (double := self._exchange(segment)) is not None:
             events.append(double)
-        if a.sign * b.sign < 0.0 and (singular + len(met)) % 2 == 0:
+        if a.sign * b.sign < 0.0 and (counted + len(met)) % 2 == 0:
             root = self._determinant(segment)
             if root is not None and not _near(root.position, met):
                 turning = [e for e in folds if _near(e.position, [root.position])]
                 # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
-                if not turning or (root.point.residual <= EXACT and self._singular(root.point)):
+                if not turning or (root.point.residual <= EXACT and singular(self.engine, root.point)):
                     events = [e for e in events if e not in turning]
-                    events.append(self._located(root, "branch-point", 0))
+                    events.append(self._located(root, self._where_singular(segment, root, "branch-point"), 0))
         return events + borders
 
     def _exchange(self, segment: Segment) -> Located | None:
@@ -235,15 +236,7 @@ class Examiner:
         Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
         """
         stationary = abs(point.tangent[-1]) <= STATIONARY * self.engine.parameter_unit(point.p)
-        return stationary and not self._singular(point)
-
-    def _singular(self, point: Solved) -> bool:
-        """Whether [[F_u, F_p], [tangent]] is singular but for rounding."""
-        engine = self.engine
-        engine.residual(point.u, point.p)
-        side = np.append(engine.row_sizes * np.random.default_rng(7).standard_normal(engine.n), 0.0)
-        image = engine.apply_inverse(engine.weights * point.tangent, side)
-        return not (np.isfinite(image).all() and engine.norm(image) < FAR)
+        return stationary and not singular(self.engine, point)
 
     def _turns_back(self, segment: Segment, root: Root) -> bool:
         """Whether the parameter has an extremum where a multiplier passes +1, though the ends do not tell."""
@@ -302,8 +295,14 @@ class Examiner:
             root = locate_singular(segment, along, rough) or locate(segment, along)
             if root is not None:
                 root = locate_singular(segment, along, root.position) or root
-                events.append(self._located(root, test.kind, index, Role.MEETING))
+                kind = self._where_singular(segment, root, test.kind)
+                events.append(self._located(root, kind, index, Role.MEETING))
         return events
+
+    def _where_singular(self, segment: Segment, root: Root, kind: str) -> str:
+        """The kind of a branch point, or "astray" where it is none: the segment has led from one branch to another."""
+        known = self.many or segment.length <= SHORTEST or singular(self.engine, root.point)
+        return kind if known else "astray"
 
     def _borders(self, segment: Segment, real: bool) -> list[Located]:
         border = find_border(segment, real)

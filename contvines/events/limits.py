@@ -20,6 +20,8 @@ from .segment import Segment
 BESIDE = 1e-3  # part of a segment before the border by which the tangent is told
 SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
+NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
+BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
 PLACES = (1.0, 2.0, 3.0, 4.0)
 CONVERGED = (
@@ -93,7 +95,24 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
         wider = here
     if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
         return None
-    return best
+    return None if best is not None and len(best) > 1 and _bounded(segment, position, computed) else best
+
+
+def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
+    """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
+
+    As where another impact, before the one that is about to graze, is almost as slow.
+    """
+    largest = float(np.abs(computed).max())
+    for spacing in NEAREST:
+        values = _polynomials(segment, position, spacing)
+        if values is None:
+            continue
+        if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
+            return False  # what is computed at the border is something else
+        if _apart(CUBIC @ values, computed) < BOUNDED:
+            return True
+    return False
 
 
 def _apart(one: np.ndarray, other: np.ndarray) -> float:

@@ -11,8 +11,9 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.loop import MARGIN
 from . import pairs
+from .borders import resolved
 from .dips import before_border, below_zero
-from .examine import ROUNDING, Examiner, changes
+from .examine import REACHED, ROUNDING, Examiner, changes
 from .leaps import inexact, leap
 from .located import Located, Role
 from .multipliers import LIMIT, balance, counts, nearest_to_circle
@@ -34,7 +35,8 @@ from .segment import Segment
 # beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about
 USER, TWICE, PAIRS, BORN = 256, 512, 1024, 2048
 NO_MARGIN = 1e-13  # something has no length or speed at all
-AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border
+AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
+AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
 REACH, EDGE = (
     1.5,
     0.9,
@@ -131,6 +133,7 @@ class Watch(Examiner):
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
             found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
+            found = [resolved(segment, e) if e.role is Role.BORDER else e for e in found]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
@@ -144,7 +147,7 @@ class Watch(Examiner):
         return events
 
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
-        """The special points between a branch point and the first point of a branch that leaves it, in order.
+        """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
 
         The beginning of the segment, where every solution is that of a nearly singular system, is left out.
         """
@@ -156,18 +159,23 @@ class Watch(Examiner):
         found = self.examine(segment, real=real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
+        found.sort(key=lambda e: e.position)
+        leaping = leap(segment, found)
         # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = ROUNDING * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
             e
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
-            if not (e.role is Role.SPECIAL and inexact(segment, e))
-            and not (e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= flat)
+            if e.kind != "astray"
+            and not (e.role is Role.SPECIAL and inexact(segment, e))
+            and not (
+                e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= max(flat, 10.0 * e.error)
+            )
         ]
         bracket = (origin.p, first.p)
         found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
-        return before_stop(sorted(found, key=lambda e: e.position))
+        return before_stop(found) + ([] if leaping is None else [leaping])
 
     def _suspects(self, chunk: Chunk, i: int) -> list[int]:
         """The margins that may pass zero and come back in a segment: the parabola through three of their values does."""
@@ -280,8 +288,13 @@ class Watch(Examiner):
         return bool(abs(self.engine.smallest_margin(event.point.row)) < NO_MARGIN)
 
     def _apart(self, event: Located, stop: Located) -> bool:
-        engine, a, b = self.engine, event.point, stop.point
-        return engine.norm(engine.join(a.u - b.u, a.p - b.p)) > AT_BORDER
+        """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
+        own = event.kind not in ("fold", "branch-point") or self._at_one(event.point)
+        return self.engine.distance(event.point, stop.point) > (AT_END if own else AT_BORDER)
+
+    def _at_one(self, point: Solved) -> bool:
+        spectrum = self.engine.spectrum(point.row)
+        return self.kind == "map" and bool(np.abs(spectrum - 1.0).min(initial=1.0) <= REACHED)
 
 
 def _wide(chunk: Chunk) -> Chunk:

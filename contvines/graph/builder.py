@@ -9,9 +9,9 @@ import numpy as np
 
 from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
-from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
+from ..branches.opening import on_this_branch, on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
@@ -22,12 +22,14 @@ from ..events.watch import Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .leaving import leave
-from .marking import is_border, mark, may_be_one, origin_index
+from .marking import mark, origin_index
+from .one_border import is_border, same_border, tie_borders
 from .pending import Origin, Pending
 from .run import Run
 
 NOWHERE = 1e-12  # a branch shorter than this is none, and ...
-BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along
+BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along, and ...
+BEYOND = -1e-13  # ... one whose margins are less all along, though no less than what counts as rounding
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
@@ -180,6 +182,8 @@ def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
     whole = half.joined()
     across = engine.join(np.ptp(whole.points, axis=0), 0.0)
     length, unit = np.ptp(whole.values), run.unit(half.end)
+    if whole.smallest[1:-1].max(initial=-np.inf) < BEYOND and len(half) > 2:
+        return True
     if length <= BRIEF * unit and whole.smallest.max() <= NOWHERE:
         return True
     return bool(length <= NOWHERE * unit and engine.norm(across) <= NOWHERE)
@@ -196,6 +200,7 @@ def begins_elsewhere(run: Run, engine: Engine, half: HalfBranch, pending: Pendin
 def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     """The first regular point of a pending branch, or None."""
     if pending.kind is Origin.SWITCH:
+        _bring_near(engine, pending)
         first = pending.ahead
         if first is not None and not engine.lower <= first.p <= engine.upper:
             first = pending.back
@@ -220,6 +225,19 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
     return first
 
 
+def _bring_near(engine: Engine, pending: Pending) -> None:
+    """Bring the first points of a departure so near that they are of its branch, and on this side of a border."""
+    origin, sides = pending.origin, (pending.ahead, pending.back)
+    if origin is None:
+        return
+    own = [on_this_branch(engine, origin, side) for side in sides]
+    pending.ahead, pending.back = (on_this_side(engine, origin, side) for side in own)
+    for before, point in zip(sides, (pending.ahead, pending.back)):
+        if point is not None and point is not before:
+            step = engine.distance(origin, point)
+            pending.first_step = min(pending.first_step or step, step)
+
+
 def off(engine: Engine, point: Solved, step: float, real: bool) -> Solved:
     """A point of the same branch at a small distance, ahead if there is one: of a real branch, which may be shorter, a real one."""
     for length in (step, 0.1 * step, 0.01 * step):
@@ -236,46 +254,6 @@ def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
     border = engine.weights * point.tangent
     found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), point.tangent)
     return found if found is not None and engine.lower <= found.p <= engine.upper else None
-
-
-def same_border(run: Run, label: str, known: Branch) -> str:
-    """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
-    graph = run.graph
-    here = graph.special[label]
-    for _, other in known.marks:
-        point = graph.special[other]
-        if (
-            other != label
-            and point.kind in BORDERS
-            and abs(point.value - here.value) <= 1e-9 * run.unit(point.value)
-            and may_be_one(here.problem, here.u, here.value, point)
-        ):
-            run.merge(label, other)
-            return other
-    return label
-
-
-def tie_borders(run: Run) -> None:
-    """One border that was reached from two branches, and crossed from neither, gets one label; the branches are tied."""
-    graph = run.graph
-    for label in list(graph.special):
-        point = graph.special.get(label)
-        if point is None or point.kind not in BORDERS or not point.real:
-            continue
-        for other in list(graph.special.values()):
-            if other is point:
-                break  # only those with an earlier label
-            near = abs(other.value - point.value) <= 1e-9 * run.unit(point.value)
-            if not (near and other.kind in BORDERS and other.real and other.branch != point.branch):
-                continue
-            if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):
-                continue  # its branch was reached through the other one: this is the far end of a very short branch
-            if other.problem is not None and point.problem.same_motion(
-                point.u, point.value, other.problem, other.u
-            ):
-                run.merge(label, other.label)
-                run.connect(other.label, other.branch, point.branch)
-                break
 
 
 def both_ways(
@@ -312,7 +290,8 @@ def both_ways(
             if point is not None and engine.lower <= point.p <= engine.upper
         }
         if "ahead" in sides and sides["ahead"].status == Status.CLOSED:
-            ahead = sides["ahead"].since(first.u)
+            assert sides["ahead"].first is not None
+            ahead = sides["ahead"].since(sides["ahead"].first)
             return ahead, (ending(ahead), ending(ahead)), True
         if len(sides) == 2:
             whole = sides["back"].reversed().extended(sides["ahead"], skip=1)

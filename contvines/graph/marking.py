@@ -21,17 +21,14 @@ from ..interrupts import OPEN
 from ..problems.protocol import Problem
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
-from .identity import same_form, same_vector
+from .identity import same_form
+from .one_border import is_border
 from .pending import Origin, Pending
 from .run import Run
 
-BACK_AT_BORDER = (
-    1e-6  # a branch seeded beyond a border comes back to it within this part of the parameter's unit
-)
 TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
 TURNING_KINDS = ("branch-point", "symmetry-breaking")
 BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
-AT_BORDER = 1e-4  # border points of one value further apart than this are two
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
@@ -218,35 +215,6 @@ def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
         if known.kind in TURNING_KINDS and _turns(run, engine, event.point, known.u, known.value):
             return known.label
     return None
-
-
-def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
-    """Whether a branch has come to a border that is known by this label."""
-    known, point = run.graph.special[label], event.point
-    if abs(known.value - point.p) > BACK_AT_BORDER * run.unit(point.p):
-        return False
-    # of a branch that begins at a border it is asked twice: whether to keep it, and how to mark its end
-    key = id(point.u), id(known)
-    if key not in run.compared:
-        run.compared[key] = (point, known, may_be_one(problem, point.u, point.p, known))
-    return run.compared[key][2]
-
-
-def may_be_one(problem: Problem, u: np.ndarray, p: float, point: SpecialPoint) -> bool:
-    """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
-
-    Only problems of one kind tell: those that can compare motions, and others where their forms have as many entries.
-    """
-    if type(point.problem) is not type(problem):
-        return True
-    alike = problem.same_motion(u, p, point.problem, point.u)
-    if alike is not None:
-        return alike
-    one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
-    scales = problem.scales
-    return one.shape != other.shape or same_vector(
-        one, other, AT_BORDER, None if scales is None else scales.vector
-    )
 
 
 def _doubt(engine: Engine, special: SpecialPoint) -> None:

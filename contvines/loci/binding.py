@@ -35,6 +35,7 @@ HELPERS: tuple[Any, ...] = (
     spanning.particular,
     source.close,
     source.renew,
+    source.worn,
 )
 NAMES = ("linearise", "bordered", "inspect", "assign", "flip", "transpose")
 _interpreted: dict[tuple[Any, ...], Kernels] = {}

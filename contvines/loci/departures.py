@@ -9,6 +9,7 @@ import numpy as np
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..problems.protocol import Problem
+from .layout import BRANCH
 from .linear import Linearisation
 from .locus import Locus
 from .plane_point import PlanePoint
@@ -33,6 +34,7 @@ PASSING = {
     "border-symmetry-breaking": ("symmetry-breaking",),
     "border-neimark-sacker": ("neimark-sacker",),
 }
+ASIDE = 0.01  # of the interval of the first parameter: how far from a crossing a locus is started
 AMPLITUDES = (0.05, 0.02, 0.1, 0.005)  # of the doubled cycle at which its fold is looked for
 
 
@@ -52,10 +54,19 @@ def leaving(point: PlanePoint, locus: Locus, bounds: tuple[float, float], over: 
     """Starts of the loci that pass a point, or begin there."""
     problem, (p, q) = point.problem, point.value
     found = []
+    crossing = locus.problem.condition == BRANCH  # two branches cross there, and none of them folds
     for kind in PASSING.get(point.kind, ()):
         if kind == "neimark-sacker" and problem.spectrum != "map":
             continue
-        found.append(Candidate(problem, kind, point.u, p, q, 0, point.label))
+        if not crossing:
+            found.append(Candidate(problem, kind, point.u, p, q, 0, point.label))
+        elif kind != "fold":  # started beside the crossing, where the equations are regular
+            found += [
+                Candidate(
+                    problem, kind, point.u, p + side * ASIDE * (bounds[1] - bounds[0]), q, 0, point.label
+                )
+                for side in (-1.0, 1.0)
+            ]
     if point.kind == "double-border" or point.kind.startswith("border-"):
         found += [
             Candidate(problem, problem.margin_kind(j), point.u, p, q, j, point.label) for j in point.margins

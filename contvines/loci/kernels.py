@@ -18,7 +18,8 @@ Every solve is one elimination of the problem's own kernel with another column i
 points three) directions in which F = 0 holds to first order (:mod:`contvines.loci.spanning`) from the point at which the residuals of F are made up
 for. There the tests are evaluated, so that a Newton step has a residual g of the second order; they are differentiated along these directions alone, by
 differences. Directions and slopes are not worked out again where Newton's method has hardly moved: the residuals stay exact, so nothing of
-the location is lost. The borders are renewed at each accepted point: c becomes the null vector, b the left one.
+the location is lost. The borders are renewed after a few accepted points, sooner
+where the null vector turns: c becomes the null vector, b the left one.
 
 This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
 """
@@ -46,6 +47,7 @@ from .layout import (
     KNOWN,
     LEFT,
     LINES,
+    LONGEST,
     MASKED,
     MULTIPLIERS,
     PAIR,
@@ -55,6 +57,7 @@ from .layout import (
     ROWS,
     SCALES,
     SECOND,
+    SERVED,
     SIGN,
     SLOPES,
     SMALL,
@@ -64,6 +67,7 @@ from .layout import (
     TESTED,
     TRIAL,
     TRIAL_F,
+    TURNED,
     UNIT,
     VALUES,
     B,
@@ -238,22 +242,36 @@ def renew(data, work, b, c, null):
         b[i] = left[i] * rows[i] * rows[i] / size
 
 
+def worn(work, null):
+    """Whether borders are due: the null vector has turned away from c, or they have served a few points."""
+    state, scales = work[STATE], work[SCALES]
+    size = 0.0
+    for i in range(null.shape[0] - 1):
+        size += (null[i] / scales[i]) ** 2
+    state[SERVED] += 1.0
+    if state[SERVED] < LONGEST and size < TURNED * TURNED:
+        return False
+    state[SERVED] = 0.0
+    return True
+
+
 def locus_inspect(data, U, q, work, row):
     """Multipliers and margins of the problem, then of the locus: p within its bounds, and the pair still a pair.
 
-    The borders are renewed.
+    The borders are renewed where they are due.
     """
     first, base = data[FIRST], work[BASE]
     borders, solutions, reference = work[BORDERS], work[SOLUTIONS], work[REFERENCE]
     kind, multipliers = data[KIND], data[MULTIPLIERS]
     n = work[BASE_F].shape[0]
-    work[STATE][KNOWN] = min(work[STATE][KNOWN], 0.0)  # slopes belong to the borders
-    if kind == FOLD:
-        renew(data, work, borders[B], borders[C], solutions[TESTED])
-    elif kind == FLIP:
-        flip(data[CALLS], first, base, -1.0)
-        renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[TESTED])
-        flip(data[CALLS], first, base, 1.0)
+    if kind in (FOLD, FLIP) and worn(work, solutions[TESTED]):
+        work[STATE][KNOWN] = min(work[STATE][KNOWN], 0.0)  # slopes belong to the borders
+        if kind == FOLD:
+            renew(data, work, borders[B], borders[C], solutions[TESTED])
+        else:
+            flip(data[CALLS], first, base, -1.0)
+            renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[TESTED])
+            flip(data[CALLS], first, base, 1.0)
     own = row.shape[0] - 3
     assign(data[CALLS], first, data[SECOND], q)  # the tests have asked nearby
     inspect(data[CALLS], first, U[:n], data[UNIT] * U[n], base, row[:own])

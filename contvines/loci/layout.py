@@ -40,4 +40,8 @@ STEP = 1e-7  # of the differences, relative to the scales of unknowns and parame
 STILL = 1e-7  # relative distance within which slopes are not worked out again
 ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of SOLUTIONS, the last one with another after it
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
-KNOWN, SIGN, ANGLE = range(3)  # entries of STATE; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
+KNOWN, SIGN, ANGLE, SERVED = range(
+    4
+)  # entries of STATE; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
+LONGEST = 4  # points that borders serve
+TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more

@@ -10,7 +10,7 @@ import numpy as np
 from ..problems.protocol import Problem, ProblemDefaults
 from .binding import locus_kernels
 from .kinds import condition
-from .layout import BRANCH, FLIP, MARGIN, PAIR
+from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
 
 LEAST = (
     1e-6  # of its interval: a second parameter that starts closer to zero than this says nothing of its size
@@ -199,7 +199,7 @@ class LocusProblem(ProblemDefaults):
             rows=self.rows,
             frozen=np.zeros(self.dimension + 1),
             steep=np.zeros((3, max(tests, 2))),
-            state=np.array([-1.0, 1.0, 0.0]),
+            state=np.array([-1.0, 1.0, 0.0, LONGEST]),
             frame=np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n),
             kept=np.zeros(self.dimension),
         )

@@ -175,11 +175,14 @@ def _below(figure: Figure, axes: Axes, handles: list[Any], own: bool, remarks: S
         return
     size = 0.92 * FontProperties(size=mpl.rcParams["legend.fontsize"]).get_size_in_points()
     texts = {str(entry.get_label()) for entry in handles}
-    wide = max(text_widths(texts, size).values()) + 3.4 * size  # with the sample and the gaps beside it
+    drawn = text_widths(texts, size)
+    wide = [
+        drawn[str(entry.get_label())] + 3.4 * size for entry in handles
+    ]  # with the sample and the gaps beside it
     room = figure.get_size_inches()[0] * 72.0 if own else axes.get_window_extent().width / figure.dpi * 72.0
     look: dict[str, Any] = {
         "handles": handles,
-        "ncols": int(np.clip(room // wide, 1, len(handles))),
+        "ncols": _columns(wide, room),
         "fontsize": size,
         "handlelength": 1.8,
         "handletextpad": 0.5,
@@ -201,6 +204,17 @@ def _below(figure: Figure, axes: Axes, handles: list[Any], own: bool, remarks: S
             gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
             legend.set_bbox_to_anchor((0.5, gap), transform=axes.transAxes)
     settle(figure)
+
+
+def _columns(wide: list[float], room: float) -> int:
+    """As many columns, filled one after the other, as fit; not more than leave each row but the last one full."""
+    fits = [
+        count
+        for count in range(1, len(wide) + 1)
+        if sum(max(part) for part in np.array_split(np.array(wide), count)) <= room
+    ]
+    rows = -(-len(wide) // max(fits, default=1))
+    return -(-len(wide) // rows)
 
 
 def _covers(axes: Axes, obstacles: np.ndarray | None) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from ..hints import hinting
 from .diagram import LOW, draw_diagram
 from .figures import new_axes, settle, styled, thin_ticks
-from .legends import Key, draw_legend
+from .legends import NARROW, Key, draw_legend
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -59,7 +59,8 @@ def plot_sweep(
         figure, axes = new_axes(axes, figsize=figsize)
         above = 3.5 if measure != "B" or graph is not None else 2.0
         dark = "0.45" if measure == "B" and graph is None else "black"
-        told = f"simulated: {at or 'periodic'}"
+        narrow = own and figure.get_size_inches()[0] < NARROW  # the axis says what it is of
+        told = f"simulated: {at or 'periodic'}" if not narrow or measure != "B" else "simulated"
         lost = {"markersize": 1.5} if measure == "B" else {"marker": "o", "markersize": 2.6, "mfc": "none"}
         _dots(axes, wandering, "simulated: not periodic", color="#d95f02", zorder=1.8, **lost)
         _dots(axes, others, "simulated: B at other impacts", color="0.72", zorder=1.9, markersize=size)

@@ -13,6 +13,7 @@ from . import dense, sparse
 from .breaks import find_break
 from .checks import disagreement
 from .derivatives import Differentiated
+from .extents import weighed
 from .functions import NotEvaluable
 from .nearness import side
 from .parameters import ParameterSet
@@ -164,6 +165,21 @@ class CallableProblem(ProblemDefaults):
     def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown or the parameter changes by its scale."""
         return np.maximum(self.algebra.row_sizes(work, scale), np.abs(work.derivative) * width)
+
+    def weighed(
+        self, work: Any, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Lengths of unknowns of which nothing else is known, from a linearisation at (u, p); and which are known then."""
+        if self.functions.structure != "dense":
+            return lengths, known
+
+        def beside(v: np.ndarray) -> np.ndarray:
+            try:
+                return self.residuals(u + v, p)
+            except NotEvaluable:
+                return np.full(self.dimension, np.nan)
+
+        return weighed(beside, work.jacobian, lengths, known)
 
     def rates(self, work: Any) -> list[float]:
         """Sizes of the eigenvalues of dF/du, where they are wanted and can be had cheaply."""

@@ -11,7 +11,8 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from .colouring import Colouring
-from .differences import REACH, Difference, along, bend, coupling, noise_of, roughness
+from .differences import Difference, along, bend, noise_of, roughness
+from .extents import measured
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
 
@@ -19,11 +20,7 @@ COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
 SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
 STEEP = 1e-4  # ... what seems to be a step above this part is a steep piece of it
-EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
-PAIRS = 12  # up to so many, couplings between two of them are looked at
-FEW = 2  # lengths tried on either side where the function is slow
 BRIEF = 1e-4  # seconds of a call that is not measured twice
-PATIENCE = 0.5  # seconds that measuring lengths may take
 
 
 class Differentiated:
@@ -96,8 +93,10 @@ class Differentiated:
         self.grain = np.zeros(n)
         self.parameter_lengths: dict[str, float] = {}
         self.lengths = np.where(u == 0.0, 1.0, np.abs(u))
+        self._measure_lengths(u, p, cost, 0.0)
         self._measure_noise(u, p, value)
-        self._measure_lengths(u, p, cost)
+        if self.noise.any():  # which may have been taken for bends
+            self._measure_lengths(u, p, cost, self.grain)
         if (jacobian is None or not self._gives_derivative) and not self.noise.any():
             self.complex_step = self._complex_step_works(u, p)
 
@@ -256,6 +255,14 @@ class Differentiated:
             self.parameter_lengths[name] = found or abs(p) or 1.0
         return self.parameter_lengths[name]
 
+    def _quietly_at(self, p: float, n: int) -> Callable[[np.ndarray], np.ndarray]:
+        """u -> f(u, p), NaN where it cannot be evaluated."""
+
+        def value(u: np.ndarray) -> np.ndarray:
+            return self._quietly(lambda _: self._value(u, p), n)(0.0)
+
+        return value
+
     def _quietly(self, line: Callable[[float], np.ndarray], n: int) -> Callable[[float], np.ndarray]:
         """The function with NaN where it cannot be evaluated."""
 
@@ -268,48 +275,9 @@ class Differentiated:
 
         return value
 
-    def _measure_lengths(self, u: np.ndarray, p: float, cost: float) -> None:
-        n = len(u)
-        self.bends, self.known = np.zeros(n, dtype=bool), u != 0.0
-        largest = float(np.abs(u).max()) or 1.0
-        each = n <= EACH
-        tries = REACH if (n if each else 1) * 77 * cost < PATIENCE else FEW
-
-        def line(direction: np.ndarray) -> Callable[[float], np.ndarray]:
-            return self._quietly(lambda t: self._value(u + t * direction, p), n)
-
-        with np.errstate(all="ignore"):
-            if each:
-                for j in range(n):
-                    found = bend(line(np.eye(n)[j]), float(self.lengths[j]), tries, self.grain)
-                    if found is not None:
-                        self.lengths[j], self.bends[j], self.known[j] = found, True, True
-                if tries > FEW and n <= PAIRS:
-                    self._measure_couplings(u, p)
-            else:
-                direction = np.where(u == 0.0, largest, u)
-                found = bend(line(direction / np.abs(direction).max()), largest, tries, self.grain)
-                self.lengths[:] = largest if found is None else found
-                self.bends[:] = found is not None
-                self.known |= self.bends
-
-    def _measure_couplings(self, u: np.ndarray, p: float) -> None:
-        """Lengths of unknowns that are zero and in which f is linear, but which decide how it changes with others."""
-        n, unit = len(u), np.eye(len(u))
-        for j in np.flatnonzero(~self.known):
-            sizes = []
-            for k in range(n):
-                if k != j:
-
-                    def plane(t: float, s: float, j: int = int(j), k: int = k) -> np.ndarray:
-                        return self._quietly(
-                            lambda t: self._value(u + t * unit[j] + s * self.lengths[k] * unit[k], p), n
-                        )(t)
-
-                    sizes.append(coupling(plane, 1.0))
-            found = [size for size in sizes if size]
-            if found:
-                self.lengths[j], self.known[j] = min(found), True
+    def _measure_lengths(self, u: np.ndarray, p: float, cost: float, grain: float | np.ndarray) -> None:
+        values = self._quietly_at(p, len(u))
+        self.lengths, self.bends, self.known = measured(values, u, grain, cost)
 
     def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))

@@ -16,6 +16,8 @@ EPS = float(np.finfo(float).eps)
 GOOD = 1e-13  # relative error at which a difference is taken without trying a smaller step
 FACTOR = 64.0  # between the lengths that are tried by `bend`
 ASIDE = 1.37  # ratio of two lengths at which slopes are compared
+HALVINGS = 5  # of the factor between two of them, to find where f has bent
+CLOSER = 20  # halvings after which a continuous function has hardly changed any more
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
 # stretches over which samples are compared with polynomials, as parts of a length; samples on each; degree
@@ -108,9 +110,10 @@ def _relative(found: Difference) -> float:
 
 
 def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray = 0.0) -> float | None:
-    """Length over which f stops being linear, to within an order of magnitude; None if it is linear, or no power law ends.
+    """Length over which f stops being linear; None if it is linear, or no power law ends.
 
-    The change of f grows like t as long as t is small; the length is where it stops to.
+    The change of f grows like t as long as t is small; the length is where it is by half as much again, or less. What seems to
+    bend where f has steps is rounding: then larger t are asked.
 
     Parameters
     ----------
@@ -138,17 +141,57 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
         found = np.inf
         for r in range(odd.shape[1]):
-            first = int(np.argmax(seen[:, r]))
-            if not seen[first, r]:
-                continue
-            reference = slope[first, r]
-            bent = np.abs(slope[:, r] - reference) + np.abs(even[:, r]) / lengths > 0.5 * abs(reference)
-            bent = (bent | ~np.isfinite(odd[:, r])) & (np.arange(len(lengths)) > first)
-            if bent.any():
-                k = int(np.argmax(bent))
-                if float(lengths[k]) / np.sqrt(FACTOR) < found and _smooth(f, float(lengths[k]), r):
-                    found = float(lengths[k]) / np.sqrt(FACTOR)
-    return found if np.isfinite(found) else None
+            found = min(found, _bend_of_row(f, r, lengths, slope[:, r], even[:, r], seen[:, r], found))
+        if not np.isfinite(found) and not seen.any():
+            found = _end_of_square(f, lengths, even, floor)
+    return float(found) if np.isfinite(found) else None
+
+
+def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.ndarray) -> float:
+    """Length up to which a function that is even grows like a square; infinity where it does all the way."""
+    curvature = even / lengths[:, None] ** 2
+    beside = np.array([0.5 * (f(ASIDE * t) + f(-ASIDE * t)) for t in lengths]) - f(0.0)
+    beside /= (ASIDE * lengths[:, None]) ** 2
+    seen = (np.abs(even) > floor) & (np.abs(curvature - beside) <= 0.05 * np.abs(curvature))
+    found = np.inf
+    for r in range(even.shape[1]):
+        k = int(np.argmax(seen[:, r]))
+        if seen[k, r]:
+            ends = np.abs(curvature[:, r] - curvature[k, r]) > 0.5 * abs(curvature[k, r])
+            ends = (ends | ~np.isfinite(curvature[:, r])) & (np.arange(len(lengths)) > k)
+            if ends.any():
+                found = min(found, float(lengths[int(np.argmax(ends))]) / np.sqrt(FACTOR))
+    return found
+
+
+def _bend_of_row(
+    f: Line, r: int, lengths: np.ndarray, slope: np.ndarray, even: np.ndarray, seen: np.ndarray, least: float
+) -> float:
+    """Length over which row r bends, infinity where it does not, or not below `least`."""
+    here, k = float(f(0.0)[r]), 0
+    finite = np.isfinite(slope) & np.isfinite(even)
+    for first in np.flatnonzero(seen):
+        if first < k:
+            continue
+        reference = float(slope[first])
+        bent = np.abs(slope - reference) + np.abs(even) / lengths > 0.5 * abs(reference)
+        bent = (bent | ~finite) & (np.arange(len(lengths)) > first)
+        if not bent.any():
+            break
+        k = int(np.argmax(bent))
+        low, high = float(lengths[k - 1]), float(lengths[k])
+        if low >= least:
+            break
+        for _ in range(HALVINGS):
+            middle = np.sqrt(low * high)
+            ahead, back = float(f(middle)[r]), float(f(-middle)[r])
+            change = (
+                abs(0.5 * (ahead - back) / middle - reference) + abs(0.5 * (ahead + back) - here) / middle
+            )
+            low, high = (middle, high) if change <= 0.5 * abs(reference) else (low, middle)
+        if _continuous(f, high, r):
+            return high
+    return np.inf
 
 
 def noise_of(f: Line, spacing: float, tries: int = 5) -> np.ndarray:
@@ -218,14 +261,24 @@ def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     return np.median(estimates, axis=0), still
 
 
-def _smooth(f: Line, t: float, r: int) -> bool:
-    """Whether entry r of f, or of its mirror image, is smooth at t: not the rounding of terms that cancel."""
+def _continuous(f: Line, t: float, r: int) -> bool:
+    """Whether entry r of f, or of its mirror image, is continuous near t: no stairs that rounding makes of terms that cancel."""
     for side in (t, -t):
-        low, here, high = (float(f(side * (1.0 + change))[r]) for change in (-1e-4, 0.0, 1e-4))
-        if not np.isfinite([low, here, high]).all():
+        places = side * np.linspace(0.3, 1.2, 10)
+        values = np.array([float(f(place)[r]) for place in places])
+        if not np.isfinite(values).all():
             return True  # it cannot be evaluated there, which is a length, too
-        before, after = here - low, high - here
-        if abs(after - before) > 0.1 * max(abs(before), abs(after)):
+        k = int(np.argmax(np.abs(np.diff(values))))
+        (low, high), (before, after) = places[k : k + 2], values[k : k + 2]
+        whole = abs(after - before)
+        for _ in range(CLOSER):
+            middle = 0.5 * (low + high)
+            value = float(f(middle)[r])
+            if abs(value - before) > abs(after - value):
+                high, after = middle, value
+            else:
+                low, before = middle, value
+        if abs(after - before) > 0.05 * whole:
             return False
     return True
 

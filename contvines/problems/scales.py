@@ -26,6 +26,8 @@ class Scales:
         Typical size of an eigenvalue of dF/du.
     noise : float
         Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff.
+    untold : tuple of int
+        Unknowns of which nothing tells how large they become; their scale is 1.
     """
 
     unknowns: np.ndarray
@@ -33,6 +35,7 @@ class Scales:
     rows: np.ndarray
     rate: float = 1.0
     noise: float = 0.0
+    untold: tuple[int, ...] = ()
 
     @cached_property
     def vector(self) -> np.ndarray:

@@ -14,6 +14,9 @@ KERNEL = 4  # null vectors that are followed at most
 EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
 SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
+# the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
+LEAST = 1.6
+ATTEMPTS = 22  # halvings of the amplitude
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
 ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
 ASIDE = (0.0, 1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
@@ -232,12 +235,13 @@ def _at(
     return None if far or missed else found
 
 
-def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved | None) -> bool:
+def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved | None, least: float) -> bool:
     """Whether two points, the second one at half the amplitude, come from the same branch through z, as their distances tell."""
     if point is None or near is None:
         return False
-    far, close = (engine.norm(engine.join(p.u, p.p) - z) for p in (point, near))
-    return far < 3.5 * close
+    away, beside = (engine.join(p.u, p.p) - z for p in (point, near))
+    far, close = engine.norm(away), engine.norm(beside)
+    return least * close < far < 3.5 * close and engine.inner(away, beside) > 0.0
 
 
 def _origin(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
@@ -259,9 +263,29 @@ def _depart(
     direction: np.ndarray,
     bend: float = 0.0,
 ) -> Departure | None:
+    """The branch in a direction; see :func:`departures`."""
+    for least in (LEAST, 0.0):
+        found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least)
+        if found is not None:
+            return found
+    return None
+
+
+def _lined(
+    engine: Engine,
+    u: np.ndarray,
+    p: float,
+    tangent: np.ndarray,
+    amplitude: float,
+    one_sided: bool,
+    direction: np.ndarray,
+    bend: float,
+    least: float,
+) -> Departure | None:
+    """The branch in a direction whose first points are so much further away at twice the amplitude."""
     z = engine.join(u, p)
     best: Departure | None = None
-    for attempt in range(14):
+    for attempt in range(ATTEMPTS):
         if attempt >= 7 and best is not None:
             break
         half, offset = 0.5 * amplitude, bend * amplitude**2
@@ -274,9 +298,9 @@ def _depart(
                 _at(engine, z, direction, x, y, SLANTED)
                 for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
             )
-            if not _lined_up(engine, z, back, behind):
+            if not _lined_up(engine, z, back, behind, least):
                 back = None
-        if not _lined_up(engine, z, ahead, near):
+        if not _lined_up(engine, z, ahead, near, least):
             ahead = None
         if (
             ahead is not None

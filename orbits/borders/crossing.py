@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -17,13 +17,13 @@ from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends_to
+from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
     SIZES,
     Grown,
     Place,
     grown,
     margins_of,
-    parameter_unit,
     placed,
     proposals,
     turned,
@@ -43,6 +43,10 @@ from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import polish
 
 BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
+AWAY = (
+    1e-6,
+    1e-7,
+)  # of the parameter's unit: how far from a border simulation begins, the second where the first finds nothing
 NEARER = (
     0.3,
     0.1,
@@ -227,8 +231,8 @@ def _simulated(
     engine = stepper(problem.model.name)
     here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
     place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
-    for side in (1.0, -1.0):
-        q = p + side * 1e-6 * parameter_unit(problem, p)
+    for away, side in product(AWAY, (1.0, -1.0)):
+        q = p + side * away * parameter_unit(problem, p)
         params = problem.values(q)
         state = state_of(
             engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
@@ -252,18 +256,21 @@ def _simulated(
         symmetric = is_symmetric(found.word, found.periods, found.nodes)
         other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
-        if not tends_to(orbit, _nearer(other, v, q, p), found):
+        nearer = _nearer(other, v, q, p)
+        if nearer is None or not tends_to(orbit, nearer, found):
             continue  # an attractor somewhere else: nothing joins it to the border
         yield other, v, q, None, "the simulator goes on"
 
 
-def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solution:
-    """The orbit at q, followed towards the border at p as far as it can be solved for."""
+def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solution | None:
+    """The orbit at q, followed towards the border at p as far as it can be solved for; None if it stops being real on the way."""
     found = problem.orbit(u, q)
     for part in NEARER:
         there = p + part * (q - p)
         u, residual = solved_at(problem.equations, u, there)
         if not residual < 1e-10:
             break
+        if margins_of(problem, u, there).min() < REAL:
+            return None
         found = problem.orbit(u, there)
     return found

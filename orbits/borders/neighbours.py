@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.distance import tends_to
+from orbits.borders.distance import SHRINKS, tends_to
+from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
 from orbits.borders.rewriting import Edit, edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
@@ -18,9 +19,7 @@ from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
-from orbits.words.alphabet import LEFT
 
-NEAR = 1e-7  # margins this small vanish together
 # of what grows beyond the border: ways to try
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))
 LARGEST = 2e-3  # what grows is followed up to here where smaller sizes leave open what is real
@@ -28,17 +27,14 @@ SHOWN = 1e-8  # margins smaller than this may be zeros: their signs are asked fo
 ROUNDING = 1e-13  # of a margin
 STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is close
 ASTRAY = 0.1  # part of the way from the border by which a solution may miss its prediction: else it is of another branch
+CLOSER = 3  # times that a solution which tends to the border orbit is looked at closer still
+PLACED = 1e-10  # of the parameter's unit: places of such solutions this close to the border's are the same
 GROWING = 1e-4  # least growth of a margin with the distance from the border
 
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution."""
     return examined(problem, u, p)[2 * problem.n_multipliers :]
-
-
-def parameter_unit(problem: CycleProblem, p: float) -> float:
-    """What changes of the parameter near p are compared with: its own size, or where it started."""
-    return max(abs(p), abs(problem.value(problem.params))) or 1.0
 
 
 def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
@@ -76,15 +72,6 @@ class Grown(NamedTuple):
     u: np.ndarray
     p: float
     tangent: np.ndarray
-
-
-class Held(NamedTuple):
-    """A solution in which what grows beyond the border has a given size."""
-
-    u: np.ndarray
-    p: float
-    tangent: np.ndarray
-    size: float
 
 
 class Place(NamedTuple):
@@ -201,62 +188,6 @@ def vanishing_in(
     return None
 
 
-def climb(
-    other: CycleProblem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
-) -> list[Held]:
-    """Solve with what grows beyond the border held at each of the sizes in turn, as long as that converges."""
-    found: list[Held] = []
-    u, q = guess, p
-    for wanted in sizes:
-        held = _hold(other, u, q, first, change, p, wanted)
-        if held is None:
-            break
-        found.append(held)
-        u, q = held.u, held.p
-    return found
-
-
-def _hold(
-    other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Change, p: float, wanted: float
-) -> Held | None:
-    """Solve with what grows beyond the border at p held at a size."""
-    n, size = other.model.node, other.dimension
-    kernels, work = assemble(other.model), other.scratch
-    step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
-    u = guess.copy()
-    if change.grows is Grows.GAP:
-        border[first * n], border[(first + 1) * n] = -1.0, 1.0
-        if change.start == change.stop:  # the later event stays: friction gives way there
-            u[first * n] = u[(first + 1) * n] - wanted
-        else:
-            u[(first + 1) * n] = u[first * n] + wanted
-    else:
-        sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
-        unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
-        node, near = other.expand(u)[first], NEAR * parameter_unit(other, p)
-        cavity, beside = _cavity_speeds(other, node, np.array([q, q + near])) / unit[1]
-        slopes = other.model.cavity_speed_slopes(node, other.values(q))
-        border[first * n : (first + 1) * n] = -sign * slopes * unit / unit[1]
-        border[first * n + 1] += sign
-        border[size] = -sign * (beside - cavity) / near
-        speed = sign * (u[first * n + 1] - cavity)
-        u[first * n + 1] += sign * (wanted - speed)
-        if (
-            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
-        ):  # it comes to rest the sooner the slower it is
-            u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
-    residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
-        return None
-    return Held(u, float(q_new), tangent, wanted)
-
-
-def _cavity_speeds(problem: CycleProblem, node: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """v' at an impact, at some parameter values."""
-    nodes = np.broadcast_to(node, (len(p), 1, len(node)))
-    return problem.model.cavity_motion(nodes, problem.values(p))[1][:, 0]
-
-
 def _begins_at(
     border: Solution, other: CycleProblem, first: int, change: Change, p: float, found: list[Held]
 ) -> bool:
@@ -280,7 +211,29 @@ def _begins_at(
     if size < LARGEST and np.any(undecided & (values < -ROUNDING)):
         return False  # no solution where they would have a sign
     second = second or near
-    return tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p))
+    if not tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p)):
+        return False
+    return _keeps_tending(border, other, first, change, p, near)
+
+
+def _keeps_tending(
+    border: Solution, other: CycleProblem, first: int, change: Change, p: float, near: Held
+) -> bool:
+    """Whether the solutions go on tending to the border orbit, and to its place, at still smaller sizes, as far as they can be solved for.
+
+    Those of a branch that only passes by do so until they are as far as that branch's own border.
+    """
+    placed = PLACED * parameter_unit(other, p)
+    for _ in range(CLOSER):
+        held = hold(other, near.u, near.p, first, change, p, 0.1 * near.size)
+        if held is None:
+            break
+        if not tends_to(border, other.orbit(held.u, held.p), other.orbit(near.u, near.p)):
+            return False
+        if abs(held.p - p) > max(SHRINKS * abs(near.p - p), placed):
+            return False
+        near = held
+    return True
 
 
 def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: list[Held]) -> Iterator[Held]:
@@ -288,7 +241,7 @@ def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: 
     yield from found[-2::-1]
     held: Held | None = found[0]
     while held is not None and held.size < LARGEST:
-        held = _hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, LARGEST))
+        held = hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, LARGEST))
         if held is not None:
             yield held
 

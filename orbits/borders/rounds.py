@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.borders.neighbours import SIZES, Held, climb, examined, vanishing_in, with_edits
+from orbits.borders.holding import Held, climb
+from orbits.borders.neighbours import SIZES, examined, vanishing_in, with_edits
 from orbits.borders.rewriting import Edit
 from orbits.contacts.changes import Grows
 from orbits.cycles.rounds import Rounds, derived, judged

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orbits.borders.distance import CLOSE
-from orbits.borders.neighbours import parameter_unit
+from orbits.borders.holding import parameter_unit
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import StartError, find

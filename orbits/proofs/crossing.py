@@ -18,12 +18,20 @@ from orbits.proofs.equations import Motif, System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal
 from orbits.proofs.stability import away_from_one, basis_texts
-from orbits.proofs.tiles import Along, Tile, lay
+from orbits.proofs.tiles import DIGITS, Along, Tile, lay
 from orbits.proofs.varying import Varying
 
-APART = ("2e-11", "2e-14", "2e-17", "2e-20", "2e-23")
+APART = ("2e-11", "2e-14", "2e-17", "2e-20", "2e-26", "2e-32", "2e-38")
 """Of either orbit from the special point; nearer where the branch bends sharply or a long word's map is known too roughly in the tile."""
-TURN = ("1e-6", "1e-8", "1e-10", "1e-13")  # the same in the unknown that goes on where the parameter turns
+TURN = (
+    "1e-6",
+    "1e-8",
+    "1e-10",
+    "1e-13",
+    "1e-19",
+    "1e-25",
+    "1e-31",
+)  # the same in the unknown that goes on where the parameter turns
 WIDTH = 1.25  # of the tile
 
 
@@ -53,7 +61,7 @@ def crossing(
         If one of the three is not proved, or the orbits do not lie in the tile.
     """
     if not len(motif):
-        center, half = texts(value.mid(), 40)[0], f"{float(APART[0]) * WIDTH:.3g}"
+        center, half = texts(value.mid(), DIGITS)[0], f"{float(APART[0]) * WIDTH:.3g}"
         low, high = (_shifted(center, sign, APART[0]) for sign in (-1, 1))
         return [resting_box(motif, low), resting_box(motif, center, half), resting_box(motif, high)]
     for apart in APART if turn is None else TURN:
@@ -79,20 +87,20 @@ def _chain(
     """`crossing` with orbits this far from the point."""
     n = motif.node
     nodes = [list(node[:n]) for node in z]
-    center = texts(value.mid(), 40)[0]
+    center = texts(value.mid(), DIGITS)[0]
     if turn is None:
         ends = [_shifted(center, sign, apart) for sign in (-1, 1)]
         along, starts = Along(motif, p, varying, None, ball(center)), [nodes, nodes]
     else:
         place = turn.block, turn.component
-        center = texts(nodes[place[0]][place[1]].mid(), 40)[0]
+        center = texts(nodes[place[0]][place[1]].mid(), DIGITS)[0]
         along = Along(motif, p, varying, place, ball(_shifted(center, 1, apart)))
         starts = [
             [[a + b * ball(apart) * sign for a, b in zip(node[:n], node[n:])] for node in z]
             for sign in (-1, 1)
         ]
         _, (there,) = refine(along, starts[1], [value], bits)
-        ends = [texts(there.mid(), 40)[0]] * 2
+        ends = [texts(there.mid(), DIGITS)[0]] * 2
         along.at = ball(center)
     tile = lay(along, center, f"{float(apart) * WIDTH:.3g}", nodes, value)
     if tile is None:

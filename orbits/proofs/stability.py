@@ -22,9 +22,9 @@ from orbits.proofs.obstacles import Obstacle, Remedy, Step
 
 SQUARINGS = 26
 LARGE = 1e12
-ROUGH = 0.1  # relative error of a determinant that another arithmetic finds apart from 0, too
+ROUGH = 1e-3  # relative error of a determinant that another arithmetic finds apart from 0, too
 CRITICAL = 1e-9  # multipliers this close to the circle are told from it by eigenvectors of
-DIGITS = 40  # digits
+DIGITS = 60  # digits
 ROUNDING = 1e-20  # share of a multiplier's imaginary part that is none
 MIXED = 1e3  # condition from which on eigenvectors are nearly parallel
 

@@ -24,6 +24,7 @@ from orbits.proofs.special import AtParameter
 from orbits.proofs.varying import Varying
 
 ROUNDS = 6
+DIGITS = 60  # of middles: tiles of long words may be narrower than 1e-30
 SLACK = 2.0  # so much smaller than the tile is the image, that another arithmetic finds it inside as well
 LEVEL = 0.25  # least radius over the largest
 Place = tuple[int, int]
@@ -107,8 +108,8 @@ def lay(along: Along, center: str, half: str, z: Sequence[Sequence[Any]], value:
     """The tile about the refined nodes z and parameter where the coordinate is `center`, None if none is proved."""
     arb = library().arb
     span = arb(0, half)
-    mids = [[texts(v.mid(), 40)[0] for v in node] for node in z]
-    first = center if along.place is None else texts(value.mid(), 40)[0]
+    mids = [[texts(v.mid(), DIGITS)[0] for v in node] for node in z]
+    first = center if along.place is None else texts(value.mid(), DIGITS)[0]
     if along.place is not None:
         mids[along.place[0]][along.place[1]] = center
     m, p = [[ball(text) for text in node] for node in mids], ball(first)

@@ -122,6 +122,35 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
     return _finite(quantity, number, shown, would), unit
 
 
+def counted(name: str, value: str, own: str) -> float:
+    """A measure given as text, ``"15 mm"``, counted in the unit in which it is shown.
+
+    Parameters
+    ----------
+    name : str
+        Of the measure.
+    value : str
+    own : str
+        Its unit; "" for a plain number.
+
+    Raises
+    ------
+    QuantityError
+        If it is no number with a unit of this kind.
+    """
+    would = f'"1 {own}" would do' if own else "a plain number would do"
+    match = _NUMBER.fullmatch(value)
+    if match is None:
+        raise QuantityError(f"{name} = {value!r} is not a number with a unit; {would}")
+    if own and not match[2]:
+        raise QuantityError(f"{name} = {value!r} has no unit; {would}")
+    factor = size(match[2], own) if match[2] else 1.0
+    if factor is None:
+        what = f"shown in {own}" if own else "a plain number"
+        raise QuantityError(f"{name} = {value!r}: {name} is {what}; {would}")
+    return float(match[1]) * factor
+
+
 def _meant(unit: str, quantity: Quantity) -> str:
     """ " (did you mean ...?)" where a usual unit differs in capitals or in one letter, else empty."""
     usual = [unit_of(quantity), *_USUAL.get(quantity.unit, ())]

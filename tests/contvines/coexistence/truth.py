@@ -35,15 +35,17 @@ SIGMAS = 3.0
 ENOUGH = 1000  # starts of our own for shares
 FEW_OF_A_PAGE = 100  # starts for shares: those of a page are followed one by one
 PAGE = Path(__file__).resolve().parents[3] / "examples" / "machines" / "absorber.py"
+NAMED = {"chaotic", "quasi-periodic", "slow", "chatter"}  # what is told of motions that do not recur
+PILED = 1000  # events of a recurrence in which impacts pile up, as the witness counts them
 NEAR = 0.01  # of the interval: so near an attractor of the atlas must be named that does not recur
 
 
 @dataclass
 class Met:
-    """What the witness has met at one value: (periods, impacts, starts, impacts' wall, phase and B) of each attractor."""
+    """What the witness has met at one value: (periods, impacts, starts, impacts' wall, phase and B, whether they pile up)."""
 
     value: float
-    attractors: list[tuple[int, int, int, np.ndarray]]
+    attractors: list[tuple[int, int, int, np.ndarray, bool]]
     stuck: int
     wandering: int
     chaotic: int
@@ -107,8 +109,9 @@ def witness(
         found = []
         for _ in range(count):
             cells = next(rows).split()
-            periods, hits, _, number = map(int, cells[:4])
-            found.append((periods, hits, number, np.array(cells[6:], dtype=float).reshape(-1, 3)))
+            periods, hits, events, number = map(int, cells[:4])
+            impacts = np.array(cells[6:], dtype=float).reshape(-1, 3)
+            found.append((periods, hits, number, impacts, events >= PILED))
         met.append(Met(float(p), found, stuck, wandering, chaotic))
     return met
 
@@ -145,13 +148,16 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
             if b.real
             and any(first - 1e-9 <= here.value <= last + 1e-9 for first, last in b.stable_intervals())
         ]
-        total = sum(n for _, _, n, _ in here.attractors) + here.stuck + here.wandering
+        total = sum(n for _, _, n, *_ in here.attractors) + here.stuck + here.wandering
         known = [row for b in stable for row in _impacts_on(b, here.value, graph.within, engines)]
         resting = {str(b.description.get("word", "")) for b in stable}
-        for periods, hits, number, row in here.attractors:
+        named = {a.kind for a in graph.attractors if abs(a.value - here.value) < NEAR * (high - low)}
+        for periods, hits, number, row, piles in here.attractors:
             share = number / total
             on = (
-                any(_same(row, one, mirror) for one in known)
+                "chatter" in named  # infinitely many impacts have no word
+                if piles
+                else any(_same(row, one, mirror) for one in known)
                 if hits
                 else any(not set(w) & set("LR") for w in resting)
             )
@@ -160,9 +166,7 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
                 say(
                     f"missing at {here.value:.8g}: {hits} impacts in {periods} periods, share {share:.4f} of the starts"
                 )
-        named = any(a.kind in ("chaotic", "quasi-periodic", "slow", "chatter") and abs(a.value - here.value) < NEAR * (high - low)
-                    for a in graph.attractors)  # fmt: skip
-        if here.wandering and not named:
+        if here.wandering and not named & NAMED:
             share = here.wandering / total
             tally += Tally(unnamed=1)
             say(f"not named near {here.value:.8g}: share {share:.4f} of the starts wanders")
@@ -175,9 +179,11 @@ def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: 
     for here in met:
         motions, index, _ = population.settle(population.starts(starts, 99, here.value), here.value)
         own = [(m, int(np.sum(index == k))) for k, m in enumerate(motions) if m.problem is not None]
-        total = sum(n for _, _, n, _ in here.attractors) + here.stuck + here.wandering
-        for periods, hits, number, row in here.attractors:
-            if hits:
+        total = sum(n for _, _, n, *_ in here.attractors) + here.stuck + here.wandering
+        for periods, hits, number, row, piles in here.attractors:
+            if piles:
+                ours = sum(int(np.sum(index == k)) for k, m in enumerate(motions) if m.kind == "chatter")
+            elif hits:
                 ours = sum(
                     n
                     for m, n in own

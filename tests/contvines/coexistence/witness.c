@@ -210,6 +210,7 @@ static void fly(State *s, double until) {
     }
     if (turns) {
       arrive(&f, end, s), s->events++, stop(s);
+      if (s->hits && (at_left(s) || at_right(s))) s->events += 1000; /* so near a wall impacts have piled up */
       if (end <= x && s->mode == f.mode && fresh) s->psi += 1e-9;
       return;
     }

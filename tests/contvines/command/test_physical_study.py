@@ -133,3 +133,27 @@ def test_tables_json_and_csv_speak_the_study_s_units(tmp_path, monkeypatch, caps
     rows = (tmp_path / "case-sweep.csv").read_text().splitlines()
     assert "value [Hz]" in rows[0] and "max_abs_q1 [mm]" in rows[0]
     assert [float(row.split(",")[0]) for row in rows[1:]] == pytest.approx([7.5, 7.85, 8.2])
+
+
+def test_bounds_are_read_in_their_units():
+    """Measures are shown in millimetres, millimetres per second and so on; bounds may be text with any unit of that kind."""
+    plain = check_study(nested(continue__bounds={"B": [-np.inf, 150.0]}))
+    assert plain.bounds == {"B": (-np.inf, 150.0)}
+    unit = machine(plain).units["B"]
+    size = {"m/s": 1.0, "mm/s": 1e3, "cm/s": 1e2}[unit]
+    told = check_study(nested(continue__bounds={"B": ["2 cm/s", "150 mm/s"]}))
+    assert told.bounds["B"] == pytest.approx((0.02 * size, 0.15 * size), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("15 kg", "[continue] bounds: B = '15 kg': B is shown in"),
+        ("15", "[continue] bounds: B = '15' has no unit"),
+        ("wide", "[continue] bounds: B = 'wide' is not a number with a unit"),
+    ],
+)
+def test_bounds_without_a_meaning_are_refused(value, said):
+    with pytest.raises(StudyError) as refusal:
+        check_study(nested(continue__bounds={"B": [0.0, value]}))
+    assert said in str(refusal.value)

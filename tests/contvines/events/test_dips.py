@@ -224,3 +224,12 @@ def test_multipliers_that_are_rounding_where_a_branch_begins_at_a_border_cross_n
     crossing = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -0.9999 - (p + 0.95))
     doubling = cv.diagram(crossing, within=(-1.0, 1.0)).of_kind("period-doubling")  # just beside the border
     assert [point.value for point in doubling] == pytest.approx([-0.9499], abs=1e-12)
+
+
+@pytest.mark.parametrize("slope", [1.0, 1e-4, 1e-8])
+def test_told_errors_of_borders_cover_the_rounding_of_flat_margins(slope):
+    """A margin that comes from 1 - (1 - m), so that it is known to 1.1e-16, passes zero at 0.3."""
+    flat = Line(margin=lambda p: 1.0 - (1.0 - slope * (0.3 - p)), multiplier=lambda p: 0.5)
+    border = cv.diagram(flat, within=(-1.0, 1.0))["VG1"]
+    assert abs(border.value - 0.3) <= border.location_error
+    assert 1e-16 / slope < border.location_error < 1e-15 / slope + 1e-15

@@ -8,12 +8,15 @@ from contvines.problems.protocol import Seed
 from tests.contvines.graph.test_borders import Line
 
 
-def begun_beside(multiplier, distance, step, end=1.0):
-    """The multiplier with which word "b" begins at p = 1/2: it is traced from a point at some distance from there."""
+def begun_beside(multiplier, distance, step, end=1.0, rounded=1e-11):
+    """The multiplier with which word "b" begins at p = 1/2: it is traced from a point at some distance from there.
+
+    Nearer than `rounded` to the border what is computed is something else.
+    """
 
     class Singular(Line):
         def multiplier(self, p):
-            return multiplier(p - 0.5) if abs(p - 0.5) > 1e-11 else 7.0
+            return multiplier(p - 0.5) if abs(p - 0.5) >= rounded else 7.0
 
     def beyond(line, point):
         other = Singular("b", -0.5, 2.0, [1.0, -1.0], [0.5, end])
@@ -46,3 +49,12 @@ def test_without_bound_beside_the_border_is_without_bound_at_it(distance, noise,
     """-2e-5/t, its t known up to a little: only that it grows like that can be told, and is enough."""
     seen = begun_beside(lambda t: -2e-5 / (t + noise * np.sin(1e9 * t)), distance, step)
     assert seen.real <= -1e12
+
+
+@pytest.mark.parametrize("step", [3e-7, 1e-3])
+@pytest.mark.parametrize("distance", [1e-6, 1e-4])
+@pytest.mark.parametrize("late", [1e-9, 1e-10])
+def test_what_stops_growing_at_the_very_border_has_a_limit(late, distance, step):
+    """-2e-5/(t + late) looks as if it grew without bound until it is as near as that; at the border it is -2e-5/late."""
+    seen = begun_beside(lambda t: -2e-5 / (t + late), distance, step, rounded=0.0)
+    assert seen == pytest.approx(-2e-5 / late, rel=1e-2)

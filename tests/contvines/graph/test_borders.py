@@ -189,7 +189,7 @@ def test_a_margin_that_touches_zero_where_another_one_passes_it(max_step, later)
 
 
 @pytest.mark.parametrize("max_step", [0.3, 0.03, 0.004])
-@pytest.mark.parametrize("flip, border", [(0.5, 0.501), (0.5, 0.52), (0.437, 0.4371)])
+@pytest.mark.parametrize("flip, border", [(0.5, 0.501), (0.5, 0.52), (0.437, 0.4371), (0.5, 0.500003)])
 def test_what_lies_before_a_border_is_found_whatever_is_behind(max_step, flip, border):
     """The multiplier passes -1 before the border, and jumps back behind it, as one does that passes infinity at a graze."""
 
@@ -223,6 +223,33 @@ def test_where_the_parameter_turns_back_at_a_border_there_is_no_fold(max_step, b
     graph = cv.diagram(problem, within=(-1.0, 1.0), settings={"max_step": max_step})
     assert [point.kind for point in graph.special.values() if point.kind != "end"] == ["velocity-graze"]
     assert graph["VG1"].value == pytest.approx(-(behind**2), abs=1e-13)
+
+
+@pytest.mark.parametrize("max_step", [0.03, 0.007])
+@pytest.mark.parametrize("behind", [1e-3, 3e-6, 2e-6])
+def test_a_fold_just_before_a_border_is_one_where_a_multiplier_says_so(max_step, behind):
+    """p = -u^2 with the multiplier 1 - 2 u, as a smooth fold has it, and its border a little behind: stability changes at u = 0."""
+
+    class Folding(Line):
+        def equations(self, u, p):
+            return np.array([p + u[0] ** 2]), np.array([[2.0 * u[0]]]), np.array([1.0])
+
+        def margins(self, u, p):
+            return np.array([u[0] + behind])
+
+    problem = Folding("t", 0.0, 1.0, [1.0], [0.0])
+    problem.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, told_by_u)
+    problem.u0, problem.p0 = np.array([0.7]), -0.49
+    graph = cv.diagram(problem, within=(-1.0, 1.0), settings={"max_step": max_step})
+    kinds = [point.kind for point in graph.special.values() if point.kind != "end"]
+    assert kinds == ["fold", "velocity-graze"]
+    assert graph["LP1"].value == pytest.approx(0.0, abs=1e-13)
+    assert graph["VG1"].value == pytest.approx(-(behind**2), abs=1e-13)
+
+
+def told_by_u(data, u, p, work, row):
+    row[0], row[1] = 1.0 - 2.0 * u[0], 0.0
+    row[2:] = data.margins(u, p)
 
 
 class Vanishing(ProblemDefaults):

@@ -8,7 +8,7 @@ from contvines.problems.protocol import Seed
 from tests.contvines.graph.test_borders import Line
 
 
-@pytest.mark.parametrize("gap", [3e-6, 0.02])
+@pytest.mark.parametrize("gap", [1e-9, 1e-7, 3e-6, 0.02])
 def test_a_branch_that_passes_by_does_not_begin_at_the_border(gap):
     """Word "b" lasts from 1/2 + gap to 0.9: a seed on it is real and close, but nothing joins it to the border at 1/2."""
 
@@ -73,13 +73,13 @@ def test_a_solution_of_the_border_itself_is_no_branch():
     assert list(graph.branches) == ["B1"] and not graph.switches
 
 
-@pytest.mark.parametrize("width", [1e-10, 1e-13])
-def test_a_branch_that_is_real_by_rounding_alone_is_none(width):
-    """Word "b" has margins -1e-13 on its way from 1/2 to 1/2 + width."""
+@pytest.mark.parametrize(("width", "margin"), [(1e-10, -1e-13), (1e-13, -1e-13), (2e-7, -5e-13)])
+def test_a_branch_that_is_real_by_rounding_alone_is_none(width, margin):
+    """Word "b" has so small negative margins on its way from 1/2 to 1/2 + width."""
 
     class Rounded(Line):
         def margins(self, u, p):
-            return np.array([-1e-13 + min(0.0, p - 0.5, 0.5 + width - p)])
+            return np.array([margin + min(0.0, p - 0.5, 0.5 + width - p)])
 
     def rounded(line, point):
         other = Rounded("b", -0.5, 2.0, [1.0], [0.0])

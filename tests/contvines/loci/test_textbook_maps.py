@@ -85,3 +85,27 @@ def test_ricker_with_a_delay():
     found = {p.kind: p for _, p in find(locus)}
     for kind, a in (("resonance-1-4", 1.0), ("resonance-1-3", 2.0), ("resonance-1-2", 3.0)):
         assert found[kind].value == pytest.approx((1 + a, a), abs=1e-9)
+
+
+def test_burgers_map_where_a_pitchfork_meets_a_flip():
+    # x' = (1 - nu) x - y^2, y' = (1 + mu + x) y, mirror y -> -y. (0, 0) has multipliers 1 - nu, 1 + mu; beside it x = -mu, y^2 = nu mu with
+    # trace 2 - nu and determinant 1 - nu + 2 nu mu: symmetry breaking mu = 0, flip nu = 2, Neimark-Sacker mu = 1/2 with 1:4, 1:3 at nu = 2, 3
+    def burgers(x, p):
+        return [(1 - p.nu) * x[0] - x[1] ** 2, (1 + p.mu + x[0]) * x[1]]
+
+    problem = cv.MapProblem(
+        burgers, [0.0, 0.0], {"mu": -0.3, "nu": 0.9}, parameter="mu", mirror=[[1, 0], [0, -1]]
+    )
+    chart = cv.chart(cv.diagram(problem, within=(-0.5, 0.9), depth=2), over="nu", within=(0.1, 3.9))
+    lines = {"symmetry-breaking": (0, 0.0), "neimark-sacker": (0, 0.5), "period-doubling": (1, 2.0)}
+    assert sorted(locus.kind for locus in chart.loci.values()) == sorted(
+        lines
+    )  # where branches cross none folds
+    for locus in chart.loci.values():
+        axis, place = lines[locus.kind]
+        assert np.abs(locus.values[:, axis] - place).max() < 1e-11
+        assert np.ptp(locus.values[:, 1 - axis]) > 1.39  # from one end to the other
+    expected = {"fold-flip": (0.0, 2.0), "resonance-1-4": (0.5, 2.0), "resonance-1-3": (0.5, 3.0)}
+    assert {point.kind for point in chart.points.values()} == set(expected)
+    for point in chart.points.values():
+        assert point.value == pytest.approx(expected[point.kind], abs=1e-9)

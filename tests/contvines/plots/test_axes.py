@@ -21,6 +21,7 @@ from contvines.plots import (
     plot_survey,
     plot_sweep,
 )
+from contvines.plots.legends import _columns
 from contvines.plots.measured import plot_calibration, plot_transient
 from contvines.survey import Plan
 from contvines.survey.results import Survey
@@ -229,3 +230,19 @@ def test_each_mirror_image_is_named_by_its_motion():
         legend = figure.axes[0].get_legend() or figure.legends[0]
         texts = [text.get_text() for text in legend.get_texts()]
         assert texts == ["LRtt: 50.0%", "LRtt, mirror image", "LRLt: 50.0%", "LRLt, mirror image"]
+
+
+def test_a_legend_below_has_as_many_columns_as_their_own_widths_allow():
+    """Nine entries, one of them long: by the widest one two columns would fit, and five rows squeeze the axes."""
+    wide = [40.0, 50.0, 60.0, 35.0, 80.0, 70.0, 65.0, 75.0, 90.0]
+    assert _columns(wide, 240.0) == 3  # 60 + 80 + 90
+    assert _columns(wide, 229.0) == 2
+    assert _columns(wide, 10.0) == 1
+    assert _columns([40.0] * 8, 290.0) == 4  # seven would fit: two rows are two rows with four, too
+
+
+def test_a_small_sweep_names_its_dots_shortly():
+    small = plot_sweep(DOTS, "amplitude", figsize=(3.4, 2.4))
+    assert [text.get_text() for text in small.legends[0].get_texts()] == ["simulated"]
+    large = plot_sweep(DOTS, "amplitude").axes[0].get_legend()
+    assert [text.get_text() for text in large.get_texts()] == ["simulated: B at every impact"]

@@ -33,3 +33,13 @@ def test_rounding_of_a_badly_conditioned_matrix_is_no_branch_point():
     graph = cv.diagram(cv.AlgebraicProblem(system.F, u0, p0, scale=[500.0, 1000.0]), within=(-0.3, -0.0004))
     assert {s.kind for s in graph.special.values()} == {"end"}
     assert len(graph) == 1
+
+
+def test_rounding_far_out_is_no_length():
+    # 6 x^2 comes and goes again with another row: only its rounding bends, at 1e15
+    assert System(6548).wrong() == []
+
+
+def test_a_branch_that_is_crossed_at_a_small_angle_while_it_bends_away():
+    # x = 0 crosses another branch, whose other unknowns are 24 x^2: beside the crossing that one is met first, and again
+    assert System(9879).wrong() == []

@@ -1,13 +1,17 @@
 """Units do not matter: the same graph for unknowns, parameter and rows in units from 1e-9 to 1e9, each unknown in its own."""
 
+import json
+
 import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.problems.extents import weighed
 from contvines.problems.scales import in_fields
 from tests.contvines.problems.demos import equilibria as eq
 from tests.contvines.problems.demos import listed, maps
 from tests.contvines.problems.demos.demo import NUMBERS
+from tests.contvines.problems.demos.make_table import TABLE
 
 CASES = {
     "bazykin": (eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2)),
@@ -76,10 +80,100 @@ def test_cycles_of_maps(unit, value):
     assert flips == pytest.approx([3.0, 1.0 + np.sqrt(6.0)], rel=1e-12)
 
 
+STARTS_AT_ZERO = [
+    ("chu", "flow"),
+    ("hamiltonian", "flow"),
+    ("lrz", "flow"),
+    ("burgers", "map"),
+    ("gauss", "map"),
+]
+
+
+@pytest.mark.parametrize(("unit", "value"), [(1e9, 1e-9), (1e-9, 1e9)])
+@pytest.mark.parametrize(("name", "kind"), STARTS_AT_ZERO)
+def test_starts_at_zero_tell_their_scale(name, kind, unit, value):
+    """Of unknowns that are zero, and in which the equations may be linear there, the equations have to tell what is large."""
+    (demo,) = (demo for demo in [*listed.DEMOS, *maps.DEMOS] if demo.name == name)
+    make = cv.AlgebraicProblem if kind == "flow" else cv.MapProblem
+    options = {"spectrum": "flow", **demo.options} if kind == "flow" else demo.options
+    problem = make(
+        lambda v, q: unit * np.array(demo.equations(v / unit, q / value, NUMBERS)),
+        unit * np.array(demo.u),
+        value * demo.p,
+        **options,
+    )
+    graph = cv.diagram(problem, within=tuple(value * np.array(demo.within)), depth=demo.depth)
+    found = sorted((s.kind, s.value / value) for s in graph.special.values() if s.kind != "end")
+    expected = sorted((row["kind"], row["value"]) for row in json.loads(TABLE.read_text())[name])
+    assert [kind for kind, _ in found] == [kind for kind, _ in expected]
+    assert [p for _, p in found] == pytest.approx([p for _, p in expected], rel=1e-10, abs=1e-12)
+
+
+def test_where_nothing_can_tell_a_sentence_says_so():
+    """u1 is zero all along, alone in its equation and linear there: F(c u1) = c F(u1)."""
+    problem = cv.AlgebraicProblem(lambda u, p: [p * u[0] - u[0] ** 3, -3.0 * u[1]], [0.0, 0.0], -1.0)
+    assert "nothing tells how large u1 may become" in cv.diagram(problem, within=(-1.0, 1.0)).start
+    told = cv.AlgebraicProblem(lambda u, p: [p * u[0] - u[0] ** 3, u[0] - 3.0 * u[1]], [0.0, 0.0], -1.0)
+    assert cv.diagram(told, within=(-1.0, 1.0)).start == ""
+
+
+def test_a_two_cycle_begins_without_a_fold():
+    """Hassell's map in units of 1e9: beside its flip p is known to 1e-9 only, and turns back there by rounding."""
+
+    def f(x, rate):
+        return rate * x / (1.0 + x / 1e9) ** 6
+
+    graph = cv.diagram(cv.MapProblem(f, [0.0], 0.5), within=(0.1, 40.0), depth=2)
+    assert not graph.of_kind("fold")
+    assert graph.of_kind("period-doubling")[0].value == pytest.approx((1.0 - 2.0 / 6.0) ** -6, rel=1e-12)
+
+
+def test_what_weighs_as_much():
+    """x is known to be 3: y by the linear terms of a row, z by its square, v and w by their product."""
+    matrix = np.zeros((5, 5))
+    matrix[0, :2], matrix[1, 0], matrix[2, 0] = [2.0, -1e6], 5.0, 7.0
+    matrix[3, 3:] = [1.0, -4.0]
+
+    def f(d):
+        x, y, z, v, w = d
+        return np.array([2.0 * x - 1e6 * y, 5.0 * x + z * z / 1e8, 7.0 * x - v * w, v - 4.0 * w, 0.0])
+
+    known = np.array([True, False, False, False, False])
+    lengths, told = weighed(f, matrix, np.array([3.0, 1.0, 1.0, 1.0, 1.0]), known)
+    assert told.all()
+    assert lengths[1] == pytest.approx(6e-6)
+    for length, expected in zip(lengths[2:], (np.sqrt(15e8), np.sqrt(84.0), np.sqrt(21.0 / 4.0))):
+        assert 0.5 < length / expected < 4.0
+
+
 def test_rounding_is_no_bend():
     """sin(1 + u) - sin(1) makes stairs of u below 1e-16; u and the parameter have the scale 1."""
     problem = cv.AlgebraicProblem(lambda u, p: np.sin(1.0 + u) - np.sin(1.0) - p, [0.0], 0.0)
     assert 0.01 < problem.functions.lengths[0] < 100.0
+
+
+def test_rounding_of_terms_that_cancel_is_no_bend():
+    """4 x, as 6 x^2 + 4 x - 6 x^2 with other terms between: far out, and rounded, it seems to bend."""
+
+    def F(u, p):
+        x, z = u
+        return np.array([6.0 * x**2 + 4.0 * x - 3.0 * x * (z + 2.0 * x + 1.0), z + 2.0 * x + 1.0 - p * x])
+
+    problem = cv.AlgebraicProblem(F, [0.0, -1.0], 0.0)
+    assert 0.01 < problem.functions.lengths[0] < 100.0
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e9, 1e-9])
+def test_the_length_of_a_bend_in_any_unit(unit):
+    """|x + 1| - |x - 1|, smoothed: linear to x = 1, with stairs of rounding below 1e-16."""
+
+    def F(u, p):
+        x = u / unit
+        size = [2.0 * y * np.arctan(10.0 * y) / np.pi for y in (x + 1.0, x - 1.0)]
+        return 2.0 * x / 7.0 - 3.0 / 14.0 * (size[0] - size[1])
+
+    problem = cv.AlgebraicProblem(F, [0.0], 0.0)
+    assert 0.5 < problem.functions.lengths[0] / unit < 2.0
 
 
 def test_fields_of_unlike_sizes_keep_their_sizes():

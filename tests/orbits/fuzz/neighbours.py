@@ -17,7 +17,8 @@ NEAR = 1e-7  # values of one point
 SAME = 1e-6  # motions that differ by less need not come nearer
 SHRINKS = 0.5  # a square root shrinks by 0.32 where the distance does tenfold
 NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # the same for multipliers
-UNBOUNDED = 1e14  # multipliers listed as large grow without bound
+NEAREST = (1e-6, 1e-7, 1e-8, 1e-9)  # ... where these do not tell: some grow until they are as near as that
+UNBOUNDED = 1e14  # multipliers listed as large grow without bound, or so far
 LIMIT = 1e-3  # relative difference of characteristic polynomials
 UNRESOLVED = 1e-12  # differences of the parameter, relative, that are rounding
 ASIDE = 0.1  # of the distance, where crossings are looked for
@@ -104,15 +105,23 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         tally.count("borders of orbits too unstable to tell")
         return
     if not np.all(np.abs(listed) < UNBOUNDED):
-        if not sizes[-1] > 1.5 * sizes[-2]:
+        if not (sizes[-1] > 1.5 * sizes[-2] or sizes[-1] > UNBOUNDED):
             tally.find("limit", f"{branch.label} at {point.label}: without bound, but {sizes[-3:]} beside it")
         return
-    gaps = [alike(listed, m) for _, m in seen]
-    nearest = gaps[-3:]
-    if min(gaps) < LIMIT or (nearest[2] < SHRINKS * nearest[0] and nearest[2] < 0.1):
+    if _tend_to(listed, seen):
+        return
+    seen += [(d, orbit.multipliers) for d, orbit in between.beside(i, ways[0], NEAREST)]
+    if _tend_to(listed, seen):
         return
     what = f"{_text(listed)} listed, {_text(seen[-1][1])} at {seen[-1][0]:.0e}, {_text(seen[-3][1])} at {seen[-3][0]:.0e}"
     tally.find("limit", f"{branch.label} at {point.label} ({point.kind}, {point.value:.10g}): {what}")
+
+
+def _tend_to(listed: np.ndarray, seen: list[tuple[float, np.ndarray]]) -> bool:
+    """Whether multipliers seen nearer and nearer to a border tend to those listed there."""
+    gaps = [alike(listed, m) for _, m in seen]
+    nearest = gaps[-3:]
+    return min(gaps) < LIMIT or (nearest[2] < SHRINKS * nearest[0] and nearest[2] < 0.1)
 
 
 def _text(multipliers: np.ndarray) -> str:

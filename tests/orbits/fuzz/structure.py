@@ -14,6 +14,11 @@ from tests.orbits.fuzz.tally import Tally
 
 ONE = 1e-9  # motions this near are one
 CRITICAL = 1e-2  # multipliers as near to 1: beside a branch point two branches do share an orbit
+REPEATED, OF_EXTENT = (
+    1e-7,
+    1e-2,
+)  # parts of a motion that differ by less are one; the same as a part of the branch's extent
+SHARED = 1e-6  # motions nearer than this to that of a special point are those of all branches that meet there
 NOTHING = 1e-7  # extent of a branch, in parameter and unknowns
 ROUNDOFF = 1e-9
 IN_PLACE = 1e-8  # a special point's error
@@ -52,7 +57,10 @@ def _branch(branch: Any, tally: Tally) -> None:
         return
     places = np.unique(np.linspace(0, len(branch) - 1, 7).astype(int))
     orbits = [branch.orbit(int(i)) for i in places]
-    if all(shortest(orbit) < orbit.periods for orbit in orbits):
+    # a branch so short that it is born by a doubling and hardly leaves it does differ from its root: as much as its own motions do
+    extent = max(float(np.abs(orbit.track - orbits[0].track).max()) for orbit in orbits)
+    near = min(REPEATED, OF_EXTENT * extent) if len(branch) > 1 else REPEATED
+    if all(shortest(orbit, near) < orbit.periods for orbit in orbits):
         tally.find(
             "repeated",
             f"{branch.label} {branch.description['word']} k={branch.problem.periods} repeats a shorter orbit",
@@ -111,10 +119,18 @@ def _doubled(branches: list[Any], tally: Tally) -> None:
 
 
 def _middle(branch: Any) -> int | None:
-    """The point of the largest margin: furthest from borders, and not critical, so that the orbit is no other branch's."""
+    """The point of the largest margin: furthest from borders, and not critical, so that the orbit is no other branch's.
+
+    Nor one beside a special point of the branch, whose motion all branches share that meet there.
+    """
     margin = branch.margin.copy()
     margin[[0, -1]] = 0.0
     if branch.multipliers.shape[1]:
         margin[np.abs(branch.multipliers - 1.0).min(axis=1) < CRITICAL] = 0.0
-    place = int(np.argmax(margin))
-    return place if margin[place] > 0.0 else None
+    special = [branch.orbit(i) for i in sorted({0, len(branch) - 1, *(i for i, _ in branch.marks)})]
+    for place in np.argsort(-margin, kind="stable"):
+        if not margin[place] > 0.0:
+            break
+        if all(not apart(branch.orbit(int(place)), shared) < SHARED for shared in special):
+            return int(place)
+    return None

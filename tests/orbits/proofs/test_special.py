@@ -276,3 +276,21 @@ def test_the_certificates_of_the_errata():
     }
     assert abs(square["doubling of the printed maps"] - mpf("0.86787")) < 5e-6
     assert abs(square["doubling of the machine"] - mpf("1.128")) < 5e-4
+
+
+def test_a_border_of_a_long_and_very_unstable_word_is_proved_and_verified():
+    """34 events, a multiplier of 1e7: the tile about the point is narrower than 1e-25."""
+    machine = Coupled(
+        restitution=0.7222512081656711,
+        friction=0.16735971428762814,
+        gravity=0.25,
+        mass_ratio=0.024756755745843205,
+        damping=1.4562672548360984,
+        forcing=3.136804654995166,
+    )
+    seed = machine.attractor(frequency=1.0024273603539913).orbit
+    graph = cv.diagram(seed, over="frequency", within=(0.98, 1.003), depth=2)
+    wild = [p for p in graph.special.values() if p.kind == "stick" and np.abs(p.multipliers).max() > 1e6]
+    proof = wild[0].prove()
+    assert proof.existence and abs(float(proof.value[0]) - wild[0].value) < 1e-12
+    assert float(proof.chain[1]["half_width"]) < 1e-20 and verified(proof)

@@ -22,8 +22,12 @@ textbooks, with the equations and starts of their sources, unscaled, and with pl
 
 The values are not this package's: each is a solution, in thirty digits, of its defining equations (F = 0 with a singular Jacobian, a
 vanishing Hurwitz determinant, a multiplier -1, a product of multipliers 1). The package agrees with each to 1e-10 or better, most to
-1e-15; a test says so. That there are no more was asked by Newton's method for the same equations from 150 random starts for each kind
+1e-15 (the largest difference as a part of the interval, when the page was made, stands in the table); a test says so. That there are no more was asked by Newton's method for the same equations from 150 random starts for each kind
 (cycles of length one, up to six unknowns). Cycles are followed to twice or four times their length only.
+
+Printed is what the source prints; a closed form is what its equations say by hand. None: the first five digits of every value were looked for in the
+repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation, and nothing was found: these
+demos show their values when they are run, or as pictures. What MatCont's, MatContM's and COCO's tutorials may print beyond the values here was not to be had.
 
 LP fold, BP branch point, SB symmetry breaking, HB Hopf, PD period doubling, NS Neimark-Sacker; ^2 a cycle of length two.
 """
@@ -38,8 +42,8 @@ def render() -> str:
         lines += [
             f"## {title}",
             "",
-            "| demo | comes with | parameter | special points | printed |",
-            "|---|---|---|---|---|",
+            "| demo | comes with | parameter | special points | ours differ by | printed |",
+            "|---|---|---|---|---|---|",
         ]
         for demo in demos:
             if demo.kind != kind:
@@ -51,7 +55,13 @@ def render() -> str:
                 found.setdefault(label, []).append(f"{value:.11g}")
             points = "; ".join(f"{label} {', '.join(values)}" for label, values in found.items()) or "none"
             low, high = demo.within
-            cells = (demo.name, demo.source, f"{demo.parameter} in {low:g} to {high:g}", points, demo.printed)
+            cells = (
+                demo.name,
+                demo.source,
+                f"{demo.parameter} in {low:g} to {high:g}",
+                points,
+                demo.printed or "none",
+            )
             lines.append("| " + " | ".join(cells) + " |")
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"

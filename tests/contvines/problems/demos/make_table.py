@@ -59,6 +59,7 @@ def main(names: list[str]) -> None:
                 {
                     "kind": kind,
                     "value": p,
+                    "ours": value,
                     "u": [float(f"{x:.8g}") for x in first[:6]],
                     "cycle": len(u) // len(demo.u),
                 }

@@ -1,0 +1,130 @@
+"""The opening of a branch: from the special point that it leaves to the first point from which it is followed.
+
+The first point lies at a distance that suits the branch itself. Where others are near (the next doublings of a cascade, say) it may be
+one of those; where a border is near it may lie behind that. Then a first point is looked for that is nearer.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
+from ..continuation.status import Status
+from ..events.leaps import SHORTEST
+from ..events.located import Located, Role
+from ..events.watch import Watch
+from .half_branch import HalfBranch, piece_of, single
+from .records import pack, unpack
+
+SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
+SHOWN = 1e-10  # margins of a special point that are certainly positive
+ASTRAY = 0.5  # part of its distance by which a nearer point may miss the parabola through the first one
+UPRIGHT = 1e-6  # parameter's part (in its unit) of the direction in which a branch leaves, where that is none
+NEARER = 4  # times that a first point is looked at nearer
+FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times the distance at which they are seen
+NOISY = 1e3  # ... and times the noise of the equations
+BENT = 0.3  # part by which bends of one branch may differ, so near to where it leaves
+
+
+def opening(
+    engine: Engine, origin: Solved, start: Solved, watch: Watch, journal: Any, key: str, real: bool
+) -> tuple[HalfBranch, Solved]:
+    """From a special point to the first point of a branch that leaves it, and that point: a nearer one than `start` where that one leapt."""
+    known = journal.recall(key)
+    if known is None:
+        events, times = _looked_at(engine, origin, start, watch, real)
+        journal.record(key, {**pack(events, engine), "nearer": times})
+    else:
+        events, times = unpack(known), int(known.get("nearer", 0))
+    start = _nearer_by(engine, origin, start, times)
+    half = single(engine, origin)
+    for i, event in enumerate(events):
+        half.pieces.append(piece_of(engine, event.point))
+        half.events.append((i + 1, event))
+    if events and events[-1].ends_branch:
+        half.status = Status.BORDER
+    else:
+        half.pieces.append(piece_of(engine, start))
+    return half, start
+
+
+def _looked_at(
+    engine: Engine, origin: Solved, start: Solved, watch: Watch, real: bool
+) -> tuple[list[Located], int]:
+    """The special points of the opening, and how many times its end was brought nearer; not at all where that does not help."""
+    whole = watch.beside(origin, start, real)
+    events, times, point = whole, 0, start
+    while events and events[-1].role is Role.LEAP:
+        closer = nearer(engine, origin, point)
+        if closer is None or engine.distance(origin, closer) <= SHORTEST:
+            return whole[:-1], 0
+        times, point = times + 1, closer
+        events = watch.beside(origin, point, real)
+    return events, times
+
+
+def _nearer_by(engine: Engine, origin: Solved, start: Solved, times: int) -> Solved:
+    for _ in range(times):
+        start = nearer(engine, origin, start) or start
+    return start
+
+
+def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
+    """A point of a branch that leaves a special point, nearer to that than a known one; None if none is found.
+
+    The tangent of `origin` points along the branch; its bend is that of the parabola through both points.
+    """
+    z, direction = engine.join(origin.u, origin.p), origin.tangent
+    gap = engine.join(point.u, point.p) - z
+    along = engine.inner(direction, gap)
+    guess = z + SHORTER * along * direction + SHORTER**2 * (gap - along * direction)
+    border = engine.weights * direction
+    tangent = direction if along > 0.0 else -direction
+    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), tangent)
+    if found is None:
+        return None
+    missed = engine.norm(engine.join(found.u, found.p) - guess)
+    return found if missed <= ASTRAY * SHORTER * engine.norm(gap) else None
+
+
+def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
+    """The first point of a branch that leaves with p = p0 + a s^2, brought so near that all nearer points have this a, too.
+
+    Else the point is of another branch, which turns close to where this one leaves, as in a cascade.
+    """
+    unit = engine.parameter_unit(origin.p)
+    if point is None or abs(origin.tangent[-1]) > UPRIGHT * unit:
+        return point
+    trail, bends = [point], [_bend(engine, origin, point)]
+    for _ in range(NEARER):
+        closer = nearer(engine, origin, trail[-1])
+        if closer is None:
+            break
+        # solutions this near are those of nearly singular systems, the worse the nearer
+        rounding = max(FLAT, NOISY * engine.noise) * unit / engine.distance(origin, closer)
+        if abs(closer.p - origin.p) < rounding:
+            break
+        trail.append(closer)
+        bends.append(_bend(engine, origin, closer))
+    for i in range(len(trail) - 1, 0, -1):
+        if abs(bends[i - 1] - bends[i]) > BENT * max(abs(bends[i - 1]), abs(bends[i])):
+            return trail[i]
+    return point
+
+
+def _bend(engine: Engine, origin: Solved, point: Solved) -> float:
+    gap = engine.join(point.u - origin.u, point.p - origin.p)
+    return float(gap[-1]) / engine.inner(origin.tangent, gap) ** 2
+
+
+def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
+    """The first point of a branch that leaves a point with positive margins, brought so near that it has them, too, if it can be."""
+    if point is None or float(engine.smallest_margin(origin.row)) < SHOWN:
+        return point
+    closer: Solved | None = point
+    while closer is not None and engine.distance(origin, closer) > SHORTEST:
+        if float(engine.smallest_margin(closer.row)) >= MARGIN:
+            return closer
+        closer = nearer(engine, origin, closer)
+    return point

@@ -1,0 +1,74 @@
+"""Machines in whose diagrams the search once found something false: nothing of the kind is found in them now."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from tests.orbits.fuzz import neighbours, structure
+from tests.orbits.fuzz.drawing import draw
+from tests.orbits.fuzz.many_digits import exact
+from tests.orbits.fuzz.motion import apart
+from tests.orbits.fuzz.searching import LIMITS
+from tests.orbits.fuzz.tally import Tally
+
+SALT = 404
+CHECKS = {"link", "jump", "doubled", "repeated", "limit", "stability", "margin", "no reason"}
+FOUND = [
+    ("cavity", 59),  # a border beside which another one is nearer than simulation began
+    ("coupled", 177),  # the same
+    ("cavity", 388),  # an orbit of a branch that only passes by a border
+    ("cavity", 178),  # the same; and a branch that is real only close to the period doubling that it leaves
+    ("cavity", 479),  # two borders of different motions, 4e-10 apart
+    ("cavity", 99),  # branches that share the motion of a border
+    ("coupled", 371),  # a branch of length 1e-11 that leaves a border by a doubling
+    ("cavity", 206),  # multipliers that grow until the border is as near as 1e-9
+    ("absorber", 339),  # a cascade stepped over: a branch point where nothing is singular
+    ("cavity", 137),  # the same: the first point of a doubled branch on another one, which turns 1e-8 away
+    ("absorber", 41),  # the same: a branch that comes back to others where it does not meet them
+    ("coupled", 64),  # a fold just before a border
+]
+
+
+def diagram(kind, seed):
+    drawn = draw(kind, SALT, seed)
+    return cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS)
+
+
+@pytest.mark.parametrize(("kind", "seed"), FOUND)
+def test_nothing_is_found_any_more(kind, seed):
+    graph, tally = diagram(kind, seed), Tally(kind, SALT, seed)
+    structure.judge(graph, tally)
+    neighbours.judge(graph, tally)
+    assert not [finding for finding in tally.findings if finding.check in CHECKS]
+    assert tally.counts["branches"] > 10
+
+
+def test_a_branch_comes_home_at_a_period_doubling():
+    """Its word repeats a shorter one, whose motion there has the multiplier -1: in eighty digits, from equations written anew."""
+    graph = diagram("absorber", 41)
+    ends = [
+        branch.orbit(i)
+        for branch in graph
+        for i, label in branch.marks
+        if branch.real and i in (0, len(branch) - 1) and branch.seed != label and label.startswith("PD")
+    ]
+    assert ends
+    for orbit in ends:
+        root = orbit.root()
+        assert 2 * root.periods == orbit.periods
+        there = exact(root)
+        assert abs(there.shift) < 1e-9
+        assert np.abs(there.multipliers + 1.0).min() < 1e-3
+
+
+def test_what_a_border_leads_to_has_its_motion():
+    """WG5 of cavity 178 is that of a motion of two periods; the one of a single period with the same letters is another one there."""
+    graph = diagram("cavity", 178)
+    border = next(p for p in graph.of_kind("wall-graze") if abs(p.value - 1.163506054014749) < 1e-9)
+    single = next(b for b in graph if b.problem.periods == 1 and b.range[0] < border.value < b.range[1])
+    near = single.orbit(int(np.argmin(np.abs(single.values - border.value))))
+    assert apart(border.orbit, near) > 1e-4
+    joined = [graph[end] for s in graph.switches if s.point == border.label for end in (s.source, s.target)]
+    assert joined
+    for branch in joined:
+        assert min(apart(border.orbit, branch.orbit(i)) for i in (0, -1)) < 1e-9
