@@ -15,6 +15,7 @@ from .segment import Segment
 
 SHORTEST = 3e-7  # two branches whose gap is narrower than this cannot be told from a branch point
 INEXACT = 1e-9  # special points are located far better than this wherever there is one
+EXACT = 1e-12  # residual, in units of the rows, of a point where it is known what these are: halfway between two branches it is larger
 NOISY = 2e3  # times the noise of the equations: places are no better than this
 BESIDE = 1e-3  # distance from a singular point at which signs can be trusted
 
@@ -41,8 +42,10 @@ def inexact(segment: Segment, event: Located) -> bool:
     """Whether a special point could not be located as well as those are that exist."""
     unit = segment.engine.parameter_unit(event.point.p)
     size = segment.engine.size(event.point.u)
-    least = max(INEXACT, NOISY * segment.engine.noise)
-    return event.kind == "astray" or event.error > 10.0 * least * unit or event.point.residual > least * size
+    noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
+    least = max(INEXACT, NOISY * noise)
+    solved = EXACT if scaled and not noise and event.kind == "branch-point" else least
+    return event.kind == "astray" or event.error > 10.0 * least * unit or event.point.residual > solved * size
 
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
