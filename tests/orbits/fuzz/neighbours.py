@@ -75,12 +75,23 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
             continue
         tally.count("ways to special points followed")
         falls = gaps[-1] < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
-        if not falls:
+        if not falls and gaps[-1] < _unresolved(point):
+            tally.count("ways to special points shorter than the last bit of the parameter")
+        elif not falls:
             what = ", ".join(f"{gap:.1e} at {d:.0e}" for d, gap in seen)
             tally.find(
                 "jump",
                 f"{branch.label} does not tend to {point.label} ({point.kind}, {point.value:.10g}): {what}",
             )
+
+
+def _unresolved(point: Any) -> float:
+    """How far the motion of a special point goes while the parameter changes by its last bit: no branch can be told to come nearer."""
+    if point.kind == "fold":  # the parameter stands still there, and points are located in the motion
+        return 0.0
+    along = np.asarray(point.tangent)
+    rate = abs(float(along[-1])) / float(np.abs(along).max())
+    return float(np.spacing(point.value)) / max(rate, 1e-300)
 
 
 def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
