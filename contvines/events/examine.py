@@ -33,7 +33,7 @@ BESIDE = 1e-3  # part of a segment, either side of such a place, by which they a
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
 CLOSE = 1e-6  # distance from a border up to which the rest of a segment is looked at (in the metric)
 CLEAR = 1e-4  # distance from a meeting (in the metric) within which tangents and multipliers are those of its singular equations
-DEEPEST = 10  # parts of parts of a segment that are looked at
+DEEPEST = 16  # parts of parts of a segment that are looked at
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -123,8 +123,10 @@ class Examiner:
                         crossings.append(self._located(root, "branch-point", k))
         for fold in folds:
             crossings += self._around(segment, fold, before, after)
-        outside = (after - before) @ np.array([1, 1, 2])
-        if discarded and outside != 0 and depth < DEEPEST:
+        # real multipliers come from one side of the axis to the other as pairs: of an odd number one has passed the circle
+        change = after - before
+        passed = change @ np.array([1, 1, 2]) != 0 or bool(change[0] % 2)
+        if discarded and passed and depth < DEEPEST:
             middle = segment.at(0.5)
             if middle is not None:
                 return self.both(segment, 0.5, middle, real, depth + 1)

@@ -32,3 +32,21 @@ def test_both_are_found_and_the_fold(max_step, middle, excess):
     x = middle + np.sqrt(excess / (1.0 - excess) / bend) * np.array([-1.0, 1.0])
     found = sorted(point.u[0] for point in graph.of_kind("neimark-sacker"))
     assert found == pytest.approx(list(x), abs=1e-7)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("k", [1e2, 1e4, 1e5])
+def test_multipliers_that_change_the_side_of_the_axis_beside_a_fold(k, side):
+    """Along p = x^2 they solve m^2 - (1 + d) m + d + 0.6 k x = 0, d = 5.3 - k x: one passes 1 at x = 0, -1 at 9/k, a pair in between.
+
+    Outside the circle there is one before both and one behind both: positive there, negative here.
+    """
+
+    def map_(u, p):
+        x, y = u
+        return np.array([x + y, 0.3 * k * (p - x * x) + (5.3 - k * x) * y])
+
+    problem = cv.MapProblem(map_, [0.13 * side, 0.0], 0.13**2)
+    graph = cv.diagram(problem, within=(-0.01, 0.03), settings={"max_step": 0.05}, depth=0)
+    (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
+    assert abs(fold.value) < 1e-15 and flip.value == pytest.approx((9.0 / k) ** 2, rel=1e-9)
