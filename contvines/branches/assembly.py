@@ -14,6 +14,7 @@ from .half_branch import HalfBranch
 
 APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
 RESOLVED = 1e-8  # but between a fold and a flip, where a sliver of stable solutions may lie, down to this
+BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
 MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
 
 
@@ -34,7 +35,8 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
             Solved(u, p, tangent, np.zeros(0), 0.0, 0.0, 0.0) for u, p, tangent in map(half.at, (i, i + 1))
         )
         segment = Segment(engine, *ends)
-        if not segment.length > (RESOLVED if a_sliver(kinds.get(i, ()), kinds.get(i + 1, ())) else APART):
+        narrow = a_sliver(kinds.get(i, BEGINNING), kinds.get(i + 1, BEGINNING))
+        if not segment.length > (RESOLVED if narrow else APART):
             continue
         middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
         if middle is not None:

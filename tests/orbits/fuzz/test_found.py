@@ -72,3 +72,21 @@ def test_what_a_border_leads_to_has_its_motion():
     assert joined
     for branch in joined:
         assert min(apart(border.orbit, branch.orbit(i)) for i in (0, -1)) < 1e-9
+
+
+def test_a_doubled_branch_is_stable_however_soon_it_doubles_again():
+    """Its multiplier is 1 where it begins and -1 where it doubles, 1e-10 further on: stable in between."""
+    drawn = draw("cavity", 407, 274)
+    graph = cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS)
+    narrow = [
+        branch
+        for branch in graph
+        for k, label in branch.marks
+        if k == 2 and graph[label].kind == "period-doubling" and (branch.seed or "").startswith("PD")
+        if abs(graph[label].value - branch.values[0]) < 1e-9
+    ]
+    assert narrow
+    for branch in narrow:
+        middle = exact(branch.orbit(1))
+        assert middle is not None and np.abs(middle.multipliers).max() < 1.0
+        assert branch.stable[1]
