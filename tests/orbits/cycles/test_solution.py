@@ -79,7 +79,6 @@ def test_orbits_on_which_rounding_grows_within_a_period_are_replayed_event_by_ev
     orbit = fold.orbit
     known = exact(orbit)
     assert known.moved < 1e-12 and abs(known.shift) < 1e-14
-    assert replay(orbit).error == np.inf  # from the first event alone
     assert fold.replay == orbit.replay() < 1e-9
     nodes = orbit.nodes.copy()
     nodes[5, 1] += 1e-4
