@@ -28,7 +28,7 @@ from orbits.borders.neighbours import (
     proposals,
     turned,
 )
-from orbits.borders.rewriting import Edit, edits_at
+from orbits.borders.rewriting import edits_at
 from orbits.borders.rounds import rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
@@ -41,6 +41,7 @@ from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import polish
+from orbits.words.edit import Edit
 
 BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
 AWAY = (

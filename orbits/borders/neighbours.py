@@ -10,7 +10,7 @@ import numpy as np
 
 from orbits.borders.distance import SHRINKS, tends_to
 from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
-from orbits.borders.rewriting import Edit, edits_at, rewritten
+from orbits.borders.rewriting import edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, STICK
@@ -19,6 +19,7 @@ from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
+from orbits.words.edit import Edit
 
 # of what grows beyond the border: ways to try
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))

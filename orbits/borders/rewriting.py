@@ -17,30 +17,14 @@ from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.margins import DURATION, EVENT, FLIGHT, PER_NODE, WALL
 from orbits.cycles.sampling import flight, slowest
 from orbits.cycles.solution import Solution
-from orbits.protocol import CycleProblem
 from orbits.words import Word
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT
-from orbits.words.rewriting import Watch, applied, changes_at, later, spliced
+from orbits.words.edit import Edit
+from orbits.words.rewriting import Watch, applied, changes_at, spliced
 
 NO_SPEED = 1e-7  # an impact slower than this vanishes
 FIRST = 2e-3  # size of what grows from nothing: radians of phase, or speed
 WATCHED = {EVENT: Watch.STRENGTH, DURATION: Watch.DURATION}
-
-
-class Edit(NamedTuple):
-    """A change of the word, and the nodes of its new events, shape (m, n)."""
-
-    change: Change
-    nodes: np.ndarray
-
-    def later(self, rounds: int, problem: CycleProblem) -> Edit:
-        """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
-        if rounds == 0:
-            return self
-        turned = problem.symmetric and rounds % 2 == 1
-        nodes = -self.nodes if turned else self.nodes.copy()
-        nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
-        return Edit(later(self.change, rounds * problem.length, problem.word.alphabet, turned), nodes)
 
 
 class _Touch(NamedTuple):

@@ -6,11 +6,11 @@ import numpy as np
 
 from orbits.borders.holding import Held, climb
 from orbits.borders.neighbours import SIZES, examined, vanishing_in, with_edits
-from orbits.borders.rewriting import Edit
 from orbits.contacts.changes import Grows
 from orbits.cycles.rounds import Rounds, derived, judged
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
+from orbits.words.edit import Edit
 
 
 def rounds_at(

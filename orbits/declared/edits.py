@@ -12,26 +12,11 @@ import numpy as np
 from orbits.contacts.changes import Change, Site, Spot
 from orbits.declared.margins import per_node
 from orbits.declared.sampling import lengths
-from orbits.words.rewriting import Watch, changes_at, later
+from orbits.words.edit import Edit
+from orbits.words.rewriting import Watch, changes_at
 
 FIRST = 2e-3  # size of what grows from nothing
 AT_END = 1e-9  # share of a flight from its ends within which a guard vanishes there
-
-
-class Edit(NamedTuple):
-    """A change of the word, and the nodes of its new events, shape (m, n + 1)."""
-
-    change: Change
-    nodes: np.ndarray
-
-    def later(self, rounds: int, problem: Any) -> Edit:
-        """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
-        if rounds == 0:
-            return self
-        turned = problem.symmetric and rounds % 2 == 1
-        nodes = -self.nodes if turned else self.nodes.copy()
-        nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
-        return Edit(later(self.change, rounds * problem.length, problem.word.alphabet, turned), nodes)
 
 
 class _Touch(NamedTuple):

@@ -8,11 +8,12 @@ import numpy as np
 
 from orbits.contacts.changes import Change, Grows, What
 from orbits.cycles.claim import REAL
-from orbits.declared.edits import FIRST, Edit
+from orbits.declared.edits import FIRST
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.sampling import sample
 from orbits.declared.solving import SOLVED, examined, newton
 from orbits.declared.system import DeclaredSystem
+from orbits.words.edit import Edit
 from orbits.words.rewriting import applied, spliced
 
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))  # of what grows beyond the border

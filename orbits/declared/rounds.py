@@ -16,10 +16,11 @@ from orbits.contacts.changes import Grows
 from orbits.cycles.rounds import MOST, Rounds, choices, derived, escape, judged
 from orbits.declared import flights
 from orbits.declared.distance import distance
-from orbits.declared.edits import Edit, edits_at
+from orbits.declared.edits import edits_at
 from orbits.declared.neighbours import SIZES, Found, climb, grown, with_edits
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.system import DeclaredSystem
+from orbits.words.edit import Edit
 
 Solved = tuple[DeclaredSystem, np.ndarray, float]
 NEAR = 0.02  # distance from the border orbit of one that begins there, relative to 1 + its states
