@@ -13,18 +13,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import arrays, corrector, lengths, loop, step_rule
+from . import aims, arrays, bracketing, corrector, lengths, loop, step_rule
 from .step_rule import BY_ANGLE, StepRule, by_angle
 
 
 class Bound(NamedTuple):
-    """``march`` and ``point`` with the kernels of a problem inside.
+    """``march`` and ``points`` with the kernels of a problem inside.
 
     There are two, as each is compiled together with all that it calls.
     """
 
     march: Callable[..., Any]
-    point: Callable[..., Any]
+    points: Callable[..., Any]
 
 
 # Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
@@ -74,7 +74,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         improve = copy_with(corrector.improve, **sums)
         correct = copy_with(corrector.correct, improve=improve, **sums, **functions)
         march = copy_with(loop.march, correct=correct, judge=rule.judge, **sums, **functions)
-        return Bound(march, copy_with(corrector.point, improve=improve, **sums, **functions))
+        return Bound(march, copy_with(corrector.points, improve=improve, **sums, **functions))
     from numba import njit
 
     from ..problems.kernels import kernels_digest
@@ -91,7 +91,27 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
     kept = njit(cache=not own, **OPTIONS)
     march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
-    return Bound(march, compile_(copy_with(corrector.point, suffix, improve=improve, **sums, **functions)))
+    search = _search(compile_, suffix)
+    points = copy_with(corrector.points, suffix, improve=improve, **sums, **functions, **search)
+    return Bound(march, compile_(points))
+
+
+def _search(compile_: Callable[..., Any], suffix: str) -> dict[str, Any]:
+    """What looks for a zero along a chord, compiled."""
+    known = {
+        name: compile_(copy_with(getattr(bracketing, name), suffix))
+        for name in ("begin", "best", "_add", "_ahead")
+    }
+    follow = compile_(
+        copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead"))
+    )
+    parts = {name: compile_(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
+    multiplier = compile_(copy_with(aims.multiplier, suffix, **parts))
+    return {
+        **known,
+        "follow": follow,
+        "probe": compile_(copy_with(aims.probe, suffix, multiplier=multiplier)),
+    }
 
 
 def compiled_rule(rule: StepRule) -> Any:
@@ -104,6 +124,6 @@ def compiled_rule(rule: StepRule) -> Any:
 def _loop_digest() -> str:
     """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls."""
     digest = hashlib.blake2b(digest_size=4)
-    for module in (corrector, lengths, loop, step_rule):
+    for module in (aims, bracketing, corrector, lengths, loop, step_rule):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()

@@ -3,14 +3,20 @@
 Runs compiled and interpreted: see :mod:`contvines.continuation.loop`.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
+from .aims import NOTHING, probe
+from .bracketing import JUMP, TOLERANCE, X1, begin, best, follow
 from .lengths import add, correction_size, distance, hermite, orient, put, remainder
 
-# what `point` does
+# what `points` does
 LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
+
+# what it finds when it looks for something
+NOWHERE, PASSED, AT_END = 0, 1, 2
 
 TIGHT = 1e-12  # tolerance of single points
 SMALL = 1e-11  # corrections below this, and the tolerance, end the iteration however they came about
@@ -28,6 +34,19 @@ class Scratch(NamedTuple):
     step: np.ndarray
     tangent: np.ndarray
     guess: np.ndarray
+
+
+class Found(NamedTuple):
+    """What is found of k points: shapes (k, N), (k, N + 1), (k, row), (k, 5).
+
+    ``numbers`` are p; the number of sweeps (-1: no convergence; -2: not evaluable; -3: the tangent is not finite; -4: the point
+    belongs to another branch); the residual; the sign of the bordered determinant for the tangent; the size of the last correction.
+    """
+
+    u: np.ndarray
+    tangents: np.ndarray
+    rows: np.ndarray
+    numbers: np.ndarray
 
 
 def linearise(data, u, p, work):
@@ -122,11 +141,30 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
     return p, -1, sign, size
 
 
-def point(data, work, what, chord, place, border, along, max_sweeps, u, tangent, row, metric, scratch, noise):
-    """A single solution, and everything about it, or a part of that: one function, as each is compiled with all that it calls.
+def points(
+    data,
+    work,
+    what,
+    chord,
+    stretch,
+    places,
+    border,
+    along,
+    max_sweeps,
+    found,
+    aim,
+    known,
+    metric,
+    scratch,
+    noise,
+):
+    """Single solutions, and everything about them, or a part of that: one function, as each is compiled with all that it calls.
 
-    EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method from a place on a chord (none: it is good as it is), then
-    linearisation, elimination and multipliers once more at the solution; `tangent` is a unit vector with <along, tangent> >= 0.
+    In one piece, for the same reason.
+
+    EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method from a place on a chord (none at its ends: they are good as they are), then
+    linearisation, elimination and multipliers once more at the solution; tangents are unit vectors with <along, tangent> >= 0. With an aim
+    the one solution is looked for at which a number passes zero between the chord's ends.
     LINEARISE: the residual only. ELIMINATE: with the linearisation at hand.
 
     Parameters
@@ -136,65 +174,113 @@ def point(data, work, what, chord, place, border, along, max_sweeps, u, tangent,
     what : int
     chord : ndarray, shape (4, N + 1)
         Of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its tangent likewise.
-    place : (float, float, float)
-        s, start and length: border.(u, p) is to be start + s length. With length 0 the first end is a guess, and no more.
+    stretch : (float, float)
+        start and length: border.(u, p) is to be start + s length. With length 0 the first end is a guess, and no more.
+    places : ndarray, shape (k,)
+        Each s; with an aim only the first ends are looked at, 0 and 1.
     border, along : ndarray, shape (N + 1,)
     max_sweeps : int
-    u, tangent, row : ndarray
+    found : Found
         Filled.
+    aim : Aim
+    known : ndarray, shape (bracketing.SIZE,)
+        Of the search: the final bracket.
     metric : Metric
     scratch : Scratch
     noise : float
 
     Returns
     -------
-    p : float
-    sweeps : int
-        Number of sweeps; -1: no convergence; -2: not evaluable; -3: the tangent is not finite; -4: the point found belongs to another branch.
-    residual : float
-        0 if there was no linearisation.
-    sign : float
-        Of the bordered determinant, for the tangent; 0 if there was no elimination.
-    size : float
-        Of the last correction.
+    int
+        With an aim: `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
     """
-    s, start, length = place
+    start, length = stretch
+    searching = aim.what != NOTHING
     step = scratch.step
-    p = hermite(chord, s, u, scratch.guess)
-    residual = 0.0
-    sign = 0.0
-    size = 0.0
-    settled = max_sweeps == 0
-    sweep = max_sweeps
-    for sweep in range(max_sweeps + 1):
-        gap = start + s * length
-        if what != ELIMINATE:
-            residual = linearise(data, u, p, work)
-            if what == LINEARISE:
-                return p, sweep, residual, sign, size
-            if not residual < 1e300:
-                return p, -2, residual, sign, size
-            gap = remainder(border, u, p, gap)
-        sign = bordered(data, work, border, gap, step, tangent)
-        if settled:
-            break
-        if sweep == max_sweeps:
-            return p, -1, residual, sign, size
-        p, size, verdict = improve(u, p, step, sweep, residual, size, TIGHT, metric, noise)
-        if verdict < 0:
-            return p, -1, residual, sign, size
-        settled = verdict > 0
-    if what == ELIMINATE:
-        return p, sweep, residual, sign, size
-    inspect(data, u, p, work, row)
-    norm, same, across = orient(tangent, along, border, metric)
-    if not norm < 1e300:
-        return p, -3, residual, sign, size
-    if same < 0.0:
-        norm, across = -norm, -across
-    put(tangent, tangent, norm)
-    if across < 0.0:
-        sign = -sign
-    if length > 0.0 and distance(u, p, scratch.guess, metric) > STRAY * length:
-        sweep = -4
-    return p, sweep, residual, sign, size
+    outcome = NOWHERE
+    stage, place, s = 0, 0, places[0]
+    first_value, first_p = 0.0, 0.0
+    while True:
+        u, tangent, row, numbers = (
+            found.u[place],
+            found.tangents[place],
+            found.rows[place],
+            found.numbers[place],
+        )
+        p = hermite(chord, s, u, scratch.guess)
+        limit = 0 if length > 0.0 and (s == 0.0 or s == 1.0) else max_sweeps
+        residual, sign, size, sweeps = 0.0, 0.0, 0.0, -1
+        settled = limit == 0
+        for sweep in range(limit + 1):
+            gap = start + s * length
+            if what != ELIMINATE:
+                residual = linearise(data, u, p, work)
+                if what == LINEARISE:
+                    break
+                if not residual < 1e300:
+                    sweeps = -2
+                    break
+                gap = remainder(border, u, p, gap)
+            sign = bordered(data, work, border, gap, step, tangent)
+            if settled:
+                sweeps = sweep
+                break
+            if sweep == limit:
+                break
+            p, size, verdict = improve(u, p, step, sweep, residual, size, TIGHT, metric, noise)
+            if verdict < 0:
+                break
+            settled = verdict > 0
+        if sweeps >= 0 and what == EVERYTHING:
+            inspect(data, u, p, work, row)
+            norm, same, across = orient(tangent, along, border, metric)
+            if norm < 1e300:
+                if same < 0.0:
+                    norm, across = -norm, -across
+                put(tangent, tangent, norm)
+                if across < 0.0:
+                    sign = -sign
+                if length > 0.0 and distance(u, p, scratch.guess, metric) > STRAY * length:
+                    sweeps = -4
+            else:
+                sweeps = -3
+        numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] = p, sweeps, residual, sign, size
+        if not searching:
+            place += 1
+            if place == places.shape[0]:
+                return outcome
+            s = places[place]
+            continue
+        if stage == 3:  # the best place once more
+            return outcome
+        value = probe(aim, row, tangent[u.shape[0]], sign) if sweeps >= 0 else np.nan
+        if stage == 0:
+            stage, first_value, first_p, s = 1, value, p, 1.0
+            if not math.isfinite(value):
+                return NOWHERE
+            continue
+        if stage == 1:
+            if not math.isfinite(value):
+                return NOWHERE
+            smallest, largest = min(abs(first_value), abs(value)), max(abs(first_value), abs(value))
+            if first_value * value > 0.0:
+                # an end that is the zero itself may have either sign, by roundoff
+                if aim.anyway == 0 and smallest > 1e-9 * largest:
+                    return NOWHERE
+                outcome = AT_END
+                known[X1] = 0.0 if abs(first_value) < abs(value) else 1.0
+                if known[X1] == s:
+                    return outcome
+                stage, s = 3, 0.0
+                continue
+            stage, outcome = 2, PASSED
+            ahead = begin(known, 0.0, 1.0, first_value, value, first_p, p, known[TOLERANCE], known[JUMP])
+        else:
+            ahead = follow(known, s, value, p)
+        if ahead == ahead:
+            s = ahead
+            continue
+        end = best(known)
+        if end == s and sweeps >= 0:
+            return outcome
+        stage, s = 3, end

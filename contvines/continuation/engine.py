@@ -11,15 +11,17 @@ from numpy.typing import NDArray
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Rough
 from ..problems.protocol import Problem
-from . import corrector
+from . import bracketing, corrector
 from . import loop as source
+from .aims import NO_COLUMNS, NOTHING, Aim
 from .approach import approach
 from .binding import bind
 from .lengths import Metric
 from .settings import Settings
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
-NO_ROW = np.zeros(1)
+ONE = np.zeros(1)  # a single place: the chord's first end
+NO_AIM = Aim(NOTHING, NO_COLUMNS)
 
 
 def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) -> float:
@@ -41,6 +43,15 @@ class Solved(NamedTuple):
     sign: float
     residual: float
     correction: float
+
+
+class Hit(NamedTuple):
+    """Where a number passes zero along a chord: the place, the point, the error of its parameter value, how much the number changes there."""
+
+    place: float
+    point: Solved
+    error: float
+    jump: float
 
 
 class Engine:
@@ -90,6 +101,10 @@ class Engine:
         self.guess = np.zeros((4, n + 1))  # a chord of which the first end alone is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
+        self.known = np.zeros(bracketing.SIZE)
+        self.part = corrector.Found(
+            np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
+        )
 
     def parameter_unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with."""
@@ -161,41 +176,100 @@ class Engine:
         along: np.ndarray | None,
     ) -> Solved | None:
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return self._point(self.guess, (0.0, target, 0.0), border, along, sweeps)
+        return self._points(self.guess, (target, 0.0), ONE, border, along, sweeps)[0]
 
     def on_chord(
-        self, chord: np.ndarray, s: float, start: float, length: float, border: np.ndarray, along: np.ndarray
-    ) -> Solved | None:
-        """The point of a branch at a distance along a chord; see :func:`contvines.continuation.corrector.point`."""
-        return self._point(chord, (s, start, length), border, along, 40)
-
-    def _point(
         self,
         chord: np.ndarray,
-        place: tuple[float, float, float],
+        places: np.ndarray,
+        start: float,
+        length: float,
+        border: np.ndarray,
+        along: np.ndarray,
+    ) -> list[Solved | None]:
+        """The points of a branch at places along a chord; see :func:`contvines.continuation.corrector.points`."""
+        return self._points(chord, (start, length), places, border, along, 40)
+
+    def search(
+        self,
+        chord: np.ndarray,
+        start: float,
+        length: float,
+        border: np.ndarray,
+        along: np.ndarray,
+        aim: Aim,
+        tolerance: float,
+        jump: float,
+    ) -> Hit | None:
+        """The point of a branch along a chord at which a number passes zero; None if there is none.
+
+        Parameters
+        ----------
+        chord, start, length, border, along
+            See :func:`contvines.continuation.corrector.points`.
+        aim : Aim
+        tolerance, jump : float
+            See :func:`contvines.continuation.bracketing.begin`.
+        """
+        known = self.known
+        known[bracketing.TOLERANCE], known[bracketing.JUMP] = tolerance, jump
+        found, outcome = self._run(chord, (start, length), ONE, border, along, 40, aim)
+        if outcome == corrector.NOWHERE:
+            return None
+        point = _solved(found)[0]
+        if point is None:
+            return None
+        one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
+        if outcome == corrector.AT_END:
+            return Hit(one, point, 0.0, 0.0)
+        place = one if abs(f_one) < abs(f_other) else other
+        width = abs(p_one - p_other) + 4e-16 * abs(point.p)
+        return Hit(place, point, max(width, point.correction * 1e-3), abs(f_one - f_other))
+
+    def _points(
+        self,
+        chord: np.ndarray,
+        stretch: tuple[float, float],
+        places: np.ndarray,
         border: np.ndarray,
         along: np.ndarray | None,
         sweeps: int,
-    ) -> Solved | None:
-        here, tangent, row = np.empty(self.n), np.empty(self.n + 1), np.zeros(self.row_size)
+    ) -> list[Solved | None]:
+        return _solved(self._run(chord, stretch, places, border, along, sweeps, NO_AIM)[0])
+
+    def _run(
+        self,
+        chord: np.ndarray,
+        stretch: tuple[float, float],
+        places: np.ndarray,
+        border: np.ndarray,
+        along: np.ndarray | None,
+        sweeps: int,
+        aim: Aim,
+    ) -> tuple[corrector.Found, int]:
+        k, n = len(places), self.n
+        found = corrector.Found(
+            np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5))
+        )
         with self.section, np.errstate(all="ignore"):
-            p, sweeps, residual, sign, size = self.bound.point(
+            outcome = self.bound.points(
                 self.data,
                 self.work,
                 corrector.EVERYTHING,
                 chord,
-                place,
+                stretch,
+                places,
                 border,
                 self.nothing if along is None else along,
                 sweeps,
-                here,
-                tangent,
-                row,
+                found,
+                aim,
+                self.known,
                 self.metric,
                 self.scratch,
                 self.noise,
             )
-        return Solved(here, p, tangent, row, sign, residual, size) if sweeps >= 0 else None
+        return found, outcome
 
     def at_value(self, u: np.ndarray, p: float, along: np.ndarray | None = None) -> Solved | None:
         """The solution at a fixed parameter value, or None."""
@@ -228,7 +302,8 @@ class Engine:
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual."""
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return float(self._part(corrector.LINEARISE, self.nothing, 0.0)[2])
+        self._part(corrector.LINEARISE, self.nothing, 0.0)
+        return float(self.part.numbers[0, 2])
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
@@ -236,19 +311,20 @@ class Engine:
         self._part(corrector.ELIMINATE, border, float(side[self.n]))
         return self.scratch.step.copy()
 
-    def _part(self, what: int, border: np.ndarray, target: float) -> tuple[float, int, float, float, float]:
-        return self.bound.point(
+    def _part(self, what: int, border: np.ndarray, target: float) -> None:
+        self.bound.points(
             self.data,
             self.work,
             what,
             self.guess,
-            (0.0, target, 0.0),
+            (target, 0.0),
+            ONE,
             border,
             self.nothing,
             0,
-            self.scratch.u,
-            self.scratch.tangent,
-            NO_ROW,
+            self.part,
+            NO_AIM,
+            self.known,
             self.metric,
             self.scratch,
             self.noise,
@@ -310,3 +386,12 @@ class Engine:
             else np.abs(spectrum).max(axis=-1) - 1.0
         )
         return np.abs(outermost) <= tolerance
+
+
+def _solved(found: corrector.Found) -> list[Solved | None]:
+    """Points one by one, None where there is no solution."""
+    points: list[Solved | None] = []
+    for i, (p, sweeps, residual, sign, size) in enumerate(found.numbers.tolist()):
+        point = Solved(found.u[i], p, found.tangents[i], found.rows[i], sign, residual, size)
+        points.append(point if sweeps >= 0 else None)
+    return points

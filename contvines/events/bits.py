@@ -6,9 +6,6 @@ import numpy as np
 
 FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED, HUMP = 1, 2, 4, 8, 16, 32, 64, 128
 
-NONE, MAP, FLOW, REAL = 0, 1, 2, 3
-KINDS = {"none": NONE, "map": MAP, "flow": FLOW, "real": REAL}
-
 APART = 1e-6  # parts that a symmetry changes below this are zero
 
 

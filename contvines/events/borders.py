@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..continuation.engine import Engine, Solved
+from ..continuation.aims import MARGINS, Aim
+from ..continuation.engine import Engine
 from ..continuation.loop import MARGIN
 from .kinds import BORDERS
 from .locate import Root, locate
@@ -61,12 +62,7 @@ def find_border(segment: Segment, real: bool) -> Border | None:
 
 
 def _located(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
-    columns = (2 * segment.engine.m + chosen).tolist()
-
-    def margin(point: Solved) -> float:  # the smallest; NaN counts as not applicable
-        row = point.row.tolist()
-        return min(1.0, min(row[j] if row[j] == row[j] else 1.0 for j in columns))
-
+    margin = Aim(MARGINS, 2 * segment.engine.m + chosen)
     root = locate(segment, margin, fallback_zero=real)
     if root is None or root.position > 0.0 or not margin(root.point) < 0.0:
         return root

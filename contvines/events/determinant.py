@@ -45,5 +45,5 @@ def turned(a: Solved, b: Solved) -> bool | None:
 
 def passes(segment: Segment, position: float, reach: float = BESIDE) -> bool:
     """Whether det(F_u) changes its sign within a reach of a place on a segment, as it does where one eigenvalue vanishes."""
-    sides = [segment.at(position + step) for step in (-reach, reach)]
+    sides = segment.several((position - reach, position + reach))
     return sides[0] is not None and sides[1] is not None and turned(sides[0], sides[1]) is not False

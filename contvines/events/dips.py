@@ -66,8 +66,7 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
     left, middle, right = (margins(point.row) for point in (segment.a, border, segment.b))
     if middle.min() < MARGIN:  # one of a flight, say, that is over before the segment is
         return position, border
-    for share in SHARES:
-        point = segment.at(share * position)
+    for share, point in zip(SHARES, segment.several([share * position for share in SHARES])):
         if point is not None and margins(point.row).min() < MARGIN:
             return share * position, point
     convex = np.flatnonzero(middle < (1.0 - position) * left + position * right)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 
+from ..continuation.aims import NO_COLUMNS, SIGN, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Nearing
 from .blur import blurred
@@ -16,7 +17,7 @@ from .leaps import SHORTEST
 from .limits import one_sided
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
-from .multipliers import balance, counts, crossing
+from .multipliers import balance, counts
 from .scan import FLAT
 from .segment import Segment
 from .singular import singular
@@ -24,6 +25,7 @@ from .symmetry import SymmetryTest
 from .users import user_function
 
 NAMES = ("plus", "minus", "pair")
+AT_FOLDS, AT_SIGNS = Aim(SLOPE, NO_COLUMNS), Aim(SIGN, NO_COLUMNS)
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 EXACT = (
     1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
@@ -208,8 +210,8 @@ class Examiner:
             return self.engine.problem.flip_kind
         return "hopf" if self.kind == "flow" else "neimark-sacker"
 
-    def _multiplier(self, name: str, k: int) -> Callable[[Solved], float]:
-        return lambda point: crossing(self.engine.spectrum(point.row), self.kind, name, k)
+    def _multiplier(self, name: str, k: int) -> Aim:
+        return aim_at_multiplier(self.engine.m, self.kind, name, k)
 
     def _located(
         self, root: Root, kind: str, index: int, role: Role = Role.SPECIAL, name: str = ""
@@ -220,7 +222,7 @@ class Examiner:
         ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
         if not changes(ends)[0] or np.abs(ends).max() <= FLAT * self.engine.parameter_unit(segment.a.p):
             return []
-        root = locate(segment, lambda point: float(point.tangent[-1]))
+        root = locate(segment, AT_FOLDS)
         if root is None or not root.continuous:
             return []
         if _near(root.position, met, 0.02) or not self._returns(segment, root.point.p):
@@ -246,7 +248,7 @@ class Examiner:
         if abs(root.point.tangent[-1]) > STATIONARY * unit:
             return False
         reach = min(BESIDE, 0.5 * root.position, 0.5 * (1.0 - root.position)) or BESIDE
-        sides = [segment.at(root.position + step) for step in (-reach, reach)]
+        sides = segment.several((root.position - reach, root.position + reach))
         return (
             sides[0] is not None
             and sides[1] is not None
@@ -275,7 +277,7 @@ class Examiner:
 
     def _determinant(self, segment: Segment) -> Root | None:
         test = DeterminantTest(self.engine, segment.border)
-        rough = locate(segment, lambda point: point.sign, tolerance=1e-3)
+        rough = locate(segment, AT_SIGNS, tolerance=1e-3)
         if rough is None:
             return None
         return locate_singular(segment, test, rough.position) or rough

@@ -57,5 +57,5 @@ def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
         return False
     # an end may itself be singular (a stick of length zero): its sign is that of roundoff
     reach = 1.0 if stop == len(found) else found[stop].position
-    beside = [segment.at(share * reach) for share in (BESIDE, 1.0 - BESIDE)]
+    beside = segment.several([share * reach for share in (BESIDE, 1.0 - BESIDE)])
     return beside[0] is None or beside[1] is None or beside[0].sign * beside[1].sign < 0.0

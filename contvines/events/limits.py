@@ -48,8 +48,10 @@ def _tangent(segment: Segment, root: Root) -> np.ndarray:
     """The tangent, extrapolated where the one solved for is something else."""
     engine, own = segment.engine, root.point.tangent
     reach = min(BESIDE, root.position / 3.0)
-    near, far = (segment.at(root.position - k * reach) for k in (1.0, 2.0))
-    if near is None or far is None or not reach > 0.0:
+    if not reach > 0.0:
+        return own
+    near, far = segment.several([root.position - k * reach for k in (1.0, 2.0)])
+    if near is None or far is None:
         return own
     ahead = engine.unit(2.0 * near.tangent - far.tangent)
     return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
@@ -126,12 +128,11 @@ def _apart(one: np.ndarray, other: np.ndarray) -> float:
 
 def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
     """Characteristic polynomials of the multipliers at four points before the border, shape (4, m + 1)."""
-    rows = []
-    for place in PLACES:
-        point = _before(segment, position - place * spacing / segment.length)
-        if point is None:
-            return None
-        rows.append(point.row)
+    places = [position - place * spacing / segment.length for place in PLACES]
+    points = segment.several(places) if places[-1] >= -1.0 else [_before(segment, s) for s in places]
+    rows = [point.row for point in points if point is not None]
+    if len(rows) < len(places):
+        return None
     values = _characteristic(segment.engine.spectrum(np.array(rows)))
     return values if np.isfinite(values).all() else None
 

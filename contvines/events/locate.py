@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..continuation.aims import Aim
 from ..continuation.engine import Solved
 from .roots import bracketed_root, chebyshev_fit, chebyshev_nodes, chebyshev_value
 from .segment import Segment
@@ -37,7 +38,7 @@ class Root(NamedTuple):
 
 def locate(
     segment: Segment,
-    test: Callable[[Solved], float],
+    test: Callable[[Solved], float] | Aim,
     tolerance: float = 1e-12,
     fallback_zero: bool = False,
     jump: float = np.inf,
@@ -47,8 +48,8 @@ def locate(
     Parameters
     ----------
     segment : Segment
-    test : callable
-        Solved -> float, of opposite signs at the two ends.
+    test : Aim or callable
+        Of opposite signs at the two ends; a callable is Solved -> float.
     tolerance : float
         Width of the final bracket relative to the segment.
     fallback_zero : bool
@@ -62,6 +63,9 @@ def locate(
     Root or None
         None if the ends do not bracket a zero or the segment cannot be solved.
     """
+    if isinstance(test, Aim):
+        hit = segment.search(test._replace(anyway=int(fallback_zero)), tolerance, jump)
+        return None if hit is None else Root(hit.place, hit.point, hit.error, hit.jump <= JUMP)
     solved: dict[float, Solved] = {}
 
     def value(s: float) -> float:
@@ -125,12 +129,12 @@ def _interpolated(
     nodes = chebyshev_nodes(NODES)
     points, values = [], []
     # nearest to the singular point first: a test may choose its reference there
-    for x in sorted(nodes, key=abs):
-        point = segment.at(rough + width * float(x))
+    nodes = np.array(sorted(nodes, key=abs))
+    for x, point in zip(nodes.tolist(), segment.several(rough + width * nodes)):
         if point is None:
             return None
-        points.append((float(x), point))
-        values.append((float(x), float(test(point))))
+        points.append((x, point))
+        values.append((x, float(test(point))))
     points.sort(key=lambda pair: -pair[0])
     values.sort(key=lambda pair: -pair[0])
     f = np.array([value for _, value in values])

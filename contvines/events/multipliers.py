@@ -1,19 +1,18 @@
-"""Test functions of multipliers: period doublings, Neimark-Sacker and Hopf points, and folds and branch points where they show there.
+"""Numbers of multipliers past the circle: period doublings, Neimark-Sacker and Hopf points, and folds and branch points where they show there.
 
-Multipliers are taken one by one: ``("plus", k)`` is the logarithm of the k-th largest real multiplier, so two multipliers
-that cross at once are two events. A product of test functions would not change sign.
+Multipliers are taken one by one (:func:`contvines.continuation.aims.multiplier`): the k-th largest real one is a test function of its own, so
+two that cross at once are two events. A product of test functions would not change sign.
 """
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from ..continuation.aims import LIMIT
+
 PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
 FEW = 16  # numbers up to which Python is faster than numpy
-LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
 
 
 def counts(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:
@@ -61,28 +60,6 @@ def _past(one: complex, kind: str) -> int | None:
     if one.imag > 0.0 and ((kind == "map" and abs(one) > 1.0 + PAST) or (kind == "flow" and one.real > PAST)):
         return 2
     return None
-
-
-def crossing(spectrum: NDArray[np.complex128], kind: str, name: str, k: int) -> float:
-    """The test function of the k-th multiplier of a sort at one point: positive past the circle."""
-    own: list[complex] = spectrum.tolist()
-    if name == "pair":
-        values = [abs(one) if kind == "map" else one.real for one in own if one.imag > 0.0]
-    elif kind == "real":
-        values = [one.real for one in own]
-    else:
-        values = [-one.real if name == "minus" else one.real for one in own if one.imag == 0.0]
-    if len(values) < k:
-        if name == "pair" or len(values) == len(own):
-            return -LIMIT
-        # a complex pair may meet on the real axis: continuous only where that happens at the critical place itself,
-        # as it does in conservative systems
-        place = 0.0 if kind != "map" else (-1.0 if name == "minus" else 1.0)
-        return -min(*(abs(one - place) for one in own if one.imag != 0.0), LIMIT)
-    value = sorted(values, reverse=True)[k - 1]
-    if kind == "map":
-        value = (math.log(value) if value < math.inf else LIMIT) if value > 0.0 else -LIMIT
-    return min(max(value, -LIMIT), LIMIT)
 
 
 def balance(spectrum: NDArray[np.complex128], kind: str) -> np.ndarray:

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..continuation import loop
+from ..continuation import aims, loop
+from ..continuation.aims import FLOW, KINDS, MAP, REAL
 from ..continuation.engine import Engine
 from ..continuation.lengths import Metric
 from ..continuation.loop import MARGIN
@@ -24,14 +25,10 @@ from .bits import (
     APART,
     BORDER,
     DAMPED,
-    FLOW,
     FOLD,
     HUMP,
-    KINDS,
-    MAP,
     MEETING,
     MULTIPLIER,
-    REAL,
     SHALLOW,
     SINGULAR,
     Scanned,
@@ -225,7 +222,7 @@ def _compiled() -> Callable[..., Any]:
 
     inner = {f.__name__: njit(forceinline=True, **OPTIONS)(f) for f in (dips, turns_twice)}
     # numba looks at this file only, not at where the constants come from
-    sources = [Path(str(module.__file__)) for module in (bits, multipliers, loop)]
+    sources = [Path(str(module.__file__)) for module in (aims, bits, multipliers, loop)]
     sources.append(Path(__file__))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning

@@ -7,19 +7,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..continuation.aims import FLOW, MAP, REAL
 from ..continuation.lengths import Metric
 from ..continuation.loop import MARGIN
 from .bits import (
     APART,
     BORDER,
     DAMPED,
-    FLOW,
     FOLD,
     HUMP,
-    MAP,
     MEETING,
     MULTIPLIER,
-    REAL,
     SHALLOW,
     SINGULAR,
     Scanned,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from ..continuation.engine import Engine, Solved
+from ..continuation.aims import Aim
+from ..continuation.engine import Engine, Hit, Solved
 
 
 class Segment:
@@ -31,8 +34,16 @@ class Segment:
 
     def at(self, s: float) -> Solved | None:
         """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
-        engine = self.engine
-        if s == 0.0 or s == 1.0:
-            end, z = (self.a, self.za) if s == 0.0 else (self.b, self.zb)
-            return engine.polish(end.u, end.p, self.border, float(self.border @ z), self.direction)
-        return engine.on_chord(self.chord, float(s), self.start, self.length, self.border, self.direction)
+        return self.several((s,))[0]
+
+    def several(self, places: Sequence[float] | np.ndarray) -> list[Solved | None]:
+        """The points of the branch at some places, each as by `at`."""
+        return self.engine.on_chord(
+            self.chord, np.array(places, dtype=float), self.start, self.length, self.border, self.direction
+        )
+
+    def search(self, aim: Aim, tolerance: float, jump: float) -> Hit | None:
+        """Where a number passes zero; see :meth:`contvines.continuation.engine.Engine.search`."""
+        return self.engine.search(
+            self.chord, self.start, self.length, self.border, self.direction, aim, tolerance, jump
+        )

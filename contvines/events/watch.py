@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..continuation.aims import LIMIT
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.loop import MARGIN
@@ -16,7 +17,7 @@ from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
 from .leaps import inexact, leap
 from .located import Located, Role
-from .multipliers import LIMIT, balance, counts, nearest_to_circle
+from .multipliers import balance, counts, nearest_to_circle
 from .scan import (
     APART,
     BORDER,

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..continuation.aims import aim_at_multiplier
 from ..continuation.engine import Engine, Solved
-from ..events.multipliers import crossing
 
 STEP = 1e-3
 
@@ -39,17 +39,18 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     point : Solved
         The special point, with the tangent of the known branch.
     name, k
-        Which multiplier; see :func:`contvines.events.multipliers.crossing`.
+        Which multiplier; see :func:`contvines.continuation.aims.aim_at_multiplier`.
     """
     kind = engine.problem.spectrum
     if kind == "none" or abs(point.tangent[-1]) < 1e-9:
         return None
+    aim = aim_at_multiplier(engine.m, kind, name, k)
     slopes = []
     for step in (STEP, 0.5 * STEP):
         ends = [_beside(engine, point, sign * step) for sign in (1.0, -1.0)]
         if ends[0] is None or ends[1] is None:
             return None
-        tests = [crossing(engine.spectrum(end.row), kind, name, k) for end in ends if end is not None]
+        tests = [aim(end) for end in ends if end is not None]
         slopes.append((tests[0] - tests[1]) / (ends[0].p - ends[1].p))
     return float((4.0 * slopes[1] - slopes[0]) / 3.0) * engine.rate
 

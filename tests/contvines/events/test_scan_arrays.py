@@ -4,23 +4,24 @@ import numpy as np
 import pytest
 
 from contvines.continuation.lengths import Metric
+from contvines.continuation import aims
 from contvines.events import bits, scan, scan_arrays
 
 
-@pytest.mark.parametrize("kind", [bits.NONE, bits.MAP, bits.FLOW, bits.REAL])
+@pytest.mark.parametrize("kind", [aims.NONE, aims.MAP, aims.FLOW, aims.REAL])
 @pytest.mark.parametrize("real", [True, False])
 def test_arrays_and_loops_mark_the_same(kind, real):
     seen = 0
     for seed in range(60):
         draw = np.random.default_rng(seed)
         n, size = int(draw.integers(1, 40)), int(draw.integers(1, 6))
-        pairs, margins = (int(draw.integers(0, 4)) if kind != bits.NONE else 0), int(draw.integers(0, 7))
+        pairs, margins = (int(draw.integers(0, 4)) if kind != aims.NONE else 0), int(draw.integers(0, 7))
         points, values = np.cumsum(draw.normal(size=(n, size)), axis=0), np.cumsum(draw.normal(size=n))
         if seed % 3 == 0 and n > 4:
             values[2], points[2] = values[1], points[1]  # a segment of no length
         spectrum = draw.normal(1.0, 0.3, (n, pairs, 2)) * [1.0, 0.3]
         spectrum[draw.random((n, pairs)) < 0.5, 1] = 0.0  # real ones
-        if kind == bits.REAL:
+        if kind == aims.REAL:
             spectrum[..., 0] -= 1.0  # watched at zero, pairs as well
         rows = np.hstack([spectrum.reshape(n, -1), draw.normal(0.4, 0.4, (n, margins))])
         symmetries = int(draw.integers(0, 3))
@@ -42,5 +43,5 @@ def test_arrays_and_loops_mark_the_same(kind, real):
         for flag in marks[0][0]:
             seen |= flag
     wanted = bits.FOLD | bits.SINGULAR | bits.BORDER | bits.HUMP | bits.MEETING
-    wanted |= (bits.SHALLOW if real else 0) | (bits.MULTIPLIER if kind != bits.NONE else 0)
+    wanted |= (bits.SHALLOW if real else 0) | (bits.MULTIPLIER if kind != aims.NONE else 0)
     assert seen & wanted == wanted
