@@ -64,11 +64,7 @@ def _derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndar
     """Derivative of a round, mirrored where it is half a cycle, and its rounding; None where there is none."""
     examined(problem, u, p)
     work = problem.scratch
-    try:
-        factors = -np.linalg.solve(work.D, work.A)
-    except np.linalg.LinAlgError:
-        return None
-    found = derived(factors)
+    found = derived(work.A, work.D)
     if found is not None:
         found[0][1:] *= problem.data.twist
     return found

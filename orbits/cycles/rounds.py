@@ -20,6 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orbits.cycles.round_maps import sides_of_cycles, through_flights
+
 MOST = 8  # up to so many rounds of a cycle are joined to one at a border
 UNSTABLE = 1.5  # a largest multiplier from which on a cycle is unstable, though the product is known next to the border only
 ROUNDING = 1e-14  # of the derivative of a round, relative to the product of its factors' absolute values
@@ -49,28 +51,38 @@ class Rounds(NamedTuple):
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
-        keys, place, first, later = _sequences(most)
-        n = self.maps.shape[1]
-        one, both = np.eye(n), np.empty((len(first), n, 2 * n))  # P and M side by side
-        both[:, :, :n], both[:, :, n:] = one, self.maps[first]
+        keys, n = choices(most), self.maps.shape[1]
+        table = _table(most)
+        sides, products = np.empty((len(keys), 2)), np.empty((len(keys), n, n))
+        sides_of_cycles(np.ascontiguousarray(self.maps), table, sides, products, np.empty((3, n, n)))
+        own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
+        rounds, changed = table.T
         with np.errstate(all="ignore"):
-            for start, changed in later:
-                part = both[start:]
-                part[:] = self.maps[changed] @ part
-                part[:, :, :n] += one
-            torn = np.zeros(len(keys), bool)
-            if self.linear:
-                side = (2 * first - 1) * np.linalg.det(both[:, :, :n])
-                low, high = np.minimum.reduceat(side, place), np.maximum.reduceat(side, place)
-                torn = (low < -DECIDED * high) & (high > -DECIDED * low)
-            sizes = np.abs(self.maps).sum(axis=2).max(axis=1)
-            rounds, changed = np.array(keys).T
-            error = rounds * self.error * sizes[0] ** (rounds - changed) * sizes[1] ** changed
-            M = both[place, :, n:]
-            known = np.isfinite(M).all(axis=(1, 2)) & np.isfinite(error)
-            radius = np.abs(np.linalg.eigvals(np.where(known[:, None, None], M, 0.0))).max(axis=1)
-            unstable = known & (rounds > 2) & (radius > UNSTABLE + error)
-        return {key for key, no in zip(keys, (torn | unstable).tolist()) if no}
+            errors = (rounds * self.error * own ** (rounds - changed) * other**changed).tolist()
+        hopeless = set()
+        for key, (low, high), radius, error in zip(keys, sides.tolist(), _radii(products), errors):
+            torn = self.linear and low < -DECIDED * high and high > -DECIDED * low
+            if torn or (key[0] > 2 and radius > UNSTABLE + error):
+                hopeless.add(key)
+        return hopeless
+
+
+def _radii(products: np.ndarray) -> list[float]:
+    """Largest modulus of the eigenvalues of each matrix (c, n, n); NaN of one that is not finite."""
+    if products.shape[1] == 2:
+        return [_radius(*entries) for entries in products.reshape(-1, 4).tolist()]
+    known = np.isfinite(products).all(axis=(1, 2))
+    radii = np.abs(np.linalg.eigvals(np.where(known[:, None, None], products, 0.0))).max(axis=1)
+    return np.where(known, radii, np.nan).tolist()
+
+
+def _radius(a: float, b: float, c: float, d: float) -> float:
+    """The same of [[a, b], [c, d]]."""
+    mean, half = 0.5 * (a + d), 0.5 * (a - d)
+    square = half * half + b * c
+    if square < 0.0:
+        return math.sqrt(mean * mean - square)
+    return abs(mean) + math.sqrt(square) if square < math.inf else math.nan
 
 
 @cache
@@ -80,23 +92,9 @@ def choices(most: int) -> list[tuple[int, int]]:
 
 
 @cache
-def _sequences(
-    most: int,
-) -> tuple[list[tuple[int, int]], np.ndarray, np.ndarray, list[tuple[int, np.ndarray]]]:
-    """(rounds, changed) of the cycles; then, cycle by cycle and read from each of their points: where a cycle begins, whether its
-    first round is changed, and for each later round the first of those that have it, and whether it is changed in these.
-    """
-    keys = choices(most)
-    rows, count, place = [], [], []
-    for n, changed in keys:
-        word = [1] * changed + [0] * (n - changed)
-        place.append(len(rows))
-        rows += [word[i:] + word[:i] + [0] * (most - n) for i in range(n)]
-        count += [n] * n
-    chosen = np.array(rows)
-    starts = [int(np.searchsorted(count, k, side="right")) for k in range(most)]
-    later = [(starts[k], chosen[starts[k] :, k].copy()) for k in range(1, most)]
-    return keys, np.array(place), chosen[:, 0].copy(), later
+def _table(most: int) -> np.ndarray:
+    """`choices` as an array."""
+    return np.array(choices(most), np.int64)
 
 
 def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds | None:
@@ -124,19 +122,23 @@ def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:
     return len(values) < 2 or bool(values[1] <= BOUNDED * max(float(values[0]), np.abs(plain).max()))
 
 
-def derived(factors: np.ndarray) -> tuple[np.ndarray, float] | None:
-    """The derivative of a round from those of its flights (l, n, n), and its rounding; None where it is no number."""
-    whole, sizes = product(np.array([factors, np.abs(factors)]))
+def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, float] | None:
+    """The derivative of a round, and its rounding; None where it is no number.
+
+    Parameters
+    ----------
+    A : ndarray, shape (l, n, n)
+        Derivatives of its flights.
+    D : ndarray, shape (l, n, n), optional
+        If given, both are derivatives of the equations of each flight: by the node before it, and after it.
+    """
+    n = A.shape[1]
+    whole, sizes = np.empty((2, n, n))
+    after = np.empty((0, n, n)) if D is None else D
+    if not through_flights(np.ascontiguousarray(A), after, whole, sizes, np.empty((3, n, n))):
+        return None
     error = ROUNDING * float(sizes.max())
     return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
-
-
-def product(factors: np.ndarray) -> np.ndarray:
-    """M_{l-1} ... M_0 of factors (..., l, n, n), neighbours first."""
-    while (count := factors.shape[-3]) > 1:
-        pairs = factors[..., 1::2, :, :] @ factors[..., : count - count % 2 : 2, :, :]
-        factors = np.concatenate([pairs, factors[..., -1:, :, :]], axis=-3) if count % 2 else pairs
-    return factors[..., 0, :, :]
 
 
 def escape(symmetric: bool, rounds: int) -> str:
