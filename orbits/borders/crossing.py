@@ -20,6 +20,7 @@ from orbits.borders.distance import CLOSE, distance, tends_to
 from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
     SIZES,
+    Begun,
     Grown,
     Place,
     grown,
@@ -29,7 +30,7 @@ from orbits.borders.neighbours import (
     turned,
 )
 from orbits.borders.rewriting import edits_at
-from orbits.borders.rounds import rounds_at
+from orbits.borders.rounds import derivative, rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
 from orbits.cycles.equations import solved_at
@@ -136,8 +137,9 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
     period, and is followed whether it is stable or not; of those that change in one of several rounds, or in all but one
     (period adding), there may be many at once: the stable ones are followed.
     """
-    problem, _, p, index, orbit, edits = border
-    known = [rounds_at(problem, orbit, p, edit, beside) for edit in edits]
+    problem, _, p, index, orbit, edits, _ = border
+    unchanged = [derivative(*solution) for solution in beside[-2:]]
+    known = [rounds_at(border, edit, unchanged) for edit in edits]
     hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
     if hopeless and all(len(no) == len(choices(MOST)) for no in hopeless):
         return
@@ -189,7 +191,7 @@ def _grown_in(
     for edit in choices:
         ways = SIZES if rounds == 2 else SIZES[:2]
         edits = [edit.later(k, problem) for k in range(changed)]
-        found = grown(wider, whole, p, edits, ways, steady=rounds > 2)
+        found = grown(Begun(wider, whole, p, edits), ways, steady=rounds > 2)
         if found is not None:
             return found, edit.change.what.value
     return None

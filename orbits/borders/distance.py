@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -22,8 +23,12 @@ def tends_to(border: Solution, near: Solution, further: Solution) -> bool:
 
     An orbit that is only similar keeps its distance.
     """
-    close = distance(border, near)
-    return close < ALIKE or (close < CLOSE and close < SHRINKS * distance(border, further))
+    return tends(distance(border, near), lambda: distance(border, further))
+
+
+def tends(close: float, further: Callable[[], float]) -> bool:
+    """The same from their distances; the larger one is asked for where it matters."""
+    return close < ALIKE or (close < CLOSE and close < SHRINKS * further())
 
 
 def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
@@ -31,12 +36,15 @@ def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
 
     In units of the machine's size. Where one of them hits no wall its mean position is free, and left out.
     """
+    free = one.word.impact_free or other.word.impact_free
+    unit = one.model.natural_units(one.params)[0]
+    if one.periods == other.periods == 1 and not mirror:
+        return float(_largest(one.track - other.track, free)) / unit
     periods = math.lcm(one.periods, other.periods)
     here, there = (
         orbit.track if orbit.periods == periods else np.tile(orbit.track, periods // orbit.periods)
         for orbit in (one, other)
     )
-    free = one.word.impact_free or other.word.impact_free
     images = [here, -np.roll(here, -PER_PERIOD // 2)] if mirror else [here]
     best = np.inf
     turned = (PER_PERIOD * np.arange(one.periods)[:, None] + np.arange(0, len(here), COARSE)) % len(here)
@@ -47,7 +55,7 @@ def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
                 break
             moved = np.roll(image, -PER_PERIOD * shift) if shift else image
             best = min(best, float(_largest(moved - there, free)))
-    return best / one.model.natural_units(one.params)[0]
+    return best / unit
 
 
 def _largest(gap: np.ndarray, free: bool) -> np.ndarray:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.distance import SHRINKS, tends_to
+from orbits.borders.distance import SHRINKS, distance, tends, tends_to
 from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
 from orbits.borders.rewriting import edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
@@ -75,6 +76,41 @@ class Grown(NamedTuple):
     tangent: np.ndarray
 
 
+class Begun:
+    """The new word that edits make of a border orbit, and its solutions next to the border; each is worked out once.
+
+    Attributes
+    ----------
+    orbit : Solution
+        The border orbit.
+    p : float
+    start : (problem, unknowns, where what grows stands, its change) or None
+        At the border; None where the edits make no word.
+    """
+
+    def __init__(self, problem: CycleProblem, orbit: Solution, p: float, edits: list[Edit]) -> None:
+        self.orbit, self.p = orbit, p
+        self.start = with_edits(problem, orbit, edits)
+        self._climbed: dict[tuple[float, ...], list[Held]] = {}
+
+    @cached_property
+    def growing(self) -> tuple[int, Change] | None:
+        """Where what grows from nothing stands, and its change; None where the new word is regular at the border."""
+        assert self.start is not None
+        other, guess, first, change = self.start
+        if change.grows is not Grows.MARGIN:
+            return first, change
+        return vanishing_in(other, guess, self.p, first, change)
+
+    def climbed(self, sizes: tuple[float, ...]) -> list[Held]:
+        """The solutions in which what grows has these sizes; see `climb`."""
+        if sizes not in self._climbed:
+            assert self.start is not None and self.growing is not None
+            other, guess = self.start[:2]
+            self._climbed[sizes] = climb(other, guess, *self.growing, self.p, sizes)
+        return self._climbed[sizes]
+
+
 class Place(NamedTuple):
     """A border orbit, read so that what changes does not straddle the end of the word, and what the local rules propose there."""
 
@@ -84,18 +120,25 @@ class Place(NamedTuple):
     index: int
     orbit: Solution
     edits: list[Edit]
+    known: dict[int, Begun]
+
+    def begun(self, edit: Edit) -> Begun:
+        """What a single one of the edits begins."""
+        if id(edit) not in self.known:
+            self.known[id(edit)] = Begun(self.problem, self.orbit, self.p, [edit])
+        return self.known[id(edit)]
 
 
 def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Place:
     """The border at which margin `index` of a solution vanishes."""
     problem, u, index = turned(problem, u, p, index)
     orbit = problem.orbit(u, p)
-    return Place(problem, u, p, index, orbit, edits_at(orbit, index, problem.length))
+    return Place(problem, u, p, index, orbit, edits_at(orbit, index, problem.length), {})
 
 
 def proposals(border: Place) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
     """Solutions next to the border with the words that the local rules propose."""
-    problem, u, p, index, orbit, edits = border
+    problem, u, p, index, orbit, edits, _ = border
     values = margins_of(problem, u, p)
     together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
     for first in edits:
@@ -107,7 +150,8 @@ def proposals(border: Place) -> Iterator[tuple[CycleProblem, np.ndarray, float, 
                     chosen.append(edit)
                     break
         for several in [chosen, [first]] if len(chosen) > 1 else [chosen]:
-            found = grown(problem, orbit, p, several)
+            begun = border.begun(first) if len(several) == 1 else Begun(problem, orbit, p, several)
+            found = grown(begun)
             if found is not None:
                 yield found.problem, found.u, found.p, found.tangent, first.change.what.value
 
@@ -117,29 +161,24 @@ def _overlap(a: Change, b: Change) -> bool:
 
 
 def grown(
-    problem: CycleProblem,
-    orbit: Solution,
-    p: float,
-    edits: list[Edit],
-    ways: tuple[tuple[float, ...], ...] = SIZES,
-    steady: bool = False,
+    begun: Begun, ways: tuple[tuple[float, ...], ...] = SIZES, steady: bool = False
 ) -> Grown | None:
     """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
     None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
     """
-    start = with_edits(problem, orbit, edits)
-    if start is None:
+    if begun.start is None:
         return None
-    other, guess, first, change = start
+    orbit, p = begun.orbit, begun.p
+    other, guess, _, change = begun.start
     if change.grows is Grows.MARGIN:
         found = _beside(other, guess, p, orbit, steady)
-        vanishing = None if found is not None else vanishing_in(other, guess, p, first, change)
-        if vanishing is None:
+        if found is not None or begun.growing is None:
             return found
-        first, change = vanishing
+    assert begun.growing is not None
+    first, change = begun.growing
     for sizes in ways:
-        found = climb(other, guess, first, change, p, sizes)
+        found = begun.climbed(sizes)
         if found and steady and not stable_at(other, found[-1].u, found[-1].p):
             return None
         if found and _begins_at(orbit, other, first, change, p, found):
@@ -211,29 +250,31 @@ def _begins_at(
         undecided &= values < SHOWN
     if size < LARGEST and np.any(undecided & (values < -ROUNDING)):
         return False  # no solution where they would have a sign
-    second = second or near
-    if not tends_to(border, other.orbit(near.u, near.p), other.orbit(second.u, second.p)):
+    further = second or near
+    gap = distance(border, other.orbit(near.u, near.p))
+    if not tends(gap, lambda: distance(border, other.orbit(further.u, further.p))):
         return False
-    return _keeps_tending(border, other, first, change, p, near)
+    return _keeps_tending(border, other, first, change, p, near, gap)
 
 
 def _keeps_tending(
-    border: Solution, other: CycleProblem, first: int, change: Change, p: float, near: Held
+    border: Solution, other: CycleProblem, first: int, change: Change, p: float, near: Held, gap: float
 ) -> bool:
     """Whether the solutions go on tending to the border orbit, and to its place, at still smaller sizes, as far as they can be solved for.
 
-    Those of a branch that only passes by do so until they are as far as that branch's own border.
+    Those of a branch that only passes by do so until they are as far as that branch's own border. `gap` is the distance of `near`.
     """
     placed = PLACED * parameter_unit(other, p)
     for _ in range(CLOSER):
         held = hold(other, near.u, near.p, first, change, p, 0.1 * near.size)
         if held is None:
             break
-        if not tends_to(border, other.orbit(held.u, held.p), other.orbit(near.u, near.p)):
+        closer = distance(border, other.orbit(held.u, held.p))
+        if not tends(closer, lambda gap=gap: gap):
             return False
         if abs(held.p - p) > max(SHRINKS * abs(near.p - p), placed):
             return False
-        near = held
+        near, gap = held, closer
     return True
 
 
