@@ -80,38 +80,38 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     from ..problems.kernels import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
-    # inlined by force, the loop would take half as long again to compile
-    compile_ = njit(cache=True, **OPTIONS)
-    sums = {name: compile_(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
-    improve = compile_(copy_with(corrector.improve, suffix, **sums))
-    correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **sums, **functions))
+    part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
+    sums = {name: part(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    improve = part(copy_with(corrector.improve, suffix, **sums))
+    # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
+    # is compiled, the corrector is optimised once; inlined by force afterwards, twice.
+    correct = njit(inline="always", **OPTIONS)(
+        copy_with(corrector.correct, suffix, improve=improve, **sums, **functions)
+    )
     own = (
         rule is not BY_ANGLE
     )  # a user's function may change while its loop is kept on disk: compiled in every process
-    judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
-    kept = njit(cache=not own, **OPTIONS)
-    march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
-    search = _search(compile_, suffix)
+    judge = compiled_rule(rule) if own else part(copy_with(by_angle, suffix))
+    march = njit(cache=not own, **OPTIONS)(
+        copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
+    )
+    search = _search(part, suffix)
     points = copy_with(corrector.points, suffix, improve=improve, **sums, **functions, **search)
-    return Bound(march, compile_(points))
+    return Bound(march, njit(cache=True, **OPTIONS)(points))
 
 
-def _search(compile_: Callable[..., Any], suffix: str) -> dict[str, Any]:
+def _search(part: Callable[..., Any], suffix: str) -> dict[str, Any]:
     """What looks for a zero along a chord, compiled."""
     known = {
-        name: compile_(copy_with(getattr(bracketing, name), suffix))
+        name: part(copy_with(getattr(bracketing, name), suffix))
         for name in ("begin", "best", "_add", "_ahead")
     }
-    follow = compile_(
+    follow = part(
         copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead"))
     )
-    parts = {name: compile_(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
-    multiplier = compile_(copy_with(aims.multiplier, suffix, **parts))
-    return {
-        **known,
-        "follow": follow,
-        "probe": compile_(copy_with(aims.probe, suffix, multiplier=multiplier)),
-    }
+    sorts = {name: part(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
+    multiplier = part(copy_with(aims.multiplier, suffix, **sorts))
+    return {**known, "follow": follow, "probe": part(copy_with(aims.probe, suffix, multiplier=multiplier))}
 
 
 def compiled_rule(rule: StepRule) -> Any:

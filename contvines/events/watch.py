@@ -32,9 +32,11 @@ from .scan import (
     dips,
 )
 from .segment import Segment
+from .windows import passed, real_inside, windows
 
-# beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about
-USER, TWICE, PAIRS, BORN = 256, 512, 1024, 2048
+# beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about;
+# a virtual branch may be real in between
+USER, TWICE, PAIRS, BORN, WINDOW = 256, 512, 1024, 2048, 4096
 NO_MARGIN = 1e-13  # something has no length or speed at all
 AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
 AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
@@ -97,6 +99,8 @@ class Watch(Examiner):
         if self.engine.m > 2 and self.kind in ("map", "flow"):
             flags[pairs.touching(self.engine, self.kind, wide)[own:]] |= PAIRS
             flags[pairs.born(self.engine, self.kind, wide)[own:]] |= BORN
+        if not real and self.engine.problem.n_margins:
+            flags[windows(self.engine, wide)[own:]] |= WINDOW
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             flags[changes(values)] |= USER
@@ -116,7 +120,7 @@ class Watch(Examiner):
                 s, middle = split
                 plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
-            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN):
+            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN | WINDOW):
                 found = self.examine(segment, real=real)
                 border = min(
                     (e for e in found if e.role is Role.BORDER), key=lambda e: e.position, default=None
@@ -157,7 +161,8 @@ class Watch(Examiner):
         if start is None:
             return []
         segment = Segment(self.engine, start, first)
-        found = self.examine(segment, real=real)
+        window = None if real else passed(segment)
+        found = self.examine(segment, real) if window is None else self.both(segment, *window, real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
         found.sort(key=lambda e: e.position)
@@ -244,8 +249,10 @@ class Watch(Examiner):
     def _split(self, segment: Segment, bits: int, suspects: list[int]) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin, or one of those suspected, is negative, the parameter turns back, or
 
-        stability is lost, though not at its ends.
+        stability is lost, though not at its ends; of a virtual branch, one where it is real.
         """
+        if bits & WINDOW and (inside := real_inside(segment)) is not None:
+            return inside
         if bits & MEETING:
             # a branch that comes back to a symmetry is marginal there: no point to cut it at
             bits &= ~(DAMPED | TWICE)

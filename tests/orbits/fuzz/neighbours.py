@@ -14,6 +14,7 @@ from tests.orbits.fuzz.motion import alike, apart
 from tests.orbits.fuzz.tally import Tally
 
 PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
+CLOSER = (1e-4, 1e-5)  # the same, where times of virtual orbits further away run backwards
 NEAR = 1e-7  # values of one point
 SAME = 1e-6  # motions that differ by less need not come nearer
 SHRINKS = 0.5  # a square root shrinks by 0.32 where the distance does tenfold
@@ -71,6 +72,8 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
     branch = between.branch
     for way in between.ways(i):
         seen = [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, PARTS)]
+        if any(math.isnan(gap) for _, gap in seen[-2:]):
+            seen += [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, CLOSER)]
         gaps = [gap for _, gap in seen]
         if len(gaps) < 2 or math.isnan(gaps[-1]):
             tally.count("ways to special points that cannot be followed")
