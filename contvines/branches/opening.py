@@ -14,6 +14,7 @@ from ..continuation.status import Status
 from ..events.leaps import SHORTEST
 from ..events.located import Located, Role
 from ..events.watch import Watch
+from ..journal import NullJournal
 from .half_branch import HalfBranch, piece_of, single
 from .records import pack, unpack
 
@@ -34,7 +35,8 @@ def opening(
     known = journal.recall(key)
     if known is None:
         events, times = _looked_at(engine, origin, start, watch, real)
-        journal.record(key, {**pack(events, engine), "nearer": times})
+        if not isinstance(journal, NullJournal):
+            journal.record(key, {**pack(events, engine), "nearer": times})
     else:
         events, times = unpack(known), int(known.get("nearer", 0))
     start = _nearer_by(engine, origin, start, times)

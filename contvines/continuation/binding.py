@@ -106,9 +106,7 @@ def _search(part: Callable[..., Any], suffix: str) -> dict[str, Any]:
         name: part(copy_with(getattr(bracketing, name), suffix))
         for name in ("begin", "best", "_add", "_ahead")
     }
-    follow = part(
-        copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead"))
-    )
+    follow = part(copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead")))
     sorts = {name: part(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
     multiplier = part(copy_with(aims.multiplier, suffix, **sorts))
     return {**known, "follow": follow, "probe": part(copy_with(aims.probe, suffix, multiplier=multiplier))}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +73,7 @@ class Engine:
         n = self.n = int(problem.dimension)
         self.bound = bind(problem.kernels, settings.step_rule)
         self.section = HELD if problem.kernels.compiled else OPEN
+        self.run = self.bound.points if problem.kernels.compiled else _calmly(self.bound.points)
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
@@ -251,8 +253,8 @@ class Engine:
         found = corrector.Found(
             np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5))
         )
-        with self.section, np.errstate(all="ignore"):
-            outcome = self.bound.points(
+        with self.section:
+            outcome = self.run(
                 self.data,
                 self.work,
                 corrector.EVERYTHING,
@@ -312,7 +314,7 @@ class Engine:
         return self.scratch.step.copy()
 
     def _part(self, what: int, border: np.ndarray, target: float) -> None:
-        self.bound.points(
+        self.run(
             self.data,
             self.work,
             what,
@@ -344,8 +346,7 @@ class Engine:
 
     def margins(self, rows: np.ndarray) -> np.ndarray:
         """Margins of some rows, shape (..., n_margins); NaN counts as not applicable."""
-        margins = rows[..., 2 * self.m :]
-        return np.where(np.isnan(margins), np.inf, margins)
+        return np.fmin(rows[..., 2 * self.m :], np.inf)
 
     def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
         """Smallest margin of each row, +inf where there are none."""
@@ -353,7 +354,8 @@ class Engine:
             return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
         if margins.ndim == 1:
-            return np.asarray(min((value for value in margins.tolist() if value == value), default=np.inf))
+            smallest = float(np.fmin.reduce(margins))
+            return np.asarray(smallest if smallest == smallest else np.inf)
         if margins.shape[-1] > 16:
             smallest = np.fmin.reduce(margins, axis=-1)
         else:  # few columns, many rows
@@ -386,6 +388,16 @@ class Engine:
             else np.abs(spectrum).max(axis=-1) - 1.0
         )
         return np.abs(outermost) <= tolerance
+
+
+def _calmly(function: Callable[..., int]) -> Callable[..., int]:
+    """An interpreted function, whose overflows are nobody's business."""
+
+    def called(*arguments: Any) -> int:
+        with np.errstate(all="ignore"):
+            return function(*arguments)
+
+    return called
 
 
 def _solved(found: corrector.Found) -> list[Solved | None]:

@@ -64,7 +64,7 @@ class Examiner:
         self.scaled = problem.scales is not None
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
-        self.many = isinstance(problem, Nearing) and problem.many
+        self.many = bool(getattr(problem, "many", False)) and isinstance(problem, Nearing) and problem.many
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]

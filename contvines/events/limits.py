@@ -127,11 +127,15 @@ def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
 
 def _apart(one: np.ndarray, other: np.ndarray) -> float:
     """Largest difference of two polynomials, as a part of their largest coefficient."""
-    pairs = list(zip(one.tolist(), other.tolist()))
-    if not all(math.isfinite(a) and math.isfinite(b) for a, b in pairs):
-        return math.inf
-    gap = max(abs(a - b) for a, b in pairs)
-    return gap / max(max(abs(a), abs(b)) for a, b in pairs) if gap > 0.0 else 0.0
+    gap = largest = 0.0
+    for a, b in zip(one.tolist(), other.tolist()):
+        change = abs(a - b)
+        if not change < math.inf:
+            return math.inf
+        gap = change if change > gap else gap
+        size = abs(a) if abs(a) > abs(b) else abs(b)
+        largest = size if size > largest else largest
+    return gap / largest if gap > 0.0 else 0.0
 
 
 def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
@@ -167,6 +171,8 @@ def _before(segment: Segment, s: float) -> Solved | None:
 def _characteristic(spectrum: np.ndarray) -> np.ndarray:
     """Coefficients of the polynomials with these zeros (..., m), highest power first, shape (..., m + 1)."""
     m = spectrum.shape[-1]
+    if m == 2 and spectrum.ndim == 2:
+        return np.array([(1.0, -(a + b).real, (a * b).real) for a, b in spectrum.tolist()])
     coefficients = np.zeros((*spectrum.shape[:-1], m + 1), dtype=complex)
     coefficients[..., 0] = 1.0
     for k in range(m):

@@ -235,7 +235,6 @@ def _special(
     run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
 ) -> SpecialPoint:
     point = event.point
-    residual = engine.residual(point.u, point.p)
     margin = float(engine.smallest_margin(point.row))
     if kind in BORDERS:
         margins = engine.margins(point.row)
@@ -251,7 +250,7 @@ def _special(
         multipliers=engine.multipliers(point.row),
         margins=margin,
         bracket=event.bracket,
-        residual=float(residual),
+        residual=float(point.residual),
         location_error=float(event.error),
         real=branch.real,
         name=event.name,

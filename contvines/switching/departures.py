@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -71,11 +72,10 @@ def null_vectors(
     """
     border = engine.weights * tangent
     _evaluate(engine, u, p, border)
-    rng = np.random.default_rng(3)
+    sides = _sides(min(KERNEL + 1, engine.n), engine.n)
     found: list[np.ndarray] = []
     first = 0.0
-    for _ in range(min(KERNEL + 1, engine.n)):
-        random = rng.standard_normal(engine.n)
+    for random in sides:
         side = np.append(engine.row_sizes * random, 0.0)
         image = engine.apply_inverse(border, side)
         size = float(np.abs(image).max())
@@ -90,6 +90,12 @@ def null_vectors(
             break
         found.append(_oriented(engine, engine.unit(image)))
     return found[:KERNEL]
+
+
+@lru_cache(maxsize=64)
+def _sides(count: int, n: int) -> np.ndarray:
+    """Vectors without a pattern, shape (count, n)."""
+    return np.random.default_rng(3).standard_normal((count, n))
 
 
 def _evaluate(engine: Engine, u: np.ndarray, p: float, border: np.ndarray) -> None:

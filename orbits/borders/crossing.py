@@ -35,7 +35,6 @@ from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
 from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
-from orbits.cycles.kernels import assemble
 from orbits.cycles.rounds import MOST, choices, escape
 from orbits.cycles.solution import Solution
 from orbits.machines.catalogue import stepper
@@ -76,7 +75,7 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
     before = problem.orbit(u, p)
-    if rest or piled_up(before):
+    if rest or piled_up(problem.word, margins_of(problem, u, p)):
         return rest
     border = placed(problem, u, p, int(point.margin_index))
     index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)
@@ -201,7 +200,7 @@ def _sides(
     problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, length: float
 ) -> list[tuple[np.ndarray, float]]:
     """Solutions with the old word a little ahead of the border and behind it, as (u, p)."""
-    kernels, work = assemble(problem.model), problem.scratch
+    kernels, work = problem.equations.kernels, problem.scratch
     step, along = np.empty(u.size + 1), np.empty(u.size + 1)
     length /= max(float(np.abs(tangent).max()), 1e-12)
     found = []

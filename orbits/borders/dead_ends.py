@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from orbits.cycles.margins import EVENT, PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
+from orbits.words import Word
 
 SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
 UNRESOLVED = 1e-5  # the way after an impact this slow, its square, is lost in that of the margins
@@ -55,9 +57,10 @@ def _fading(orbit: Solution) -> tuple[float, float] | None:
     return None
 
 
-def piled_up(orbit: Solution) -> bool:
-    """Whether a border orbit has an impact that is too slow to see what the next ones do."""
-    speeds = orbit.approaches
+def piled_up(word: Word, margins: np.ndarray) -> bool:
+    """Whether a border orbit has an impact that is too slow to see what the next ones do; margins of all its events, or of half of them."""
+    own = margins[EVENT::PER_NODE]
+    speeds = own[word.codes[: own.size] < 2]
     return bool(np.any((speeds > VANISHING) & (speeds < UNRESOLVED)))
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import STICK
-from orbits.cycles.kernels import assemble
 from orbits.protocol import CycleProblem
 from orbits.words.alphabet import LEFT
 
@@ -17,7 +16,7 @@ NEAR = 1e-7  # margins this small vanish together
 
 def parameter_unit(problem: CycleProblem, p: float) -> float:
     """What changes of the parameter near p are compared with: its own size, or where it started."""
-    return max(abs(p), abs(problem.value(problem.params))) or 1.0
+    return max(abs(p), abs(problem.equations.began)) or 1.0
 
 
 class Held(NamedTuple):
@@ -49,7 +48,7 @@ def hold(
 ) -> Held | None:
     """Solve with what grows beyond the border at p held at a size; None where there is no such solution near the border."""
     n, size = other.model.node, other.dimension
-    kernels, work = assemble(other.model), other.scratch
+    kernels, work = other.equations.kernels, other.scratch
     step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
     u = guess.copy()
     if change.grows is Grows.GAP:
@@ -61,9 +60,10 @@ def hold(
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
         unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
-        node, near = other.expand(u)[first], NEAR * parameter_unit(other, p)
-        cavity, beside = _cavity_speeds(other, node, np.array([q, q + near])) / unit[1]
-        slopes = other.model.cavity_speed_slopes(node, other.values(q))
+        node, near = u[first * n : (first + 1) * n] * unit, NEAR * parameter_unit(other, p)
+        params = other.values(np.array([q, q + near]))
+        cavity, beside = _cavity_speeds(other, node, params) / unit[1]
+        slopes = other.model.cavity_speed_slopes(node, params[0])
         border[first * n : (first + 1) * n] = -sign * slopes * unit / unit[1]
         border[first * n + 1] += sign
         border[size] = -sign * (beside - cavity) / near
@@ -79,7 +79,7 @@ def hold(
     return Held(u, float(q_new), tangent, wanted)
 
 
-def _cavity_speeds(problem: CycleProblem, node: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """v' at an impact, at some parameter values."""
-    nodes = np.broadcast_to(node, (len(p), 1, len(node)))
-    return problem.model.cavity_motion(nodes, problem.values(p))[1][:, 0]
+def _cavity_speeds(problem: CycleProblem, node: np.ndarray, params: np.ndarray) -> np.ndarray:
+    """v' at an impact, with some parameter vectors."""
+    nodes = node[None, None].repeat(len(params), axis=0)
+    return problem.model.cavity_motion(nodes, params)[1][:, 0]

@@ -16,7 +16,6 @@ from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, STICK
 from orbits.cycles.claim import REAL
-from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
@@ -49,7 +48,7 @@ def examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Multipliers as (re, im) pairs, then margins; the linearisation stays in the scratch."""
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
     with kept_back():
-        assemble(problem.model).examine(problem.data, u, p, problem.scratch, row)
+        problem.equations.kernels.examine(problem.data, u, p, problem.scratch, row)
     return row
 
 
@@ -160,9 +159,7 @@ def _overlap(a: Change, b: Change) -> bool:
     return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
 
 
-def grown(
-    begun: Begun, ways: tuple[tuple[float, ...], ...] = SIZES, steady: bool = False
-) -> Grown | None:
+def grown(begun: Begun, ways: tuple[tuple[float, ...], ...] = SIZES, steady: bool = False) -> Grown | None:
     """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
     None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
@@ -291,7 +288,7 @@ def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: 
 def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, steady: bool) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
-    kernels, work = assemble(other.model), other.scratch
+    kernels, work = other.equations.kernels, other.scratch
     border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
     border[-1] = 1.0
     at_border, unit = guess.copy(), parameter_unit(other, p)
@@ -327,7 +324,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
 
 def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
-    kernels, work = assemble(other.model), other.scratch
+    kernels, work = other.equations.kernels, other.scratch
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
     length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
     for distance in (1e-5, 1e-6):

@@ -11,9 +11,7 @@ from orbits.protocol import CycleProblem
 from orbits.words.edit import Edit
 
 
-def rounds_at(
-    border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]
-) -> Rounds | None:
+def rounds_at(border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]) -> Rounds | None:
     """Unchanged and changed rounds of a border cycle; None where they cannot be told.
 
     Parameters
@@ -25,7 +23,9 @@ def rounds_at(
     """
     other, solutions = _near_border(border, edit)
     kinds = [unchanged[-2:], [derivative(other, held.u, held.p) for held in solutions[-2:]]]
-    if border.problem.word.impact_free and other.word.impact_free:  # nothing depends on where such a motion is
+    if (
+        border.problem.word.impact_free and other.word.impact_free
+    ):  # nothing depends on where such a motion is
         kinds = [[None if m is None else (_elsewhere(m[0]), m[1]) for m in maps] for maps in kinds]
     return judged(kinds)
 

@@ -6,7 +6,7 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -93,10 +93,15 @@ class Equations:
             frame.law,
         )
 
-    @property
+    @cached_property
     def kernels(self) -> Any:
         """linearise, bordered, inspect, newton, examine: the compiled functions of the model."""
         return assemble(self.model)
+
+    @cached_property
+    def began(self) -> float:
+        """The value of the parameter that varies in the parameter vector."""
+        return self.value(self.params)
 
     def workspace(self) -> Workspace:
         """Arrays for the kernels."""

@@ -154,13 +154,15 @@ class Kernels:
     @property
     def inspect(self) -> Any:
         """Multipliers and margins."""
-        wait_for(self.name, self._inspect)
+        if not self._inspect.overloads:
+            wait_for(self.name, self._inspect)
         return self._inspect
 
     @property
     def examine(self) -> Any:
         """Residual, and the row of `inspect`, of one solution."""
-        wait_for(self.name, self._examine)
+        if not self._examine.overloads:
+            wait_for(self.name, self._examine)
         return self._examine
 
     @property

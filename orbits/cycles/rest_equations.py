@@ -44,6 +44,11 @@ class RestEquations:
         self.data = self
 
     @property
+    def began(self) -> float:
+        """The value of the parameter that varies in the parameter vector."""
+        return self.value(self.params)
+
+    @property
     def kernels(self) -> Any:
         """In plain Python: three equations need no compiler."""
         return KERNELS

@@ -8,6 +8,9 @@ import numpy as np
 
 from orbits.machines.base import Model
 from orbits.words import Word
+from orbits.words.alphabet import CODES
+
+LEFT_IMPACT, RIGHT_IMPACT = CODES["L"], CODES["R"]  # 0 and 1, before all others
 
 
 @dataclass(frozen=True)
@@ -54,8 +57,8 @@ def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray)
 
 def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Which events are impacts, shape (L,), and their walls' places and coefficients of restitution, shape (m, L)."""
-    left = np.array([letter == "L" for letter in word.events], dtype=bool)
-    hits = left | np.array([letter == "R" for letter in word.events], dtype=bool)
+    codes = word.codes
+    left, hits = codes == LEFT_IMPACT, codes <= RIGHT_IMPACT
     (at_left, at_right), (by_left, by_right) = model.walls(params), model.restitutions(params)
     walls = np.where(left, at_left[:, None], at_right[:, None])
     return hits, walls, np.where(left, by_left[:, None], by_right[:, None])

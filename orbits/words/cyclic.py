@@ -54,7 +54,7 @@ class CyclicWord(ABC):
         """The mode after an event."""
         return self.modes[place % len(self.modes)]
 
-    @property
+    @cached_property
     def impacts(self) -> int:
         """Number of impacts l."""
         letters = self.alphabet.letters
@@ -70,6 +70,10 @@ class CyclicWord(ABC):
 
     def mirror(self) -> Self:
         """The word of the mirror image."""
+        return self._image
+
+    @cached_property
+    def _image(self) -> Self:
         images, mirrored = self.alphabet.images, self.alphabet.mirrored_mode
         return self.like([images[text] for text in self.events], [mirrored(mode) for mode in self.modes])
 

@@ -46,7 +46,7 @@ class Word(CyclicWord):
 
     def like(self, events: Sequence[str], modes: Sequence[int]) -> Word:
         """A word of the same machine."""
-        return Word(tuple(events), tuple(modes), self.frictionless)
+        return _word(tuple(events), tuple(modes), self.frictionless)
 
     # ------------------------------------------------------------------ making
     @classmethod
@@ -165,6 +165,12 @@ class Word(CyclicWord):
     def mode_codes(self) -> np.ndarray:
         """Mode after each event, shape (n,), int8."""
         return np.array(self.modes, dtype=np.int8)
+
+
+@lru_cache(maxsize=4096)
+def _word(events: tuple[str, ...], modes: tuple[int, ...], frictionless: bool) -> Word:
+    """A word, the same one every time: what is worked out of it is kept."""
+    return Word(events, modes, frictionless)
 
 
 @lru_cache(maxsize=1024)

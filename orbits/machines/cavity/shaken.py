@@ -19,10 +19,12 @@ class Shaken(Model):
     driven_by = "amplitude"
 
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
-        left, right = (float(wall) for wall in self.walls(params))
-        sizes = min(left, -right), float(self.column(params, "frequency"))  # a far wall may be out of reach
-        length, rate = (size if 0.0 < size < math.inf else 1.0 for size in sizes)
-        return length, rate
+        left, right = self.walls(params)
+        length, rate = (
+            float(min(left, -right)),
+            float(self.column(params, "frequency")),
+        )  # a far wall may be out of reach
+        return length if 0.0 < length < math.inf else 1.0, rate if 0.0 < rate < math.inf else 1.0
 
     @classmethod
     def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
