@@ -35,6 +35,7 @@ from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
 from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
+from orbits.cycles.margins import approaches_of
 from orbits.cycles.rounds import MOST, choices, escape
 from orbits.cycles.solution import Solution
 from orbits.machines.catalogue import stepper
@@ -75,7 +76,7 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
     before = problem.orbit(u, p)
-    if rest or piled_up(problem.word, margins_of(problem, u, p)):
+    if rest or piled_up(before, approaches_of(problem.word, margins_of(problem, u, p))):
         return rest
     border = placed(problem, u, p, int(point.margin_index))
     index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)

@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from orbits.cycles.margins import EVENT, PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
-from orbits.words import Word
 
 SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
-UNRESOLVED = 1e-5  # the way after an impact this slow, its square, is lost in that of the margins
+UNRESOLVED = 1e-5  # the way after an impact that ends this slow, its square, is lost in that of the margins
 VANISHING = 1e-9  # margins smaller than this are those of the border itself
 ONE_WAY = 1e-9  # relative difference of the frictions, slope included, of the two directions
 
@@ -57,11 +55,14 @@ def _fading(orbit: Solution) -> tuple[float, float] | None:
     return None
 
 
-def piled_up(word: Word, margins: np.ndarray) -> bool:
-    """Whether a border orbit has an impact that is too slow to see what the next ones do; margins of all its events, or of half of them."""
-    own = margins[EVENT::PER_NODE]
-    speeds = own[word.codes[: own.size] < 2]
-    return bool(np.any((speeds > VANISHING) & (speeds < UNRESOLVED)))
+def piled_up(orbit: Solution, approaches: np.ndarray | None = None) -> bool:
+    """Whether a border orbit has an impact that is too slow, once the wall has sent it back, to see what the next ones do.
+
+    `approaches` are the orbit's own, where they are known.
+    """
+    speeds, codes = orbit.approaches if approaches is None else approaches, orbit.word.codes
+    back = np.asarray(orbit.model.restitutions(orbit.params))[codes[codes < 2][: speeds.size]]
+    return bool(np.any((speeds > VANISHING) & (back * speeds < UNRESOLVED)))
 
 
 def _gives_way_one_way(orbit: Solution) -> bool:

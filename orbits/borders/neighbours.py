@@ -296,10 +296,10 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
     if not residual < 1e-10:
         return None
     found = None
-    for distance in (1e-8, 1e-7, 1e-6):
+    for away in (1e-8, 1e-7, 1e-6):
         sides = []
         for side in (1.0, -1.0):
-            q = p + side * distance * unit
+            q = p + side * away * unit
             ahead = at_border + (q - p) * tangent[:-1]
             u, along = ahead.copy(), tangent.copy()
             residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
@@ -308,9 +308,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
                 sides.append((float(margins_of(other, u, q).min()), u, q, side * along))
         if sides:
             margin, u, q, along = max(sides, key=lambda entry: entry[0])
-            if (
-                margin > GROWING * distance
-            ):  # not one that vanishes all along, as at a wall touched without speed
+            if margin > GROWING * away:  # not one that vanishes all along, as at a wall touched without speed
                 found = Grown(other, u, q, along)
                 break
     if found is None and np.abs(tangent).max() * unit > STEEP:
@@ -327,12 +325,12 @@ def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.nda
     kernels, work = other.equations.kernels, other.scratch
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
     length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
-    for distance in (1e-5, 1e-6):
+    for away in (1e-5, 1e-6):
         for side in (1.0, -1.0):
             direction = side * tangent / length
-            u = at_border + distance * direction[:-1]
-            guess = p + distance * direction[-1]
+            u = at_border + away * direction[:-1]
+            guess = p + away * direction[-1]
             residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)
-            if residual < 1e-10 and margins_of(other, u, float(q)).min() > GROWING * distance:
+            if residual < 1e-10 and margins_of(other, u, float(q)).min() > GROWING * away:
                 return Grown(other, u, float(q), direction)
     return None

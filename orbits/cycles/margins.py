@@ -63,6 +63,12 @@ def border_kind(word: Word, index: int) -> str:
     return BORDERS[name]
 
 
+def approaches_of(word: Word, margins: np.ndarray) -> np.ndarray:
+    """The margins of the impacts, their speeds, from those of all events of a cycle, or of half of them."""
+    own = margins[EVENT::PER_NODE]
+    return own[word.codes[: own.size] < 2]
+
+
 def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
     """What margins of one are in a length and a rate, shape (4 L,)."""
     length, rate = units

@@ -14,7 +14,7 @@ from orbits.cycles.claim import Claim
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
 from orbits.cycles.equations import equations
-from orbits.cycles.margins import EVENT, PER_NODE, Margin, margin_units, named_margins
+from orbits.cycles.margins import Margin, approaches_of, margin_units, named_margins
 from orbits.cycles.sampling import positions, sample
 
 TOLERANCE = 1e-12  # of Newton's method, in the unknowns
@@ -61,8 +61,7 @@ class Solution(Claim, Cycle):
     @property
     def approaches(self) -> np.ndarray:
         """The margins of the impacts, their speeds, in units of the machine's own size."""
-        own = self._examined[2][EVENT::PER_NODE]
-        return own[self.word.codes[: own.size] < 2]
+        return approaches_of(self.word, self._examined[2])
 
     @property
     def relative_margins(self) -> list[Margin]:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from contvines.continuation.lengths import Metric
 from contvines.continuation import aims
+from contvines.continuation.lengths import Metric
 from contvines.events import bits, scan, scan_arrays
 
 
