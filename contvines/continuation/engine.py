@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Rough
@@ -18,7 +17,11 @@ from .aims import NO_COLUMNS, NOTHING, Aim
 from .approach import approach
 from .binding import bind
 from .lengths import Metric
+from .rows import Rows
 from .settings import Settings
+from .solved import Hit as Hit
+from .solved import Solved as Solved
+from .solved import solved_points
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 ONE = np.zeros(1)  # a single place: the chord's first end
@@ -30,32 +33,7 @@ def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) ->
     return min(within[1] - within[0], max(scale, abs(p)))
 
 
-class Solved(NamedTuple):
-    """A point of a branch with everything known about it.
-
-    ``row`` is what the kernel ``inspect`` wrote: multipliers as re, im pairs, then margins. ``tangent`` is a unit vector
-    in the metric, ``sign`` the sign of det [[F_u, F_p], [tangent]], ``correction`` the last Newton correction.
-    """
-
-    u: np.ndarray
-    p: float
-    tangent: np.ndarray
-    row: np.ndarray
-    sign: float
-    residual: float
-    correction: float
-
-
-class Hit(NamedTuple):
-    """Where a number passes zero along a chord: the place, the point, the error of its parameter value, how much the number changes there."""
-
-    place: float
-    point: Solved
-    error: float
-    jump: float
-
-
-class Engine:
+class Engine(Rows):
     """Continuation of one problem within an interval.
 
     Parameters
@@ -218,7 +196,7 @@ class Engine:
         found, outcome = self._run(chord, (start, length), ONE, border, along, 40, aim)
         if outcome == corrector.NOWHERE:
             return None
-        point = _solved(found)[0]
+        point = solved_points(found)[0]
         if point is None:
             return None
         one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
@@ -237,7 +215,7 @@ class Engine:
         along: np.ndarray | None,
         sweeps: int,
     ) -> list[Solved | None]:
-        return _solved(self._run(chord, stretch, places, border, along, sweeps, NO_AIM)[0])
+        return solved_points(self._run(chord, stretch, places, border, along, sweeps, NO_AIM)[0])
 
     def _run(
         self,
@@ -332,63 +310,6 @@ class Engine:
             self.noise,
         )
 
-    # ------------------------------------------------------------------ rows
-    def rows(self, count: int) -> np.ndarray:
-        """Room for rows, the same one every time: large, written once and read once."""
-        if len(self._rows) < count:
-            self._rows = np.zeros((count, self.row_size))
-        return self._rows[:count]
-
-    def spectrum(self, rows: np.ndarray) -> NDArray[np.complex128]:
-        """Raw multipliers of some rows, shape (..., m)."""
-        m = self.m
-        return rows[..., 0 : 2 * m : 2] + 1j * rows[..., 1 : 2 * m : 2]
-
-    def margins(self, rows: np.ndarray) -> np.ndarray:
-        """Margins of some rows, shape (..., n_margins); NaN counts as not applicable."""
-        return np.fmin(rows[..., 2 * self.m :], np.inf)
-
-    def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
-        """Smallest margin of each row, +inf where there are none."""
-        if rows.shape[-1] <= 2 * self.m:
-            return np.full(rows.shape[:-1], np.inf)
-        margins = rows[..., 2 * self.m :]  # fmin passes over NaN
-        if margins.ndim == 1:
-            smallest = float(np.fmin.reduce(margins))
-            return np.asarray(smallest if smallest == smallest else np.inf)
-        if margins.shape[-1] > 16:
-            smallest = np.fmin.reduce(margins, axis=-1)
-        else:  # few columns, many rows
-            smallest = margins[..., 0].copy()
-            for j in range(1, margins.shape[-1]):
-                np.fmin(smallest, margins[..., j], out=smallest)
-        return np.where(np.isnan(smallest), np.inf, smallest)
-
-    def multipliers(self, rows: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period, shape (..., m)."""
-        return np.asarray(self.problem.to_multipliers(self.spectrum(rows)), dtype=complex)
-
-    def stable(self, rows: np.ndarray) -> np.ndarray:
-        """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows)."""
-        spectrum = self.spectrum(rows)
-        if self.problem.spectrum == "map":
-            return np.all(np.abs(spectrum) < 1.0, axis=-1)
-        if self.problem.spectrum == "flow":
-            return np.all(spectrum.real < 0.0, axis=-1)
-        return np.zeros(rows.shape[:-1], dtype=bool)
-
-    def marginal(self, rows: np.ndarray, tolerance: float) -> np.ndarray:
-        """Whether the outermost multiplier is on the unit circle (the imaginary axis) up to a tolerance."""
-        if self.problem.spectrum == "none" or not self.m:
-            return np.zeros(rows.shape[:-1], dtype=bool)
-        spectrum = self.spectrum(rows)
-        outermost = (
-            spectrum.real.max(axis=-1)
-            if self.problem.spectrum == "flow"
-            else np.abs(spectrum).max(axis=-1) - 1.0
-        )
-        return np.abs(outermost) <= tolerance
-
 
 def _calmly(function: Callable[..., int]) -> Callable[..., int]:
     """An interpreted function, whose overflows are nobody's business."""
@@ -398,12 +319,3 @@ def _calmly(function: Callable[..., int]) -> Callable[..., int]:
             return function(*arguments)
 
     return called
-
-
-def _solved(found: corrector.Found) -> list[Solved | None]:
-    """Points one by one, None where there is no solution."""
-    points: list[Solved | None] = []
-    for i, (p, sweeps, residual, sign, size) in enumerate(found.numbers.tolist()):
-        point = Solved(found.u[i], p, found.tangents[i], found.rows[i], sign, residual, size)
-        points.append(point if sweeps >= 0 else None)
-    return points

@@ -64,7 +64,7 @@ class Examiner:
         self.scaled = problem.scales is not None
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
-        self.many = bool(getattr(problem, "many", False)) and isinstance(problem, Nearing) and problem.many
+        self.many = isinstance(problem, Nearing) and problem.many
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -156,8 +156,7 @@ class Examiner:
         def test(point: Solved) -> float:
             return float(balance(self.engine.spectrum(point.row)[None, :], self.kind)[0])
 
-        ends = test(segment.a), test(segment.b)
-        if not ends[0] * ends[1] < 0.0:
+        if not test(segment.a) * test(segment.b) < 0.0:
             return None
         rough = locate(segment, test, tolerance=1e-6)
         if rough is None:
@@ -278,9 +277,7 @@ class Examiner:
     def _determinant(self, segment: Segment) -> Root | None:
         test = DeterminantTest(self.engine, segment.border)
         rough = locate(segment, AT_SIGNS, tolerance=1e-3)
-        if rough is None:
-            return None
-        return locate_singular(segment, test, rough.position) or rough
+        return None if rough is None else locate_singular(segment, test, rough.position) or rough
 
     def _meetings(self, segment: Segment) -> list[Located]:
         events = []

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from orbits.compiling.decorators import stored_kernel
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 
 TWO_PI = 2.0 * np.pi
@@ -30,20 +31,30 @@ def states_of(
     engine: Machine, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray
 ) -> np.ndarray:
     """The states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
-    states = np.zeros((len(nodes), engine.state))
-    turns = np.floor(nodes[:, 0] / TWO_PI)
-    psi = nodes[:, 0] - turns * TWO_PI
-    states[:, PSI] = np.where((psi >= TWO_PI) | (psi < 0.0), 0.0, psi)
-    states[:, TURNS], states[:, MODE] = turns, modes
-    if engine.moving_cavity:
-        states[:, V], states[:, V_RATE] = nodes[:, 2], nodes[:, 3]
-    hits = codes < 2
-    states[:, W] = nodes[:, 1]
-    if hits.any():
-        left, right = engine.walls(params)
-        states[hits, W] = np.where(codes[hits] == 0, left, right)
-        states[hits, RATE] = _cavity_speed(engine, params, states[hits]) - nodes[hits, 1]
+    left, right = engine.walls(params)
+    states, speeds = np.zeros((len(nodes), engine.state)), np.zeros((len(nodes), 4))
+    nodes = np.ascontiguousarray(nodes, dtype=float)
+    if _placed(codes, modes, nodes, float(left), float(right), states):
+        engine.sample(states, params, speeds[:, 0].copy(), speeds)
+        states[:, RATE] = np.where(codes < 2, speeds[:, 3] - nodes[:, 1], 0.0)
     return states
+
+
+@stored_kernel
+def _placed(codes, modes, nodes, left, right, states):
+    """Fill states (n, S) with all that nodes tell without the cavity's speed; whether there is an impact."""
+    hits = False
+    for i in range(nodes.shape[0]):
+        turns = np.floor(nodes[i, 0] / TWO_PI)
+        psi = nodes[i, 0] - turns * TWO_PI
+        states[i, PSI] = psi if 0.0 <= psi < TWO_PI else 0.0
+        states[i, TURNS], states[i, MODE], states[i, W] = turns, modes[i], nodes[i, 1]
+        if states.shape[1] > V_RATE:
+            states[i, V], states[i, V_RATE] = nodes[i, 2], nodes[i, 3]
+        if codes[i] < 2:
+            hits = True
+            states[i, W] = left if codes[i] == 0 else right
+    return hits
 
 
 def nodes_of(

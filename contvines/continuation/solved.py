@@ -1,0 +1,43 @@
+"""Solved: a point of a branch with everything known about it, as the corrector found it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .corrector import Found
+
+
+class Solved(NamedTuple):
+    """A point of a branch with everything known about it.
+
+    ``row`` is what the kernel ``inspect`` wrote: multipliers as re, im pairs, then margins. ``tangent`` is a unit vector
+    in the metric, ``sign`` the sign of det [[F_u, F_p], [tangent]], ``correction`` the last Newton correction.
+    """
+
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray
+    row: np.ndarray
+    sign: float
+    residual: float
+    correction: float
+
+
+class Hit(NamedTuple):
+    """Where a number passes zero along a chord: the place, the point, the error of its parameter value, how much the number changes there."""
+
+    place: float
+    point: Solved
+    error: float
+    jump: float
+
+
+def solved_points(found: Found) -> list[Solved | None]:
+    """Points one by one, None where there is no solution."""
+    points: list[Solved | None] = []
+    for i, (p, sweeps, residual, sign, size) in enumerate(found.numbers.tolist()):
+        point = Solved(found.u[i], p, found.tangents[i], found.rows[i], sign, residual, size)
+        points.append(point if sweeps >= 0 else None)
+    return points
