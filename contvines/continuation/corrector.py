@@ -158,9 +158,9 @@ def points(
     scratch,
     noise,
 ):
-    """Single solutions, and everything about them, or a part of that: one function, as each is compiled with all that it calls.
+    """Single solutions, and everything about them, or a part of that.
 
-    In one piece, for the same reason.
+    In one piece: each function is compiled with all that it calls.
 
     EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method from a place on a chord (none at its ends: they are good as they are), then
     linearisation, elimination and multipliers once more at the solution; tangents are unit vectors with <along, tangent> >= 0. With an aim
