@@ -1,9 +1,10 @@
-"""Arguments that a function does not have are refused with a hint."""
+"""Arguments that a function does not have are refused with a hint, ones that are missing with their meaning."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
@@ -16,7 +17,7 @@ Elsewhere = Callable[[str, Any, Sequence[str]], str]
 
 
 def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Callable[P, R]:
-    """The function; an argument that it does not have is refused with the names that it has.
+    """The function; an argument that it does not have is refused with the names that it has, a missing one with its meaning.
 
     A method is called by its class, too, and what makes a thing (``__init__``) by the name of its class alone.
 
@@ -41,9 +42,38 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
                 hint = elsewhere(name, options[name], names) if elsewhere is not None else ""
                 hint = hint or (f"it has {', '.join(shown)}" if shown else "it takes none")
                 raise TypeError(f"{called} has no argument {name!r}{did_you_mean(name, shown)}; {hint}")
-        return function(*arguments, **options)
+        try:
+            return function(*arguments, **options)
+        except TypeError:
+            absent = _absent(known, arguments, options)
+            if not absent:
+                raise
+            needed = " and ".join(
+                f"{name} ({meaning})" if meaning else name
+                for name, meaning in ((name, _meaning(inspect.getdoc(function), name)) for name in absent)
+            )
+        raise TypeError(f"{called} needs {needed}")
 
     return asked
+
+
+def _absent(
+    known: Mapping[str, inspect.Parameter], arguments: Sequence[Any], options: Mapping[str, Any]
+) -> list[str]:
+    """The names of arguments that have to be given and are not."""
+    by_position = [name for name, entry in known.items() if entry.kind <= entry.POSITIONAL_OR_KEYWORD]
+    given = {*by_position[: len(arguments)], *options}
+    return [
+        name
+        for name, entry in known.items()
+        if entry.default is entry.empty and entry.kind is not entry.VAR_POSITIONAL and name not in given
+    ]
+
+
+def _meaning(page: str | None, name: str) -> str:
+    """What a docstring in numpydoc says of an argument, up to the end of its first sentence; nothing if it is silent."""
+    entry = re.search(rf"^{name} : .*\n((?: {{4}}.*\n?)+)", page or "", re.MULTILINE)
+    return re.split(r"[.;](?:\s|$)", " ".join(entry[1].split()))[0] if entry else ""
 
 
 def hinted(thing: type[T], elsewhere: Elsewhere | None = None) -> type[T]:

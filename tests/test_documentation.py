@@ -126,3 +126,16 @@ def test_pictures_and_links_of_the_pages_exist(page):
     text = (DOCS / page).read_text(encoding="utf-8")
     for target in re.findall(r"\]\(((?!http)[^)#]+)\)", text):
         assert (DOCS / target).exists(), target
+
+
+@pytest.mark.parametrize(
+    "folder", [DOCS, DOCS.parent, DOCS.parent / "examples"], ids=lambda folder: folder.name
+)
+def test_rows_of_tables_have_as_many_cells_as_their_heading(folder):
+    """A cell that is left out moves all that follow it under wrong headings."""
+    for page in folder.glob("**/*.md" if folder != DOCS.parent else "*.md"):
+        width = None
+        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+            bars = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else None
+            assert width is None or bars in (None, width), f"{page.name}, line {number}"
+            width = bars

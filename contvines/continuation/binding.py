@@ -82,18 +82,23 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     from ..problems.kernels import kernels_digest
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
-    # inlined by force, the loop would take half as long again to compile
-    compile_ = njit(cache=True, **OPTIONS)
-    sums = {name: compile_(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
-    improve = compile_(copy_with(corrector.improve, suffix, **sums))
-    correct = compile_(copy_with(corrector.correct, suffix, improve=improve, **sums, **functions))
+    part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
+    sums = {name: part(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    improve = part(copy_with(corrector.improve, suffix, **sums))
+    # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
+    # is compiled, the corrector is optimised once; inlined by force afterwards, twice.
+    correct = njit(inline="always", **OPTIONS)(
+        copy_with(corrector.correct, suffix, improve=improve, **sums, **functions)
+    )
     own = (
         rule is not BY_ANGLE
     )  # a user's function may change while its loop is kept on disk: compiled in every process
-    judge = compiled_rule(rule) if own else compile_(copy_with(by_angle, suffix))
-    kept = njit(cache=not own, **OPTIONS)
-    march = kept(copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions))
-    return Bound(march, compile_(copy_with(corrector.point, suffix, improve=improve, **sums, **functions)))
+    judge = compiled_rule(rule) if own else part(copy_with(by_angle, suffix))
+    march = njit(cache=not own, **OPTIONS)(
+        copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
+    )
+    point = copy_with(corrector.point, suffix, improve=improve, **sums, **functions)
+    return Bound(march, njit(cache=True, **OPTIONS)(point))
 
 
 def compiled_rule(rule: StepRule) -> Any:

@@ -48,19 +48,20 @@ def find_border(segment: Segment, real: bool) -> Border | None:
         falling = np.arange(len(a)) if (a < MARGIN).any() and not (b < MARGIN).any() else np.zeros(0, int)
     if not len(falling):
         return None
-    root = _located(segment, falling, real)
+    root = first_zero(segment, falling, real)
     if root is None:
         return None
     if real:
         passing = _passing(segment, root, falling)
         if 0 < len(passing) < len(falling):
-            again = _located(segment, passing, real)
+            again = first_zero(segment, passing, real)
             if again is not None and engine.margins(again.point.row)[falling].min() >= MARGIN:
                 root, falling = again, passing
     return Border(root, _which(engine, engine.margins(root.point.row), falling))
 
 
-def _located(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
+def first_zero(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
+    """Where the smallest of the chosen margins passes zero."""
     columns = (2 * segment.engine.m + chosen).tolist()
 
     def margin(point: Solved) -> float:  # the smallest; NaN counts as not applicable

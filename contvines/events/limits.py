@@ -22,6 +22,7 @@ SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
 BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
+VANISHES = 0.1  # of the margin that does at the border: what it seems to be there, from points so near that rounding may stop its fall
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
 PLACES = (1.0, 2.0, 3.0, 4.0)
 CONVERGED = (
@@ -101,12 +102,19 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
 def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
     """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
 
-    As where another impact, before the one that is about to graze, is almost as slow.
+    As where another impact, before the one that is about to graze, is almost as slow. Nearer than rounding lets the vanishing margin
+    come to zero nothing grows any more, and nothing can be told.
     """
     largest = float(np.abs(computed).max())
     for spacing in NEAREST:
-        values = _polynomials(segment, position, spacing)
-        if values is None:
+        rows = _rows(segment, position, spacing)
+        if rows is None:
+            continue
+        margins = np.array([segment.engine.smallest_margin(row) for row in rows])
+        if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
+            return False
+        values = _characteristic(segment.engine.spectrum(rows))
+        if not np.isfinite(values).all():
             continue
         if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
             return False  # what is computed at the border is something else
@@ -126,14 +134,20 @@ def _apart(one: np.ndarray, other: np.ndarray) -> float:
 
 def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
     """Characteristic polynomials of the multipliers at four points before the border, shape (4, m + 1)."""
+    rows = _rows(segment, position, spacing)
+    values = None if rows is None else _characteristic(segment.engine.spectrum(rows))
+    return values if values is not None and np.isfinite(values).all() else None
+
+
+def _rows(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
+    """Rows of multipliers and margins at four points before the border, shape (4, columns)."""
     rows = []
     for place in PLACES:
         point = _before(segment, position - place * spacing / segment.length)
         if point is None:
             return None
         rows.append(point.row)
-    values = _characteristic(segment.engine.spectrum(np.array(rows)))
-    return values if np.isfinite(values).all() else None
+    return np.array(rows)
 
 
 def _before(segment: Segment, s: float) -> Solved | None:

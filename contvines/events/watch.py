@@ -31,9 +31,11 @@ from .scan import (
     dips,
 )
 from .segment import Segment
+from .windows import passed, real_inside, windows
 
-# beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about
-USER, TWICE, PAIRS, BORN = 256, 512, 1024, 2048
+# beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about;
+# a virtual branch may be real in between
+USER, TWICE, PAIRS, BORN, WINDOW = 256, 512, 1024, 2048, 4096
 NO_MARGIN = 1e-13  # something has no length or speed at all
 AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
 AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
@@ -41,7 +43,9 @@ REACH, EDGE = (
     1.5,
     0.9,
 )  # lengths of a segment within which the distance to a singular matrix, continued, may be zero
-BESIDE = 0.02  # part of the segment next to a branch point that is left out
+BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
+NEAREST = 1e-6  # ... and at least so much of it, in the metric: nearer, signs of tangents and determinants are those of rounding
+MOST = 0.5  # ... but not more
 
 
 class Watch(Examiner):
@@ -96,6 +100,8 @@ class Watch(Examiner):
         if self.engine.m > 2 and self.kind in ("map", "flow"):
             flags[pairs.touching(self.engine, self.kind, wide)[own:]] |= PAIRS
             flags[pairs.born(self.engine, self.kind, wide)[own:]] |= BORN
+        if not real and self.engine.problem.n_margins:
+            flags[windows(self.engine, wide)[own:]] |= WINDOW
         user_values = {name: f(chunk.points, chunk.values) for name, f in self.users.items()}
         for values in user_values.values():
             flags[changes(values)] |= USER
@@ -115,7 +121,7 @@ class Watch(Examiner):
                 s, middle = split
                 plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
-            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN):
+            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN | WINDOW):
                 found = self.examine(segment, real=real)
                 border = min(
                     (e for e in found if e.role is Role.BORDER), key=lambda e: e.position, default=None
@@ -152,11 +158,13 @@ class Watch(Examiner):
         The beginning of the segment, where every solution is that of a nearly singular system, is left out.
         """
         whole = Segment(self.engine, origin, first)
-        start = whole.at(BESIDE)
+        share = min(max(BESIDE, NEAREST / whole.length), MOST) if whole.length > 0.0 else BESIDE
+        start = whole.at(share)
         if start is None:
             return []
         segment = Segment(self.engine, start, first)
-        found = self.examine(segment, real=real)
+        window = None if real else passed(segment)
+        found = self.examine(segment, real) if window is None else self.both(segment, *window, real)
         ends = np.array([start.u, first.u]), np.array([start.p, first.p])
         found += self.examine_users(segment, {name: f(*ends) for name, f in self.users.items()})
         found.sort(key=lambda e: e.position)
@@ -174,7 +182,7 @@ class Watch(Examiner):
             )
         ]
         bracket = (origin.p, first.p)
-        found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
+        found = [e._replace(position=share + (1.0 - share) * e.position, bracket=bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
 
     def _suspects(self, chunk: Chunk, i: int) -> list[int]:
@@ -243,8 +251,10 @@ class Watch(Examiner):
     def _split(self, segment: Segment, bits: int, suspects: list[int]) -> tuple[float, Solved] | None:
         """A point of the segment where the smallest margin, or one of those suspected, is negative, the parameter turns back, or
 
-        stability is lost, though not at its ends.
+        stability is lost, though not at its ends; of a virtual branch, one where it is real.
         """
+        if bits & WINDOW and (inside := real_inside(segment)) is not None:
+            return inside
         if bits & MEETING:
             # a branch that comes back to a symmetry is marginal there: no point to cut it at
             bits &= ~(DAMPED | TWICE)

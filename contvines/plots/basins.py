@@ -20,7 +20,20 @@ if TYPE_CHECKING:
 
     from ..coexistence.basins import Basins
 
-COLORS = ("#2a6f97", "#e9a23b", "#7b3f8c", "#3f8f4f", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
+COLORS = (
+    "#2a6f97",
+    "#e9a23b",
+    "#7b3f8c",
+    "#3f8f4f",
+    "#c0483f",
+    "#8a8a8a",
+    "#17807e",
+    "#c77dab",
+    "#b8b042",
+    "#5b6fd6",
+    "#4d4d4d",
+    "#8fcf8a",
+)
 IMAGE = 0.45  # how much lighter the basin of a mirror image is
 START = {
     "w": "position $w$ of the start",

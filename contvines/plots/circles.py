@@ -117,6 +117,8 @@ def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
         axes.plot(*x.T, color=color, linewidth=0.9, linestyle="--" if circle.stable is False else "-")
     axes.plot(*(circles.centre[k] for k in pair), "k+", markersize=7)
     axes.set(xlabel=axis_label(circles.names[pair[0]]), ylabel=axis_label(circles.names[pair[1]]))
+    if any(circle.stable is False for circle in circles.circles):
+        axes.set_title("dashed: repelling", loc="left", fontsize="medium")
 
 
 def _colors(circles: Circles) -> Any:

@@ -10,12 +10,14 @@ import numpy as np
 
 from ..hints import hinting
 from .figures import new_axes, new_figure, settle, styled, thin_ticks
-from .legends import place_legend
+from .legends import NARROW, place_legend
 from .style import axis_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
+    from matplotlib.transforms import Bbox
 
     from ..survey.results import Survey
 
@@ -68,10 +70,11 @@ def plot_survey(
             return _samples(survey, name, axes, figsize)
         own = axes is None
         figure, (panel,) = _panels(axes, 1, figsize)
+        heights: list[Text] = []
         if len(along) == 1:
             _curve(panel, survey, name, along[0])
         else:
-            _map(figure, panel, survey, name, along)
+            heights = _map(figure, panel, survey, name, along)
         handles = panel.get_legend_handles_labels()[0]
         place_legend(panel, handles, legend, own)
         failed = survey.failed
@@ -79,7 +82,21 @@ def plot_survey(
             panel.set_title(f"{failed} of {len(survey.plan)} systems failed", color="0.4", fontsize="medium")
         if own:
             _fit(figure)
+        if heights:
+            _apart(figure, heights)
     return figure
+
+
+def _apart(figure: Figure, texts: list[Text]) -> None:
+    """Leave out texts that would stand on one another."""
+    settle(figure)
+    kept: list[Bbox] = []
+    for text in texts:
+        box = text.get_window_extent().padded(2.0)
+        if any(box.overlaps(other) for other in kept):
+            text.remove()
+        else:
+            kept.append(box)
 
 
 def _panels(axes: Any, count: int, figsize: tuple[float, float] | None) -> tuple[Figure, list[Axes]]:
@@ -169,7 +186,10 @@ def _quantiles(values: np.ndarray, shares: tuple[float, ...]) -> np.ndarray:
     return found
 
 
-def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]) -> None:
+def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]) -> list[Text]:
+    """Draw the map; the numbers that are written on its contours."""
+    from matplotlib.patheffects import withStroke
+
     x, y = (survey.plan.axes[n] for n in along)
     values = survey.columns[name]
     if survey.plan.samples:
@@ -181,15 +201,22 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     bar = figure.colorbar(colours, ax=axes)
     bar.set_label(_upright(axes, label_of(survey, name) + (", worst sample" if survey.plan.samples else "")))
     known = shown.compressed()
+    heights: list[Text] = []
     if min(shown.shape) > 1 and known.size and known.max() > known.min():
-        lines = axes.contour(x, y, shown, levels=7, colors="white", linewidths=1.0)
-        axes.clabel(lines, fmt="%.4g", fontsize=8)
+        narrow = figure.get_size_inches()[0] < NARROW
+        lines = axes.contour(x, y, shown, levels=4 if narrow else 7, colors="white", linewidths=1.0)
+        # white alone could not be seen on the brightest colours
+        lines.set(path_effects=[withStroke(linewidth=1.8, foreground="0.35")])
+        heights = list(axes.clabel(lines, fmt="%.4g", fontsize="x-small", inline=False))
+        for text in heights:
+            text.set_path_effects([withStroke(linewidth=3.0, foreground="0.25")])
     lost = np.argwhere(survey.notes.reshape(*survey.plan.shape[:2], -1)[..., 0] != "")
     if len(lost):
         axes.plot(x[lost[:, 0]], y[lost[:, 1]], "x", color=RED, label="failed", linestyle="none")
     axes.set_xlabel(label_of(survey, along[0]))
     axes.set_ylabel(_upright(axes, label_of(survey, along[1])))
     axes.grid(False)
+    return heights
 
 
 def _samples(survey: Survey, name: str, axes: Any, figsize: tuple[float, float] | None) -> Figure:

@@ -34,7 +34,8 @@ def main():
     numbers = {}
     for axes, (over, within) in zip(figure.subplots(2, 1), SPANS.items()):
         chart = cv.chart(graph, over=over, within=within)
-        plot_chart(chart, axes=axes)
+        # both panels show the same kinds: one key, under the last one
+        plot_chart(chart, axes=axes, legend="below" if over == "restitution" else False)
         worst = 0.0
         for label, kind in (("LP1", "fold"), ("SB1", "symmetry-breaking")):
             for p, q in chart[label].values:

@@ -76,13 +76,25 @@ class Model(Varying):
             cls.node = len(cls.node_names)
 
     def __new__(cls, *values: Any, **options: Any) -> Self:
-        """A machine; a name that it does not have is refused with those that it has."""
-        known = [entry.name for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
+        """A machine; a name that it does not have is refused with those that it has, one that is missing with its meaning."""
+        if values:
+            raise TypeError(
+                f"{cls.__name__} takes its parameters by name, as restitution=0.76, not {values[0]!r} alone"
+            )
+        own = [entry for entry in fields(cls) if entry.init]  # type: ignore[arg-type]
+        known = [entry.name for entry in own]
         for name in options:
             if name not in known:
                 raise TypeError(
                     f"{cls.__name__} has no parameter {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
                 )
+        # copies are made without any, and filled later
+        absent = [
+            entry.name for entry in own if entry.default is MISSING and options and entry.name not in options
+        ]
+        if absent:
+            meanings = [f"{name} ({cls.parameter(name).meaning})" for name in absent]
+            raise TypeError(f"{cls.__name__} needs {' and '.join(meanings)}")
         return super().__new__(cls)
 
     def __post_init__(self) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+import orbits
 
 
 def line():
@@ -21,6 +22,27 @@ def test_a_misspelt_argument_has_a_hint():
         cv.trace(line(), whithin=(-1.0, 1.0))
     with pytest.raises(TypeError, match=r"switch has no argument 'deph'"):
         cv.switch(cv.diagram(line(), within=(-1.0, 1.0)), "EP1", deph=1)
+
+
+def test_a_missing_argument_is_named_with_its_meaning():
+    graph = cv.diagram(line(), within=(-1.0, 1.0))
+    with pytest.raises(TypeError, match=r"^chart needs within \(Its interval\)$"):
+        cv.chart(graph, over="q")
+    with pytest.raises(
+        TypeError, match=r"^chart needs graph \(A diagram in the first .*\) and over \(Name of the"
+    ):
+        cv.chart()
+    with pytest.raises(TypeError, match=r"^Absorber needs friction \(Coulomb coefficient\) and gravity"):
+        orbits.Absorber(restitution=0.76)
+    with pytest.raises(
+        TypeError, match=r"^Absorber takes its parameters by name, as restitution=0.76, not 0.5 alone"
+    ):
+        orbits.Absorber(0.5)
+
+
+def test_a_type_error_from_within_stays_what_it_is():
+    with pytest.raises(TypeError, match="^the seed must be an orbit or a problem with u0 and p0, not int$"):
+        cv.diagram(3)
 
 
 def test_kinds_that_there_are_not():

@@ -8,15 +8,18 @@ from contvines.problems.protocol import Seed
 from tests.contvines.graph.test_borders import Line
 
 
-def begun_beside(multiplier, distance, step, end=1.0, rounded=1e-11):
+def begun_beside(multiplier, distance, step, end=1.0, rounded=1e-11, blur=0.0):
     """The multiplier with which word "b" begins at p = 1/2: it is traced from a point at some distance from there.
 
-    Nearer than `rounded` to the border what is computed is something else.
+    Nearer than `rounded` to the border what is computed is something else. At all points beside it the margin is too large by `blur`.
     """
 
     class Singular(Line):
         def multiplier(self, p):
             return multiplier(p - 0.5) if abs(p - 0.5) >= rounded else 7.0
+
+        def margins(self, u, p):
+            return super().margins(u, p) + blur * (p - 0.5 > 1e-15)
 
     def beyond(line, point):
         other = Singular("b", -0.5, 2.0, [1.0, -1.0], [0.5, end])
@@ -58,3 +61,10 @@ def test_what_stops_growing_at_the_very_border_has_a_limit(late, distance, step)
     """-2e-5/(t + late) looks as if it grew without bound until it is as near as that; at the border it is -2e-5/late."""
     seen = begun_beside(lambda t: -2e-5 / (t + late), distance, step, rounded=0.0)
     assert seen == pytest.approx(-2e-5 / late, rel=1e-2)
+
+
+@pytest.mark.parametrize("step", [3e-7, 1e-3])
+def test_what_stops_growing_where_margins_stop_falling_is_without_bound(step):
+    """-2e-5/t, its t known up to 1e-12: what is computed at the border is rounding, and the margins beside it say so."""
+    seen = begun_beside(lambda t: -2e-5 / (abs(t) + 1e-12), 1e-6, step, rounded=0.0, blur=1e-12)
+    assert seen.real <= -1e14

@@ -246,3 +246,10 @@ def test_a_small_sweep_names_its_dots_shortly():
     assert [text.get_text() for text in small.legends[0].get_texts()] == ["simulated"]
     large = plot_sweep(DOTS, "amplitude").axes[0].get_legend()
     assert [text.get_text() for text in large.get_texts()] == ["simulated: B at every impact"]
+
+
+def test_repelling_circles_are_dashed_and_said_to_be(circles):
+    panels = plot_circles(circles).axes
+    dashed = any(line.get_linestyle() == "--" for line in panels[0].lines)
+    assert dashed == any(circle.stable is False for circle in circles.circles)
+    assert panels[0].get_title(loc="left") == ("dashed: repelling" if dashed else "")

@@ -132,12 +132,16 @@ class Damped:
 
 
 class Exact(NamedTuple):
-    """An orbit in many digits: how far the parameter and the nodes are from those claimed, its multipliers, and dnode/dparameter."""
+    """An orbit in many digits: how far the parameter and the nodes are from those claimed, its multipliers, dnode/dparameter, and
+
+    the nodes themselves.
+    """
 
     shift: float
     moved: float
     multipliers: np.ndarray
     steepness: float
+    nodes: list[list[Any]]
 
 
 class Motion:
@@ -186,6 +190,26 @@ def exact(orbit: Any) -> Exact | None:
             return None
 
 
+def rounds_apart(orbit: Any, periods: int) -> float:
+    """How far in phase the impacts of an orbit are from those so many forcing periods later, in many digits; inf where they are other ones.
+
+    Nothing but rounding (of 80 digits) where the orbit repeats a shorter one; nan where it cannot be solved.
+    """
+    found = exact(orbit)
+    if found is None:
+        return float("nan")
+    codes = [int(code) for code in orbit.word.codes]
+    places = [i for i, code in enumerate(codes) if code in (LEFT, RIGHT)]
+    count = len(places)
+    later, left = divmod(count * periods, orbit.periods)
+    if left or any(codes[places[j]] != codes[places[(j + later) % count]] for j in range(count)):
+        return float("inf")
+    with mp.workdps(DIGITS):
+        phases = [found.nodes[i][0] for i in places]
+        phases += [phase + 2 * mp.pi * orbit.periods for phase in phases]
+        return float(max(abs(phases[j + later] - phases[j] - 2 * mp.pi * periods) for j in range(count)))
+
+
 def _solved(motion: Motion, claimed: np.ndarray, sweeps: int = 12) -> Exact | None:
     count, size = claimed.shape
     start = [[mpf(float(x)) for x in row] for row in claimed]
@@ -230,6 +254,7 @@ def _solved(motion: Motion, claimed: np.ndarray, sweeps: int = 12) -> Exact | No
                 float(moved),
                 np.array([complex(z) for z in spectrum]),
                 float(steep),
+                nodes,
             )
     return None
 

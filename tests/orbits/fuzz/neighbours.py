@@ -9,10 +9,12 @@ import numpy as np
 
 from contvines.events.kinds import BORDERS
 from tests.orbits.fuzz.between import Between
+from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart
 from tests.orbits.fuzz.tally import Tally
 
 PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
+CLOSER = (1e-4, 1e-5)  # the same, where times of virtual orbits further away run backwards
 NEAR = 1e-7  # values of one point
 SAME = 1e-6  # motions that differ by less need not come nearer
 SHRINKS = 0.5  # a square root shrinks by 0.32 where the distance does tenfold
@@ -20,6 +22,7 @@ NEARER = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5)  # the same for multipliers
 NEAREST = (1e-6, 1e-7, 1e-8, 1e-9)  # ... where these do not tell: some grow until they are as near as that
 UNBOUNDED = 1e14  # multipliers listed as large grow without bound, or so far
 LIMIT = 1e-3  # relative difference of characteristic polynomials
+ROUNDED = 0.05  # difference of characteristic polynomials that rounding may make, where words are long
 UNRESOLVED = 1e-12  # differences of the parameter, relative, that are rounding
 ASIDE = 0.1  # of the distance, where crossings are looked for
 
@@ -69,6 +72,8 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
     branch = between.branch
     for way in between.ways(i):
         seen = [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, PARTS)]
+        if any(math.isnan(gap) for _, gap in seen[-2:]):
+            seen += [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, CLOSER)]
         gaps = [gap for _, gap in seen]
         if len(gaps) < 2 or math.isnan(gaps[-1]):
             tally.count("ways to special points that cannot be followed")
@@ -121,8 +126,12 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         return
     if _tend_to(listed, seen):
         return
-    seen += [(d, orbit.multipliers) for d, orbit in between.beside(i, ways[0], NEAREST)]
+    nearest = list(between.beside(i, ways[0], NEAREST))
+    seen += [(d, orbit.multipliers) for d, orbit in nearest]
     if _tend_to(listed, seen):
+        return
+    if _within_rounding(listed, [orbit for _, orbit in nearest[-2:]]):
+        tally.count("multipliers at borders that are off by what rounding does to those beside them")
         return
     what = f"{_text(listed)} listed, {_text(seen[-1][1])} at {seen[-1][0]:.0e}, {_text(seen[-3][1])} at {seen[-3][0]:.0e}"
     tally.find("limit", f"{branch.label} at {point.label} ({point.kind}, {point.value:.10g}): {what}")
@@ -133,6 +142,15 @@ def _tend_to(listed: np.ndarray, seen: list[tuple[float, np.ndarray]]) -> bool:
     gaps = [alike(listed, m) for _, m in seen]
     nearest = gaps[-3:]
     return min(gaps) < LIMIT or (nearest[2] < SHRINKS * nearest[0] and nearest[2] < 0.1)
+
+
+def _within_rounding(listed: np.ndarray, beside: list[Any]) -> bool:
+    """Whether multipliers are off their limit, in many digits, by no more than those of orbits beside the border are off their own."""
+    known = [(orbit, found) for orbit in beside if (found := exact(orbit)) is not None]
+    if not known:
+        return False
+    off = max(alike(orbit.multipliers, found.multipliers) for orbit, found in known)
+    return alike(listed, known[-1][1].multipliers) <= min(off, ROUNDED)
 
 
 def _text(multipliers: np.ndarray) -> str:

@@ -24,6 +24,7 @@ DIFFERENCES = 1e-4  # of characteristic polynomials, relative
 EXACTLY = 1e-5  # of the same, in many digits
 PARAMETER = 1e-10  # by which the orbit in many digits may be another machine's: rounding of phases, times what an event's map amplifies
 UNRESOLVED = 1e-12  # stretches of the parameter, relative, that floating point does not resolve
+NARROW = 1e-10  # stretches of the parameter, relative, in which a basin may be narrower than the displacement of a simulation
 SMALLER = (1e-7, 1e-9)  # displacements
 MOST = 4  # events from which a return map is taken
 SETTLED = 0.999  # outermost multiplier of what a simulation can settle on
@@ -42,6 +43,11 @@ def judge(graph: Any, tally: Tally, rng: np.random.Generator) -> None:
                 continue
             settled = branch.stable[i] if branch.stable[i] == branch.stable[i + 1] else None
             if branch.real:
+                if settled is not None and not settled and _unsaid(graph, branch, int(i)):
+                    tally.count(
+                        "places between points that are said to be too near for stable orbits to show"
+                    )
+                    settled = None
                 follow(orbit, branch.label, settled, tally, width=_stretch(branch, int(i)))
             else:
                 _refused(orbit, branch.label, tally)
@@ -55,6 +61,20 @@ def _said(label: str, orbit: Any) -> str:
     }
     return f"{label} {orbit.spelling} k={orbit.periods} at " + ", ".join(
         f"{k} = {v:.10g}" for k, v in value.items()
+    )
+
+
+def _unsaid(graph: Any, branch: Any, i: int) -> bool:
+    """Whether points i and i + 1 are special points at which the graph says that stable orbits between them would not show."""
+    labels = [
+        {label for k, label in branch.marks if k == place} & graph.special.keys() for place in (i, i + 1)
+    ]
+    near = abs(branch.values[i + 1] - branch.values[i]) < UNRESOLVED * max(1.0, abs(branch.values[i]))
+    return near and any(
+        f"next to {there}" in graph[here].note
+        for one, other in (labels, labels[::-1])
+        for here in one
+        for there in other
     )
 
 
@@ -111,7 +131,9 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: flo
             tally.find("return", f"{said}: called stable, which many digits do not confirm")
     elif stable and seen.returned is not None:
         tally.count("stable orbits simulated")
-        if not seen.returned and growth < SETTLED:
+        if not seen.returned and growth < SETTLED and width < NARROW and _certainly_stable(orbit, width):
+            tally.count("stable stretches with a basin narrower than a displacement")
+        elif not seen.returned and growth < SETTLED:
             tally.find(
                 "return",
                 f"{said}: called stable, not returned to (margin {orbit.margin:.1e}, multipliers to {growth:.6f})",
@@ -155,6 +177,14 @@ def in_many_digits(orbit: Any) -> bool:
         found is not None
         and abs(found.shift) < PARAMETER
         and alike(orbit.multipliers, found.multipliers) < EXACTLY
+    )
+
+
+def _certainly_stable(orbit: Any, width: float) -> bool:
+    """Whether the orbit in many digits is stable, at a parameter that differs by little of the stretch's width."""
+    found = exact(orbit)
+    return (
+        found is not None and abs(found.shift) < 0.1 * width and float(np.abs(found.multipliers).max()) < 1.0
     )
 
 

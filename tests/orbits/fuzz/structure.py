@@ -9,6 +9,7 @@ import numpy as np
 from contvines.events.kinds import BORDERS
 from orbits.cycles.claim import REAL
 from orbits.starts.find import polish
+from tests.orbits.fuzz.many_digits import rounds_apart
 from tests.orbits.fuzz.motion import apart, shortest
 from tests.orbits.fuzz.tally import Tally
 
@@ -18,9 +19,17 @@ REPEATED, OF_EXTENT = (
     1e-7,
     1e-2,
 )  # parts of a motion that differ by less are one; the same as a part of the branch's extent
+APART = 1e-30  # rounds of one motion, in many digits, that differ by more are two
 SHARED = 1e-6  # motions nearer than this to that of a special point are those of all branches that meet there
 NOTHING = 1e-7  # extent of a branch, in parameter and unknowns
 ROUNDOFF = 1e-9
+FOLLOWED, FAR_FOLLOWED = (
+    2e-5,
+    1e-3,
+)  # differences of a special point's motion from the simulated one, where multipliers are moderate, and not
+ROOTED = (
+    1e-7  # the same, times multipliers, at a graze: a wall that rounding hits turns it into its square root
+)
 IN_PLACE = 1e-8  # a special point's error
 
 
@@ -61,6 +70,10 @@ def _branch(branch: Any, tally: Tally) -> None:
     extent = max(float(np.abs(orbit.track - orbits[0].track).max()) for orbit in orbits)
     near = min(REPEATED, OF_EXTENT * extent) if len(branch) > 1 else REPEATED
     if all(shortest(orbit, near) < orbit.periods for orbit in orbits):
+        middle = orbits[len(orbits) // 2]
+        if rounds_apart(middle, shortest(middle, near)) > APART:
+            tally.count("branches whose rounds differ by hardly more than rounding")
+            return
         tally.find(
             "repeated",
             f"{branch.label} {branch.description['word']} k={branch.problem.periods} repeats a shorter orbit",
@@ -78,7 +91,10 @@ def _point(graph: Any, point: Any, tally: Tally) -> None:
     if not point.location_error < IN_PLACE:
         tally.count("special points with a told error above 1e-8")
     outermost = np.abs(point.multipliers).max(initial=0.0)
-    if point.replay is None or not point.replay < (1e-3 if outermost > 1e3 else 2e-5):
+    followed = FAR_FOLLOWED if outermost > 1e3 else FOLLOWED
+    if point.kind == "wall-graze":
+        followed = max(followed, ROOTED * outermost)
+    if point.replay is None or not point.replay < followed:
         if outermost > 1e8:
             tally.count("special points too unstable to be simulated")
         else:

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from orbits.simulation import replay
 from tests.orbits.fuzz import neighbours, structure
+from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.drawing import draw
 from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import apart
@@ -29,8 +31,8 @@ FOUND = [
 ]
 
 
-def diagram(kind, seed):
-    drawn = draw(kind, SALT, seed)
+def diagram(kind, seed, salt=SALT):
+    drawn = draw(kind, salt, seed)
     return cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS)
 
 
@@ -76,8 +78,7 @@ def test_what_a_border_leads_to_has_its_motion():
 
 def test_a_doubled_branch_is_stable_however_soon_it_doubles_again():
     """Its multiplier is 1 where it begins and -1 where it doubles, 1e-10 further on: stable in between."""
-    drawn = draw("cavity", 407, 274)
-    graph = cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS)
+    graph = diagram("cavity", 274, 407)
     narrow = [
         branch
         for branch in graph
@@ -90,3 +91,32 @@ def test_a_doubled_branch_is_stable_however_soon_it_doubles_again():
         middle = exact(branch.orbit(1))
         assert middle is not None and np.abs(middle.multipliers).max() < 1.0
         assert branch.stable[1]
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed", "word", "value"),
+    [("cavity", 97, "LRts", 1.020020423), ("coupled", 229, "LsRs", 0.947625)],
+)
+def test_a_virtual_branch_is_real_where_the_simulation_follows_it(kind, seed, word, value):
+    """Between two points of it, margins that were lost are positive again and others are not yet lost."""
+    graph = diagram(kind, seed, 408)
+    there = [b for b in graph if b.description["word"] == word and b.range[0] < value < b.range[1]]
+    followed = [b.label for b in there if b.real]
+    assert len(followed) == 1
+    for branch in there:
+        between = Between(branch, graph.within)
+        for i in np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) < 0.0):
+            share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
+            seen = replay(between.orbit(int(i), float(share)))
+            assert (seen.matches and seen.error < 1e-8) == branch.real
+
+
+def test_right_beside_a_period_doubling_signs_are_not_those_of_rounding():
+    """In eighty digits the doubled branch is stable from its first points on: nothing happens on it before its border."""
+    graph = diagram("cavity", 259, 409)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 0.379034268736721) < 1e-12)
+    branch = next(b for b in graph if b.seed == doubling.label)
+    assert [graph[label].kind for _, label in branch.marks] == ["period-doubling", "stick"]
+    for i in range(1, len(branch) - 1):
+        assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
+        assert branch.stable[i]

@@ -1,0 +1,63 @@
+"""Windows: stretches of a virtual branch, within one step, in which all margins are positive, so that it is real there.
+
+The margins that are negative where a step begins may be positive again before others become negative: none of its ends tells, but
+which margins are negative at which end does. A margin may also be negative at both ends and rise above zero in between.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..continuation.chunk import Chunk
+from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
+from .borders import first_zero
+from .dips import below_zero
+from .scan_arrays import dips
+from .segment import Segment
+
+
+def windows(engine: Engine, chunk: Chunk) -> NDArray[np.bool_]:
+    """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,).
+
+    A margin that is negative at both ends may be positive in between where the parabola through three neighbours is.
+    """
+    margins = engine.margins(chunk.rows) - MARGIN
+    below = margins < 0.0
+    outside = np.any(below, axis=1)
+    found = outside[:-1] & outside[1:]
+    kept = below[:-1] & below[1:]
+    steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
+    lengths = np.sqrt((steps**2) @ engine.weights)
+    for j in np.flatnonzero(kept[found].any(axis=0)):
+        rises = np.zeros(len(found), dtype=bool)
+        if len(found) > 1:
+            with np.errstate(all="ignore"):
+                humps = dips(-margins[:-2, j], -margins[1:-1, j], -margins[2:, j], lengths)
+            rises[:-1] |= humps
+            rises[1:] |= humps
+        found &= rises | ~kept[:, j]
+    return found
+
+
+def passed(segment: Segment) -> tuple[float, Solved] | None:
+    """A point of a virtual segment at which all margins are positive, between where the first ones come back and others are lost."""
+    engine = segment.engine
+    below = [engine.margins(end.row) < MARGIN for end in (segment.a, segment.b)]
+    if not (below[0].any() and below[1].any()) or (below[0] & below[1]).any():
+        return None
+    begins, ends = (first_zero(segment, np.flatnonzero(which), False) for which in below)
+    if begins is None or ends is None or not begins.position < ends.position:
+        return None
+    middle = 0.5 * (begins.position + ends.position)
+    point = segment.at(middle)
+    if point is None or float(engine.smallest_margin(point.row)) < MARGIN:
+        return None
+    return middle, point
+
+
+def real_inside(segment: Segment) -> tuple[float, Solved] | None:
+    """A point of a virtual segment at which all margins are positive, or None; see :func:`windows` for which segments may have one."""
+    engine = segment.engine
+    return passed(segment) or below_zero(segment, lambda point: -float(engine.smallest_margin(point.row)))
