@@ -185,7 +185,8 @@ def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:
     poles = len(limits) - 1
     finite: NDArray[np.complex128] = np.roots(limits[poles][poles:]).astype(np.complex128)
     # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
-    growing = np.asarray(np.roots([limits[k][k] for k in range(poles + 1)]), dtype=complex)
+    lead = [limits[k][k] for k in range(poles + 1)]
+    growing = np.asarray(np.roots(lead) if poles else [], dtype=complex)
     growing = UNBOUNDED * growing / np.maximum(np.abs(growing), 1e-300)
     finite = finite[np.lexsort((-finite.imag, -finite.real, -np.abs(finite)))]
     missing = len(limits[0]) - 1 - len(growing) - len(finite)

@@ -22,14 +22,16 @@ class Segment:
 
     def __init__(self, engine: Engine, a: Solved, b: Solved) -> None:
         self.engine, self.a, self.b = engine, a, b
-        self.za, self.zb = engine.join(a.u, a.p), engine.join(b.u, b.p)
-        chord = self.zb - self.za
+        self.chord = np.empty((4, engine.n + 1))
+        self.za, self.zb = self.chord[0], self.chord[2]
+        self.za[:-1], self.za[-1], self.zb[:-1], self.zb[-1] = a.u, a.p, b.u, b.p
+        chord, turn = self.zb - self.za, a.tangent - b.tangent
         self.length = engine.norm(chord)
         self.direction = chord / self.length if self.length > 0.0 else a.tangent
         self.border = engine.weights * self.direction
-        bend = engine.inner(a.tangent - b.tangent, a.tangent - b.tangent)
-        self.arc = self.length * (1.0 + bend / 24.0)
-        self.chord = np.array([self.za, self.arc * a.tangent, self.zb, self.arc * b.tangent])
+        self.arc = self.length * (1.0 + engine.inner(turn, turn) / 24.0)
+        np.multiply(self.arc, a.tangent, out=self.chord[1])
+        np.multiply(self.arc, b.tangent, out=self.chord[3])
         self.start = float(self.border @ self.za)
 
     def at(self, s: float) -> Solved | None:

@@ -7,6 +7,8 @@ forcing together. While one parameter p varies, number j is ``path[0, j] * p**pa
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from orbits.compiling.decorators import kernel
@@ -68,15 +70,14 @@ def single(count: int, index: int) -> np.ndarray:
 
 def along(path: np.ndarray, params: np.ndarray, p: np.ndarray | float) -> np.ndarray:
     """The numbers at each p: (P,) for one, (m, P) for an array (m,)."""
+    value: Any
     if isinstance(p, float) or np.ndim(p) == 0:
         found, value = params.copy(), float(p)
-        for j, (factor, power) in enumerate(zip(*path.tolist())):
-            if power != 0.0:
-                found[j] = factor * value if power == 1.0 else factor * value**power
-        return found
-    factors, powers = path
-    moved = powers != 0.0
-    values = np.asarray(p, dtype=float)[..., None]
-    found = np.broadcast_to(params, (*values.shape[:-1], params.size)).copy()
-    found[..., moved] = factors[moved] * values ** powers[moved]
+    else:
+        value = np.asarray(p, dtype=float)
+        found = np.empty((*value.shape, params.size))
+        found[...] = params
+    for j, (factor, power) in enumerate(zip(*path.tolist())):
+        if power != 0.0:
+            found[..., j] = factor * value if power == 1.0 else factor * value**power
     return found
