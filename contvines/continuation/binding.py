@@ -11,20 +11,24 @@ import hashlib
 import types
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import aims, bracketing, corrector, lengths, loop, step_rule
 from .step_rule import BY_ANGLE, StepRule, by_angle
 
+if TYPE_CHECKING:
+    from .kept import Keeper
+
 
 class Bound(NamedTuple):
-    """``march`` and ``points`` with the kernels of a problem inside.
+    """``march`` and ``points`` with the kernels of a problem inside; compiled, ``points`` is had from the ``keeper`` of its first argument.
 
     There are two, as each is compiled together with all that it calls.
     """
 
     march: Callable[..., Any]
     points: Callable[..., Any]
+    keeper: Keeper | None = None
 
 
 # Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
@@ -80,6 +84,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     from numba import njit
 
     from ..problems.kernels import kernels_digest
+    from .kept import Keeper
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
@@ -98,8 +103,12 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
     )
     search = _search(part, suffix)
-    points = copy_with(corrector.points, suffix, improve=improve, **sums, **functions, **search)
-    return Bound(march, njit(cache=True, **OPTIONS)(points))
+
+    def make(unpack: Any) -> Any:
+        names = {"unpack": unpack, "improve": improve, **sums, **functions, **search}
+        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix, **names))
+
+    return Bound(march, corrector.points, Keeper(make, OPTIONS, suffix))
 
 
 def _search(part: Callable[..., Any], suffix: str) -> dict[str, Any]:

@@ -36,6 +36,11 @@ class Scratch(NamedTuple):
     guess: np.ndarray
 
 
+def unpack(frame):
+    """Interpreted functions are handed the arguments themselves; compiled ones see :mod:`contvines.continuation.kept`."""
+    return frame
+
+
 class Found(NamedTuple):
     """What is found of k points: shapes (k, N), (k, N + 1), (k, row), (k, 5).
 
@@ -142,8 +147,7 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
 
 
 def points(
-    data,
-    work,
+    frame,
     what,
     chord,
     stretch,
@@ -153,9 +157,6 @@ def points(
     max_sweeps,
     found,
     aim,
-    known,
-    metric,
-    scratch,
     noise,
 ):
     """Single solutions, and everything about them, or a part of that.
@@ -169,8 +170,8 @@ def points(
 
     Parameters
     ----------
-    data, work
-        Of the problem.
+    frame
+        The problem's data and workspace; of a search the final bracket (an array of `bracketing.SIZE` numbers); metric and `Scratch`.
     what : int
     chord : ndarray, shape (4, N + 1)
         Of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its tangent likewise.
@@ -183,10 +184,6 @@ def points(
     found : Found
         Filled.
     aim : Aim
-    known : ndarray, shape (bracketing.SIZE,)
-        Of the search: the final bracket.
-    metric : Metric
-    scratch : Scratch
     noise : float
 
     Returns
@@ -194,6 +191,7 @@ def points(
     int
         With an aim: `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
     """
+    data, work, known, metric, scratch = unpack(frame)
     start, length = stretch
     searching = aim.what != NOTHING
     step = scratch.step

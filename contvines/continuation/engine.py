@@ -51,7 +51,6 @@ class Engine(Rows):
         n = self.n = int(problem.dimension)
         self.bound = bind(problem.kernels, settings.step_rule)
         self.section = HELD if problem.kernels.compiled else OPEN
-        self.run = self.bound.points if problem.kernels.compiled else _calmly(self.bound.points)
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
@@ -82,6 +81,14 @@ class Engine(Rows):
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(bracketing.SIZE)
+        # the arrays are kept here, for compiled code knows only where they are
+        self.arguments = (self.data, self.work, self.known, self.metric, self.scratch)
+        self.run: Callable[..., int]
+        self.frame: Any = self.arguments
+        if self.bound.keeper is None:
+            self.run = _calmly(self.bound.points)
+        else:
+            self.run, self.frame, self.memory = self.bound.keeper.keep(self.arguments)
         self.part = corrector.Found(
             np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
         )
@@ -233,8 +240,7 @@ class Engine(Rows):
         )
         with self.section:
             outcome = self.run(
-                self.data,
-                self.work,
+                self.frame,
                 corrector.EVERYTHING,
                 chord,
                 stretch,
@@ -244,9 +250,6 @@ class Engine(Rows):
                 sweeps,
                 found,
                 aim,
-                self.known,
-                self.metric,
-                self.scratch,
                 self.noise,
             )
         return found, outcome
@@ -293,8 +296,7 @@ class Engine(Rows):
 
     def _part(self, what: int, border: np.ndarray, target: float) -> None:
         self.run(
-            self.data,
-            self.work,
+            self.frame,
             what,
             self.guess,
             (target, 0.0),
@@ -304,9 +306,6 @@ class Engine(Rows):
             0,
             self.part,
             NO_AIM,
-            self.known,
-            self.metric,
-            self.scratch,
             self.noise,
         )
 

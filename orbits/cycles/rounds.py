@@ -71,7 +71,7 @@ def _radii(products: np.ndarray) -> list[float]:
     """Largest modulus of the eigenvalues of each matrix (c, n, n); NaN of one that is not finite."""
     if products.shape[1] == 2:
         return [_radius(*entries) for entries in products.reshape(-1, 4).tolist()]
-    known = np.isfinite(products).all(axis=(1, 2))
+    known = np.isfinite(products.sum(axis=(1, 2)))
     radii = np.abs(np.linalg.eigvals(np.where(known[:, None, None], products, 0.0))).max(axis=1)
     return np.where(known, radii, np.nan).tolist()
 
