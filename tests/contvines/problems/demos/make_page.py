@@ -70,13 +70,13 @@ def render() -> str:
                 away.append(abs(row["ours"] - row["value"]) / (demo.within[1] - demo.within[0]))
             points = "; ".join(f"{label} {', '.join(values)}" for label, values in found.items()) or "none"
             low, high = demo.within
-            gap = max((abs(row["ours"] - row["value"]) for row in table[demo.name]), default=0.0) / (high - low)
             cells = (
                 demo.name,
                 demo.source,
                 f"{demo.parameter} in {low:g} to {high:g}",
                 points,
                 ("0" if max(away) == 0.0 else f"{max(away):.0e}") if away else "",
+                str(alike[demo.name]),
                 demo.printed or "none",
             )
             lines.append("| " + " | ".join(cells) + " |")
