@@ -91,6 +91,9 @@ def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -
     """Which points are further than `escape` times the scale from u (root mean square)."""
     if not (scale == 1.0).all():
         points, u = points / scale, u / scale
+    # root mean squares are no larger than the largest entry
+    if max(points.max(), -points.min()) + max(u.max(), -u.min()) < escape:
+        return np.zeros(len(points), dtype=bool)
     limit = escape * escape * len(u)
     squares = np.einsum("ij,ij->i", points, points)
     # nothing as large as the points is made, unless unknowns are so large that their squares cancel

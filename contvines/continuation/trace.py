@@ -94,8 +94,9 @@ def chunks(
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
             room = min(room, max(settings.max_points - total, 1))
+            before = h
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
-            closed = closing.cut(chunk)
+            closed = closing.cut(chunk, max(before, longest))
             away = reach.escapes(chunk)
             if closed is not None:
                 chunk = closed
