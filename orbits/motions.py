@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
+from orbits.cycles.equations import unit_nodes
 from orbits.machines.base import Model
 from orbits.machines.catalogue import stepper
 from orbits.simulation.section import Section
@@ -14,11 +15,12 @@ from orbits.words import Word
 
 
 class Simulated:
-    """Answers of a problem that knows its machine, word, periods and parameter vector."""
+    """Answers of a problem that knows its machine, word, periods, units and parameter vector."""
 
     model: Model
     word: Word
     periods: int
+    units: tuple[float, float]
 
     def values(self, p: float) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
@@ -60,7 +62,8 @@ class Simulated:
         if not len(self.word):
             raise ValueError("the absorber that never slides has no section")
         code, mode = int(self.word.codes[0]), int(self.word.mode_codes[0])
-        return Section(stepper(self.model.name), self.values(p), code, mode, self.periods)
+        unit = unit_nodes(self.word, self.model.node, self.units)[0]
+        return Section(stepper(self.model.name), self.values(p), code, mode, self.periods, unit)
 
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter of the machine cannot have.

@@ -10,6 +10,7 @@ import sys
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from contvines.command import (
     basins,
@@ -66,27 +67,54 @@ def _options(
     pass
 
 
-app.command()(run.diagram)
-app.command()(run.trace)
-app.command()(run.switch)
-app.command()(run.atlas)
-app.command()(basins.basins)
-app.command()(robustness.robustness)
-app.command()(locus.locus)
-app.command()(chart.chart)
-app.command()(circle.circle)
-app.command()(show.show)
-app.command()(orbit.orbit)
-app.command()(prove.prove)
-app.command()(plot.plot)
-app.command()(export.export)
-app.command()(report.report)
-app.command()(sweep.sweep)
-app.command()(survey.survey)
-app.command()(calibrate.calibrate)
-app.command()(transient.transient)
-app.command()(design.design)
-app.command()(editor_schema.schema)
+class _Command(TyperCommand):
+    """A command that takes no option's name for the value of the option before it."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        options = {
+            name: param
+            for param in self.get_params(ctx)
+            for name in (*param.opts, *param.secondary_opts)
+            if name.startswith("-")
+        }
+        for k, name in enumerate(args):
+            if name == "--":
+                break
+            option: Any = options.get(name)
+            if option is None or option.is_flag or option.count:
+                continue
+            follows = next((word for word in args[k + 1 : k + 1 + option.nargs] if word in options), None)
+            if follows:
+                raise typer.BadParameter(
+                    f"{name}: its value is missing, {follows} comes at once", ctx=ctx, param=option
+                )
+        return super().parse_args(ctx, args)
+
+
+for _command in (
+    run.diagram,
+    run.trace,
+    run.switch,
+    run.atlas,
+    basins.basins,
+    robustness.robustness,
+    locus.locus,
+    chart.chart,
+    circle.circle,
+    show.show,
+    orbit.orbit,
+    prove.prove,
+    plot.plot,
+    export.export,
+    report.report,
+    sweep.sweep,
+    survey.survey,
+    calibrate.calibrate,
+    transient.transient,
+    design.design,
+    editor_schema.schema,
+):
+    app.command(cls=_Command)(_command)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import arrays, corrector, lengths, loop, step_rule
+from . import corrector, lengths, loop, step_rule
 from .step_rule import BY_ANGLE, StepRule, by_angle
 
 
@@ -70,6 +70,8 @@ def bind(kernels: Any, rule: StepRule = BY_ANGLE) -> Bound:
 def _make(kernels: Any, rule: StepRule) -> Bound:
     functions = {"linearise": kernels.linearise, "bordered": kernels.bordered, "inspect": kernels.inspect}
     if not kernels.compiled:
+        from . import arrays
+
         sums = {name: getattr(arrays, name) for name in SUMS}
         improve = copy_with(corrector.improve, **sums)
         correct = copy_with(corrector.correct, improve=improve, **sums, **functions)

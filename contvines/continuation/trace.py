@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Generator, Iterator
 from typing import Any, NamedTuple
 
@@ -246,16 +247,17 @@ def trace(
         if chunk is None:
             return
         multipliers, stable = engine.multipliers(chunk.rows), engine.stable(chunk.rows)
-        margin = engine.smallest_margin(chunk.rows)
-        for i in range(0 if first else 1, len(chunk)):
-            last = i == len(chunk) - 1 and chunk.status != Status.RUNNING
-            yield Point(
-                chunk.points[i].copy(),
-                float(chunk.values[i]),
-                chunk.tangents[i].copy(),
-                multipliers[i],
-                float(margin[i]),
-                bool(stable[i]),
-                chunk.status.sentence(problem.parameter, float(chunk.values[i])) if last else "",
-            )
+        ends = [""] * len(chunk)
+        if chunk.status != Status.RUNNING:
+            ends[-1] = chunk.status.sentence(problem.parameter, float(chunk.values[-1]))
+        points = zip(
+            chunk.points.copy(),
+            chunk.values.tolist(),
+            chunk.tangents.copy(),
+            multipliers,
+            engine.smallest_margin(chunk.rows).tolist(),
+            stable.tolist(),
+            ends,
+        )
+        yield from itertools.starmap(Point, itertools.islice(points, 0 if first else 1, None))
         first = False

@@ -43,7 +43,9 @@ REACH, EDGE = (
     1.5,
     0.9,
 )  # lengths of a segment within which the distance to a singular matrix, continued, may be zero
-BESIDE = 0.02  # part of the segment next to a branch point that is left out
+BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
+NEAREST = 1e-6  # ... and at least so much of it, in the metric: nearer, signs of tangents and determinants are those of rounding
+MOST = 0.5  # ... but not more
 
 
 class Watch(Examiner):
@@ -156,7 +158,8 @@ class Watch(Examiner):
         The beginning of the segment, where every solution is that of a nearly singular system, is left out.
         """
         whole = Segment(self.engine, origin, first)
-        start = whole.at(BESIDE)
+        share = min(max(BESIDE, NEAREST / whole.length), MOST) if whole.length > 0.0 else BESIDE
+        start = whole.at(share)
         if start is None:
             return []
         segment = Segment(self.engine, start, first)
@@ -179,7 +182,7 @@ class Watch(Examiner):
             )
         ]
         bracket = (origin.p, first.p)
-        found = [e._replace(position=BESIDE + (1.0 - BESIDE) * e.position, bracket=bracket) for e in found]
+        found = [e._replace(position=share + (1.0 - share) * e.position, bracket=bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
 
     def _suspects(self, chunk: Chunk, i: int) -> list[int]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
+from orbits.attractors.creeping import move_on
 from orbits.attractors.observation import lasting
 from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate, touches
 from orbits.machines.states import event_states, nodes_of
@@ -20,6 +21,7 @@ EVENTS_PER_PERIOD = 400
 UNSTABLE = 1e-5
 NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
 LONGEST = 200_000  # forcing periods for which a slow or undamped transient is waited for
+TO_WALLS = 8  # times that a creeping motion is moved on to a wall
 AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
 
 
@@ -109,7 +111,7 @@ def settle(
     state[TURNS] = 0.0
     length = float(transient)
     window = _Window(engine, params)
-    attempt, recurring = 0, None
+    attempt, recurring, moved = 0, None, 0
     while True:
         last = attempt >= patience
         status = skip(engine, state, params, state[TURNS] + length, int(EVENTS_PER_PERIOD * (length + 1)))
@@ -129,6 +131,11 @@ def settle(
             return _attractor(model, engine, params, "stuck", 0, window, state)
         if not len(window.codes):  # without friction a free motion between the walls has no events
             return _attractor(model, engine, params, "sliding", 1, window, state)
+        if moved < TO_WALLS and move_on(
+            engine, params, state, window.nodes, window.codes, window.modes, max_period
+        ):
+            moved += 1
+            continue
         found = _recognise(engine, params, window, max_period, tolerance, last)
         before, recurring = recurring, next(iter(_returns(window, max_period, NEARLY)), None)
         # next to a bifurcation a motion may recur but for a slow drift: it is given time as long as it does

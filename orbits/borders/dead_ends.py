@@ -10,7 +10,7 @@ from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
 
 SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
-UNRESOLVED = 1e-5  # the way after an impact this slow, its square, is lost in that of the margins
+UNRESOLVED = 1e-5  # the way after an impact that ends this slow, its square, is lost in that of the margins
 VANISHING = 1e-9  # margins smaller than this are those of the border itself
 ONE_WAY = 1e-9  # relative difference of the frictions, slope included, of the two directions
 
@@ -56,9 +56,10 @@ def _fading(orbit: Solution) -> tuple[float, float] | None:
 
 
 def piled_up(orbit: Solution) -> bool:
-    """Whether a border orbit has an impact that is too slow to see what the next ones do."""
-    speeds = orbit.approaches
-    return bool(np.any((speeds > VANISHING) & (speeds < UNRESOLVED)))
+    """Whether a border orbit has an impact that is too slow, once the wall has sent it back, to see what the next ones do."""
+    speeds, codes = orbit.approaches, orbit.word.codes
+    back = np.asarray(orbit.model.restitutions(orbit.params))[codes[codes < 2][: speeds.size]]
+    return bool(np.any((speeds > VANISHING) & (back * speeds < UNRESOLVED)))
 
 
 def _gives_way_one_way(orbit: Solution) -> bool:

@@ -22,11 +22,15 @@ class Section:
         First event of the cycle, and the mode after it.
     periods : int
         Forcing periods of the cycle.
+    unit : ndarray, shape (n,)
+        What 1 is in each of the first node's unknowns, in the machine's units.
     """
 
-    def __init__(self, engine: Machine, params: np.ndarray, code: int, mode: int, periods: int) -> None:
+    def __init__(
+        self, engine: Machine, params: np.ndarray, code: int, mode: int, periods: int, unit: np.ndarray
+    ) -> None:
         self.engine, self.params = engine, params
-        self.code, self.mode, self.periods = code, mode, periods
+        self.code, self.mode, self.periods, self.unit = code, mode, periods, unit
         self.places = list(engine.places)
         self.scratch = buffers(engine, 64)
 
@@ -37,12 +41,12 @@ class Section:
 
     def through(self, u: np.ndarray) -> np.ndarray:
         """Where the motion that begins with the first of the nodes u passes phase zero next, shape (d,)."""
-        state = state_of(self.engine, self.params, self.code, self.mode, np.asarray(u)[: len(self.places)])
+        state = self._first(u)
         return self._after(state, float(state[TURNS]) + 1.0)
 
     def rounds(self, u: np.ndarray) -> np.ndarray:
         """Where the cycle passes phase zero, once per forcing period, shape (periods, d)."""
-        state = state_of(self.engine, self.params, self.code, self.mode, np.asarray(u)[: len(self.places)])
+        state = self._first(u)
         first = float(state[TURNS]) + 1.0
         return np.array([self._after(state, first + k) for k in range(self.periods)])
 
@@ -55,6 +59,11 @@ class Section:
             return np.full(len(self.places), np.nan)
         self.engine.launch(state, self.params)
         return self._after(state, float(self.periods))
+
+    def _first(self, u: np.ndarray) -> np.ndarray:
+        """The state right after the first event."""
+        node = np.asarray(u)[: len(self.unit)] * self.unit
+        return state_of(self.engine, self.params, self.code, self.mode, node)
 
     def _after(self, state: np.ndarray, until: float) -> np.ndarray:
         status = skip(self.engine, state, self.params, until, EVENTS * self.periods, self.scratch)

@@ -223,6 +223,14 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
         (("show", "g.vines", "x", "y"), "contvines: x y: this is too much for `contvines show`;"),
         (("plot", "g.vines", "-y"), "contvines: -y: its value is missing; `contvines plot --help` says"),
         (
+            ("basins", EXAMPLE, "--at", "0.5", "--saddles", "--plot", "b.png"),
+            "contvines: --saddles: its value is missing, --plot comes at once; see `contvines basins --help`",
+        ),
+        (
+            ("basins", EXAMPLE, "--at", "0.5", "--plane", "w", "--json"),
+            "contvines: --plane: its value is missing",
+        ),
+        (
             ("diagram", EXAMPLE, "--quiet=3"),
             "contvines: --quiet: this option takes no value; write --quiet al",
         ),

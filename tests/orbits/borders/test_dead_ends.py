@@ -1,12 +1,14 @@
 """Why nothing goes on at a border: said where it is known, and confirmed by the simulator."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
-from orbits.borders.dead_ends import UNKNOWN
+from orbits.borders.dead_ends import UNKNOWN, piled_up
 from orbits.simulation import simulate
 
 
@@ -34,6 +36,19 @@ def test_impacts_that_pile_up_are_told_with_the_speed_of_the_slowest():
     run = simulate(machine, {"w_rate": 1.0}, periods=200, amplitude=last.value - 1e-9)
     speeds = np.sort(np.abs(run.rows[run.codes < 2][-40:, 3]))
     assert np.abs(np.log(speeds / told)).min() < 0.2
+
+
+@pytest.mark.parametrize("soft", [0.05, 0.95])
+def test_of_a_slow_impact_the_speed_behind_it_counts(soft):
+    """It rises by half the square of its speed behind the wall: beside a position of one that has few digits left, or many."""
+    machine = Cavity(restitution_left=soft, restitution_right=0.7, friction=0.4, gravity=0.1)
+    orbit = machine.orbit("LR", amplitude=0.8)
+    slow = SimpleNamespace(
+        approaches=np.array([2e-5, 0.4]), word=orbit.word, model=machine, params=orbit.params
+    )
+    rise = 0.5 * (soft * slow.approaches[0]) ** 2
+    lost = np.spacing(1.0) / rise  # part of it that one rounding is
+    assert piled_up(slow) == (lost > 1e-5)
 
 
 def test_a_stick_at_a_wall_that_is_about_to_let_go():

@@ -109,3 +109,23 @@ def test_a_virtual_branch_is_real_where_the_simulation_follows_it(kind, seed, wo
             share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
             seen = replay(between.orbit(int(i), float(share)))
             assert (seen.matches and seen.error < 1e-8) == branch.real
+
+
+def test_right_beside_a_period_doubling_signs_are_not_those_of_rounding():
+    """In eighty digits the doubled branch is stable from its first points on: nothing happens on it before its border."""
+    graph = diagram("cavity", 259, 409)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 0.379034268736721) < 1e-12)
+    branch = next(b for b in graph if b.seed == doubling.label)
+    assert [graph[label].kind for _, label in branch.marks] == ["period-doubling", "stick"]
+    for i in range(1, len(branch) - 1):
+        assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
+        assert branch.stable[i]
+
+
+def test_one_multiplier_at_minus_one_begets_one_branch():
+    """Where the equations of a long word are badly conditioned, too: the other multiplier is next to nothing, in eighty digits."""
+    graph = diagram("cavity", 358, 409)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.725696358352232) < 1e-11)
+    there = exact(doubling.orbit)
+    assert (np.abs(there.multipliers + 1.0) < 1e-6).sum() == 1
+    assert sum(branch.seed == doubling.label for branch in graph) == 1

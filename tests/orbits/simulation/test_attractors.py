@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from orbits import Absorber, Coupled
+from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
 from orbits.simulation import simulate
 from orbits.starts.find import polish
@@ -180,3 +181,24 @@ def test_a_slow_alternating_approach_is_no_doubled_period():
         known = exact(found.orbit)
         assert abs(known.shift) < 1e-14 and known.moved < 1e-12
         assert np.abs(known.multipliers).max() < 0.9989
+
+
+@pytest.mark.parametrize("excess", [1e-4, 1e-3, 3e-2])
+def test_a_motion_that_creeps_down_a_slope_ends_at_the_wall(excess):
+    """Once in a period shaking beats friction, in one direction: the way is that of a slipping block, and is never taken back."""
+    machine = Cavity(restitution=0.5, friction=0.9, gravity=0.8, slope=0.15, distance_left=1.4)
+    pull = 0.8 * (0.9 * np.cos(0.15) - np.sin(0.15))
+    amplitude = (1.0 + excess) * pull
+    begin = np.arcsin(pull / amplitude)
+
+    def speed(psi):
+        return amplitude * (np.cos(begin) - np.cos(psi)) - pull * (psi - begin)
+
+    end = brentq(speed, np.pi - begin + 1e-9, 2.0 * np.pi)
+    way = quad(speed, begin, end, epsabs=1e-15)[0]
+    run = simulate(machine, {"w": 0.5}, periods=20, amplitude=amplitude)
+    places = run.sample(per_period=1).w
+    assert np.diff(places[2:-1]) == pytest.approx(-way, rel=1e-6)
+    found = find_attractor(machine, {"w": 0.5}, amplitude=amplitude)
+    assert found.kind == "stuck"
+    assert found.state[1] == pytest.approx(-1.0, abs=1e-9)
