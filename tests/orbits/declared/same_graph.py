@@ -3,6 +3,8 @@
 `python -m tests.orbits.declared.same_graph [friction] [friction_low] [frequency]` makes the diagrams of these example studies with
 both and compares them: branches by word, periods and ends; special points by kind, value, whether they are real, and multipliers
 (but at borders, where they depend on the side); and which branches meet at which point.
+
+`python -m tests.orbits.declared.same_graph drawn absorber 50 SALT` does so with machines that :mod:`tests.orbits.fuzz.drawing` draws.
 """
 
 import sys
@@ -18,10 +20,12 @@ import contvines as cv
 from contvines.events.kinds import BORDERS
 from orbits import Absorber, Coupled
 from tests.orbits.declared.pages import page
+from tests.orbits.fuzz.drawing import draw
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 BUILT_IN = {"absorber": Absorber, "coupled": Coupled}
 STUDIES = ("friction", "friction_low", "frequency")
+EXACT = "exact"  # the excitation that the page has
 SAME = 1e-10
 ENDS = 1e-9  # ends of branches: borders of both kinds are found from either side
 
@@ -47,6 +51,20 @@ def both(name: str, **changed: Any) -> tuple[str, list[Any]]:
     first = machine.orbit(word, periods, **others)
     again = page(kind).orbit(word, periods, **given, **start)
     return kind, [cv.diagram(orbit, **settings) for orbit in (first, again)]
+
+
+def drawn(kind: str, salt: int, seed: int, most: int = 40) -> list[Any]:
+    """The graphs of a drawn machine, without its virtual branches; none for those that the page does not have, or that are cut at so many branches."""
+    draws = draw(kind, salt, seed)
+    given = {} if draws.orbit is None else dict(draws.orbit.parameters)
+    if not given.get("friction") or given.pop("excitation", EXACT) != EXACT or not len(draws.orbit.word):
+        return []
+    options = {**draws.options, "virtual": False, "settings": {"max_branches": most}}
+    first = cv.diagram(draws.orbit, **options)
+    if not first.complete:
+        return []
+    again = page(kind).orbit(draws.orbit.spelling, draws.orbit.periods, **given)
+    return [first, cv.diagram(again, **options)]
 
 
 def compared(kind: str, built_in: Any, declared: Any) -> Differences:
@@ -112,10 +130,18 @@ def _meeting(graph: Any, label: str) -> set[str]:
 
 
 def main() -> None:
-    """Compare the example studies."""
-    for name in sys.argv[1:] or STUDIES:
+    """Compare the example studies, or drawn machines."""
+    asked: list[tuple[str, Callable[[], tuple[str, list[Any]]]]]
+    if sys.argv[1:2] == ["drawn"]:
+        kind, count, salt = sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
+        asked = [(f"{kind} {n}", lambda n=n: (kind, drawn(kind, salt, n))) for n in range(count)]
+    else:
+        asked = [(name, lambda name=name: both(name)) for name in sys.argv[1:] or STUDIES]
+    for name, make in asked:
         began = time.process_time()
-        kind, graphs = both(name)
+        kind, graphs = make()
+        if not graphs:
+            continue
         found = compared(kind, *graphs)
         print(
             f"{name}: {found.points} of {len(graphs[0].special)} special points alike to {found.values:.1e} "

@@ -11,7 +11,7 @@ from orbits.declared.neighbours import margins_of
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.rounds import escapes
 from tests.orbits.declared.pages import page
-from tests.orbits.declared.same_graph import both, compared
+from tests.orbits.declared.same_graph import both, compared, drawn
 
 COUPLED = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
 
@@ -21,6 +21,14 @@ def test_the_absorber_has_the_same_graph():
     found = compared(kind, *graphs)
     assert found.sentences == []
     assert found.points == len(graphs[0].special) > 5
+
+
+@pytest.mark.parametrize("seed", [14, 18])
+def test_drawn_absorbers_have_the_same_graph(seed):
+    graphs = drawn("absorber", 410, seed)
+    found = compared("absorber", *graphs)
+    assert found.sentences == []
+    assert found.points == len(graphs[0].special) > 1
 
 
 def test_the_absorber_on_its_oscillator_that_begins_to_slip_has_the_same_graph():

@@ -79,7 +79,9 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
             tally.count("ways to special points that cannot be followed")
             continue
         tally.count("ways to special points followed")
-        falls = gaps[-1] < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
+        # the nearer to a branch point the more singular the equations: a motion that was that near does not come nearer
+        nearest = gaps[-1] if point.kind in BORDERS or point.kind == "fold" else min(gaps)
+        falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
             tally.count("ways to special points shorter than the last bit of the parameter")
         elif not falls:
