@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from ..problems.blas import dot, position
 from .lengths import Metric
 
 
@@ -18,9 +19,10 @@ def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -
     part = np.abs(u)
     part += metric.scale[:-1]
     np.divide(step[:-1], part, out=part)
-    size = float(np.maximum.reduce(np.abs(part, out=part)))
-    size = max(size, abs(float(step[-1])) / (float(metric.scale[-1]) + abs(p)))
-    return size if size - size == 0.0 else math.inf
+    change = abs(float(step[-1])) / (float(metric.scale[-1]) + abs(p))
+    if not dot(part, part) + change < math.inf:
+        return math.inf
+    return max(abs(float(part[position(part)])), change)
 
 
 def add(u: np.ndarray, step: np.ndarray) -> None:
@@ -30,7 +32,7 @@ def add(u: np.ndarray, step: np.ndarray) -> None:
 
 def remainder(border: np.ndarray, u: np.ndarray, p: float, target: float) -> float:
     """See lengths."""
-    return target - float(border[-1]) * p - float(border[:-1] @ u)
+    return target - float(border[-1]) * p - dot(border, u, len(u))
 
 
 def fix_parameter(border: np.ndarray) -> None:
@@ -48,7 +50,7 @@ def plane(
 ) -> float:
     """See lengths."""
     np.multiply(metric.weights, tangent, out=border)
-    return float(border[:-1] @ u) + float(border[-1]) * p
+    return dot(border, u, len(u)) + float(border[-1]) * p
 
 
 def compare(
@@ -62,10 +64,10 @@ def compare(
 ) -> tuple[float, float, float]:
     """See lengths."""
     weighted = metric.weights * tangent
-    norm = math.sqrt(float(weighted @ tangent))
+    norm = math.sqrt(dot(weighted, tangent))
     gap = u - guess_u
-    error = math.sqrt(float((gap * metric.weights[:-1]) @ gap) + metric.of_parameter * (p - guess) ** 2)
-    return norm, float(weighted @ before) / norm, error
+    error = math.sqrt(dot(metric.weights[:-1] * gap, gap) + metric.of_parameter * (p - guess) ** 2)
+    return norm, dot(weighted, before) / norm, error
 
 
 def orient(
@@ -76,8 +78,8 @@ def orient(
 ) -> tuple[float, float, float]:
     """See lengths."""
     weighted = metric.weights * tangent
-    norm = math.sqrt(float(weighted @ tangent)) if np.isfinite(tangent).all() else math.inf
-    return norm, float(weighted @ along), float(border @ tangent)
+    norm = math.sqrt(dot(weighted, tangent)) if np.isfinite(tangent).all() else math.inf
+    return norm, dot(weighted, along), dot(border, tangent)
 
 
 def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> float:
@@ -92,7 +94,7 @@ def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> fl
 def distance(u: np.ndarray, p: float, guess: np.ndarray, metric: Metric) -> float:
     """See lengths."""
     gap = u - guess[:-1]
-    return math.sqrt(float((metric.weights[:-1] * gap) @ gap) + metric.of_parameter * (p - guess[-1]) ** 2)
+    return math.sqrt(dot(metric.weights[:-1] * gap, gap) + metric.of_parameter * (p - float(guess[-1])) ** 2)
 
 
 def put(to: np.ndarray, source: np.ndarray, divisor: float) -> None:
@@ -118,8 +120,8 @@ def extrapolate(
         there = tangents[i - 2]
         chord, bend = point - points[i - 2], here - there
         change = value - float(values[i - 2])
-        turn = float((metric.weights * bend) @ bend)
-        square = float((metric.weights[:-1] * chord) @ chord) + metric.of_parameter * change**2
+        turn = dot(metric.weights * bend, bend)
+        square = dot(metric.weights[:-1] * chord, chord) + metric.of_parameter * change**2
         d = math.sqrt(square) * (1.0 + turn / 24.0)
         if d > 0.0 and turn < 1.0 and h < 4.0 * d:
             share = h / d

@@ -15,6 +15,7 @@ from .engine import Engine, Solved
 
 # doublings of the distance, to FAR, for which the rest of the interval has to have room, on branches that go on
 DOUBLINGS = 26
+STEADY = 200.0  # ... once they are so many times `escape` away
 # a doubling that takes so much less than the one before, and so little of the interval, is one of the last
 SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
@@ -46,11 +47,17 @@ class Reach:
             return 1.0
         return max(1.0, float(self._distances(point.u[None, :])[0]) / GROW)
 
-    def escapes(self, chunk: Chunk) -> int | None:
-        """Index of the first point at which the branch has run away, or None."""
+    def escapes(self, chunk: Chunk, apart: float = np.inf) -> int | None:
+        """Index of the first point at which the branch has run away, or None; neighbours are at most so far apart."""
         escape = self.engine.settings.escape
         if not self.learned:
-            away = _away(chunk.points, self.start.u, escape, self.engine.scale[:-1])
+            scale = self.engine.scale[:-1]
+            begin = float(
+                np.abs((chunk.points[0] - self.start.u) / scale).max()
+            )  # no root mean square is larger
+            if begin + len(chunk) * apart < escape:
+                return None
+            away = _away(chunk.points, self.start.u, escape, scale)
             return int(np.argmax(away)) if away.any() else None
         distances = self._distances(chunk.points)
         if not distances.max() > 0.5 * self.doubled:
@@ -66,7 +73,8 @@ class Reach:
             moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
             room = self.engine.upper - value if ahead else value - self.engine.lower
             last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
-            bound = moved <= self.moved and (last or DOUBLINGS * moved < room)
+            certain = DOUBLINGS * moved < room and distances[i] > STEADY * escape
+            bound = moved <= self.moved and (last or certain)
             if self.doubled > escape and (bound or distances[i] > FAR * escape):
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Generator, Iterator
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ from .engine import Engine, Solved
 from .reach import Reach
 from .settings import Settings
 from .status import Status
+from .step_rule import BY_ANGLE
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 FEWEST = 8  # points in a chunk, however many unknowns there are
@@ -94,9 +96,10 @@ def chunks(
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
             room = min(room, max(settings.max_points - total, 1))
+            apart = _apart(engine, max(h, longest))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
-            closed = closing.cut(chunk)
-            away = reach.escapes(chunk)
+            closed = closing.cut(chunk, apart)
+            away = reach.escapes(chunk, apart)
             if closed is not None:
                 chunk = closed
             elif away is not None:
@@ -149,6 +152,14 @@ def _march(
             engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch
         )
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
+
+
+def _apart(engine: Engine, longest: float) -> float:
+    """The largest distance of neighbours after steps of at most this length; of a user's step rule nothing is known.
+
+    The rule allows an error of angle < 1 times the length, and the step to the end of the interval may be 1.5^2 times as long.
+    """
+    return 4.5 * longest if engine.settings.step_rule is BY_ANGLE else np.inf
 
 
 def _pack(solved: list[Solved], status: Status) -> Chunk:
@@ -236,16 +247,17 @@ def trace(
         if chunk is None:
             return
         multipliers, stable = engine.multipliers(chunk.rows), engine.stable(chunk.rows)
-        margin = engine.smallest_margin(chunk.rows)
-        for i in range(0 if first else 1, len(chunk)):
-            last = i == len(chunk) - 1 and chunk.status != Status.RUNNING
-            yield Point(
-                chunk.points[i].copy(),
-                float(chunk.values[i]),
-                chunk.tangents[i].copy(),
-                multipliers[i],
-                float(margin[i]),
-                bool(stable[i]),
-                chunk.status.sentence(problem.parameter, float(chunk.values[i])) if last else "",
-            )
+        ends = [""] * len(chunk)
+        if chunk.status != Status.RUNNING:
+            ends[-1] = chunk.status.sentence(problem.parameter, float(chunk.values[-1]))
+        points = zip(
+            chunk.points.copy(),
+            chunk.values.tolist(),
+            chunk.tangents.copy(),
+            multipliers,
+            engine.smallest_margin(chunk.rows).tolist(),
+            stable.tolist(),
+            ends,
+        )
+        yield from itertools.starmap(Point, itertools.islice(points, 0 if first else 1, None))
         first = False

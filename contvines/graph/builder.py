@@ -21,6 +21,7 @@ from ..events.kinds import BORDERS
 from ..events.watch import Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
+from .identity import parts_further_on
 from .leaving import leave
 from .marking import mark, origin_index
 from .one_border import is_border, same_border, tie_borders
@@ -133,6 +134,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
         return
     known = run.register.find(pending.problem, first.u, first.p, real)
+    if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
+        known = None if parts_further_on(known, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None:
             if known.label == pending.source:

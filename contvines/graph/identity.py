@@ -7,10 +7,12 @@ from collections.abc import Hashable
 import numpy as np
 
 from ..branches.branch import Branch
-from ..continuation.engine import Engine
+from ..continuation.engine import Engine, Solved
 from ..problems.protocol import Problem
 
 SAME = 1e-6
+EXACTLY = 1e-9  # two solutions to roundoff that differ by more are two, though they count as the same
+FAR = 0.1  # length along two branches after which they are one
 
 
 def same_vector(
@@ -69,6 +71,52 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
         if here == key and same_vector(near, vector, SAME, engine.scale):
             return True
     return False
+
+
+def parts_further_on(branch: Branch, engine: Engine, first: Solved) -> bool:
+    """Whether a branch that begins on a known one, within what counts as the same, is another one: it may leave at a small angle.
+
+    It is followed in steps of twice the length until it is away from the known one, or far along it.
+
+    Parameters
+    ----------
+    branch : Branch
+        The known one, of the same problem.
+    engine : Engine
+    first : Solved
+    """
+    gap, length, point = _gap(branch, engine, first), 1e-6, first
+    while EXACTLY < gap <= SAME and 100.0 * engine.noise < EXACTLY and length < FAR:
+        border = engine.weights * point.tangent
+        guess = engine.join(point.u, point.p) + length * point.tangent
+        found = engine.solve(guess[:-1], float(guess[-1]), border, float(border @ guess), point.tangent)
+        if found is None or not engine.lower <= found.p <= engine.upper:
+            return False
+        if engine.inner(point.tangent, found.tangent) < 0.9:
+            length *= 0.25
+            if length < 1e-8:
+                return False
+            continue
+        before, gap, point, length = gap, _gap(branch, engine, found), found, 2.0 * length
+        if gap < before:
+            return False
+    return SAME < gap < np.inf
+
+
+def _gap(branch: Branch, engine: Engine, point: Solved) -> float:
+    """Distance of a point from the branch at its parameter value as :func:`same_vector` has it, infinite where the branch is not near."""
+    key, vector = engine.problem.canonical(point.u, point.p)
+    least, gaps = np.inf, branch.values - point.p
+    for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
+        found = engine.at_value(_at_value(branch, engine, int(i), point.p), point.p)
+        if found is None:
+            continue
+        here, near = engine.problem.canonical(found.u, point.p)
+        if here == key and near.shape == vector.shape:
+            scale = engine.scale[: len(vector)]
+            a, b = near / scale, vector / scale
+            least = min(least, float(np.abs(a - b).max(initial=0.0)) / (1.0 + np.abs(b).max(initial=0.0)))
+    return least
 
 
 def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> bool:

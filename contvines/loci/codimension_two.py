@@ -59,7 +59,8 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
                 look.test == "angle"
                 and min(abs(a) if i == 0 else 1.0, abs(b) if i == len(places) - 2 else 1.0) < ENDING
             )
-            if not (a * b < 0.0 or at_end):
+            # a test that vanishes at a point itself changes its sign on one side of it
+            if not (((a >= 0.0) != (b >= 0.0) and np.isfinite(a + b)) or at_end):
                 continue
             share = float(np.clip(a / (a - b), 0.0, 1.0)) if a != b else 0.5
             guess, gap = _between(places[i], places[i + 1], share), _gap(problem, places[i], places[i + 1])
@@ -220,7 +221,7 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
                 continue
             a, b = rows[i][j], rows[i + 1][j]
             ends = (last and abs(b) < 1e-9) or (i == 0 and abs(a) < 1e-9)
-            if not (a * b < 0.0 or ends) or not np.isfinite(a + b):
+            if not (np.isfinite(a) and np.isfinite(b)) or not (a * b < 0.0 or ends):
                 continue
             guess = (
                 places[i]

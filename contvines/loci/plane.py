@@ -14,6 +14,7 @@ from .problem import LocusProblem
 
 STEP = 1e-5  # of central differences of the conditions, relative to the unknowns
 ITERATIONS, HALVINGS = 16, 4  # of Newton's method
+ROUNDOFF = 1e-12  # relative size of a derivative that is none
 CLOSE = 1e-9  # corrections below this no longer shrink: roundoff of the conditions
 
 
@@ -152,9 +153,14 @@ class Plane:
             if not unfolded:
                 rows.append(np.array([[solved[1][1], solved[2][1], g]]))
                 right.append(np.array([-solved[0][1]]))
-            matrix, side = np.vstack(rows), np.concatenate(right)
+            # in units of parameters and null vector, and of what F changes by
+            matrix, side, units = np.vstack(rows), np.concatenate(right), np.append(scale[-2:], 1.0)
             try:
-                dp, dq, a = np.linalg.solve(matrix, side)
+                if not unfolded and float(np.abs(matrix[2] * units).max()) < ROUNDOFF:
+                    # where branches cross F is zero to first order, and asks for nothing there
+                    dp, dq, a = units * np.linalg.lstsq(matrix[:2] * units, side[:2])[0]
+                else:
+                    dp, dq, a = np.linalg.solve(matrix, side)
             except np.linalg.LinAlgError:
                 return None
             change = directions[0] + dp * directions[1] + dq * directions[2] + a * directions[3]

@@ -9,70 +9,94 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from .abilities import Nearing
+from .blas import dot, position
 from .functions import NotEvaluable
 from .interpreted import assign, inspect
 from .kernels import Kernels
 from .nearness import distance, nearest
 from .spectra import reference_of, watched
 
-# solves and hands out the factors (scipy's getrs starts threads for the smallest matrices)
-(FACTORISE_AND_SOLVE,) = get_lapack_funcs(("gesv",), dtype=np.float64)
+# solves and hands out the factors (scipy's getrs starts threads for the smallest matrices); 1 / largest entry of each row
+FACTORISE_AND_SOLVE, ROWS = get_lapack_funcs(("gesv", "geequ"), dtype=np.float64)
+EVEN = 0.1  # rows whose sizes differ by less than this are left as they are; LAPACK's own threshold (dlaqge)
+
+
+class Units:
+    """What the entries of the table of a workspace are multiplied with, made anew when the scales of a problem change."""
+
+    def __init__(self) -> None:
+        self.scales: Any = self
+        self.table = self.columns = self.negative = self.rows = np.ones(0)
+
+    def take(self, data: Any, work: DenseWork) -> None:
+        """Those of a problem as it is now; the right-hand side that is watched comes with them."""
+        size = len(work.last)
+        scales = self.scales = data.scales
+        rows, columns = (np.ones(size - 1), np.ones(size)) if scales is None else (scales.rows, scales.vector)
+        self.rows, self.columns, self.negative = rows, columns, -columns
+        self.table = np.ones(work.table.shape, order="F")
+        self.table[:, :size] = columns
+        self.table[:-1] /= rows[:, None]
+        if work.table.shape[1] > size + 2:
+            work.table[:, -1] = data.side
 
 
 class DenseWork(NamedTuple):
     """F, F_u, F_p, and room for the bordered matrix with its right-hand sides.
 
-    F_u and F_p are parts of ``system``, whose last row is zero. ``image`` is the solution of a third right-hand side where one is
-    watched, in units of the scales: it tells how near the matrix is to a singular one. ``flat``, ``last``, ``column``, ``inner``,
-    ``first``, ``second``, ``image`` and ``diagonal`` are views. Solutions take the place of the right-hand sides.
+    F_u, F_p and F are parts of ``table``, whose last row is zero: (F_u, F_p | F, 0). A third right-hand side is watched where it is
+    there: ``image`` is its solution, in units of the scales, and tells how near the matrix is to a singular one. ``matrix`` is the
+    same in units of the scales, with the border as last row; ``square``, ``last``, ``diagonal`` and ``sides`` are parts of it.
+    Solutions take the place of the right-hand sides.
     """
 
     residual: np.ndarray
     jacobian: np.ndarray
     derivative: np.ndarray
-    system: np.ndarray
+    table: np.ndarray
     flat: np.ndarray
     matrix: np.ndarray
+    square: np.ndarray
     last: np.ndarray
     diagonal: np.ndarray
     sides: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
-    sizes: np.ndarray
-    rows: np.ndarray
-    column: np.ndarray
-    inner: np.ndarray
+    ends: np.ndarray
     image: np.ndarray
     order: np.ndarray
+    odd: np.ndarray
+    negative: np.ndarray
+    swapped: np.ndarray
     ones: np.ndarray
     parts: np.ndarray
+    units: Units
 
 
 def dense_workspace(n: int, watched: bool = False) -> DenseWork:
     """Arrays for n equations; with a third right-hand side if that is watched."""
     size = n + 1
-    system, matrix = np.zeros((size, size), order="F"), np.zeros((size, size), order="F")
-    sides, rows = np.zeros((size, 3 if watched else 2), order="F"), np.zeros(size)
+    table, matrix = np.zeros((2, size + (3 if watched else 2), size))
+    table, matrix = table.T, matrix.T
+    odd = np.zeros(2 * size, dtype=bool)
     return DenseWork(
-        residual=np.zeros(n),
-        jacobian=system[:n, :n],
-        derivative=system[:n, n],
-        system=system,
-        flat=system.T.reshape(-1),
+        residual=table[:n, size],
+        jacobian=table[:n, :n],
+        derivative=table[:n, n],
+        table=table,
+        flat=table.T.reshape(-1),
         matrix=matrix,
-        last=matrix[-1],
-        diagonal=matrix.T.reshape(-1)[:: size + 1],
-        sides=sides,
-        first=sides[:n, 0],
-        second=sides[:n, 1],
-        sizes=np.zeros((size, size), order="F"),
-        rows=rows,
-        column=rows[:, None],
-        inner=rows[:n],
-        image=sides[:, -1],
+        square=matrix[:, :size],
+        last=matrix[-1, :size],
+        diagonal=matrix.T.reshape(-1)[: size * size : size + 1],
+        sides=matrix[:, size:],
+        ends=matrix[-1, size:],
+        image=matrix[:, -1],
         order=np.arange(size, dtype=np.int32),
-        ones=np.ones(size * size),
+        odd=odd,
+        negative=odd[:size],
+        swapped=odd[size:],
+        ones=np.ones(table.size),
         parts=np.zeros(n),
+        units=Units(),
     )
 
 
@@ -88,7 +112,9 @@ def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
 
 def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
-    scales = data.scales
+    units = work.units
+    if units.scales is not data.scales:
+        units.take(data, work)
     with np.errstate(all="ignore"):
         try:
             work.residual[:], work.jacobian[:], work.derivative[:] = data.equations(u, p)
@@ -97,13 +123,10 @@ def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
             return math.inf
         except (ArithmeticError, ValueError, np.linalg.LinAlgError):
             return math.inf
-        sizes = np.abs(work.residual, out=work.parts)
-        if scales is not None:
-            np.divide(sizes, scales.rows, out=sizes)
-        size = float(np.maximum.reduce(sizes))
-        # a sum is finite if its terms are, but for an overflow, which would not do either
-        total = float(work.flat @ work.ones)
-    return size if size - size == 0.0 and total - total == 0.0 else math.inf
+        sizes = np.divide(work.residual, units.rows, out=work.parts)
+    # a sum is finite if its terms are, but for an overflow, which would not do either
+    total = dot(work.flat, work.ones)
+    return abs(float(sizes[position(sizes)])) if total - total == 0.0 else math.inf
 
 
 def bordered(
@@ -111,32 +134,23 @@ def bordered(
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant.
 
-    One factorisation, of the matrix with columns in units of the scales and rows made equally large.
+    One factorisation, of the matrix in units of the scales, with rows made equally large where they are not.
     """
-    size = len(work.residual)
-    sides, rows = work.sides, work.rows
-    scales = data.scales
-    units = None if scales is None else scales.vector
-    matrix = _equilibrated(work, border, units)
-    # F and -n: the solution is -x
-    np.divide(work.residual, work.inner, out=work.first)
-    work.second[:] = 0.0
-    last = float(rows[size])
-    sides[size, 0], sides[size, 1] = -n / last, 1.0 / last
-    if sides.shape[1] > 2:
-        np.divide(data.side, rows, out=work.image)
-    _, pivots, _, singular = FACTORISE_AND_SOLVE(matrix, sides, overwrite_a=1, overwrite_b=1)
+    units, sides = work.units, work.sides
+    if units.scales is not data.scales:
+        units.take(data, work)
+    _equilibrate(work, border, n)
+    _, pivots, _, singular = FACTORISE_AND_SOLVE(work.square, sides, overwrite_a=1, overwrite_b=1)
     if not singular:
-        odd = np.count_nonzero(work.diagonal < 0.0) + np.count_nonzero(pivots != work.order)
-        sign = -1.0 if odd % 2 else 1.0
+        np.less(work.diagonal, 0.0, out=work.negative)
+        np.not_equal(pivots, work.order, out=work.swapped)
+        sign = -1.0 if np.count_nonzero(work.odd) % 2 else 1.0
     else:
-        sides[:], sign = _least(_equilibrated(work, border, units), sides), 0.0
-    if scales is None or units is None:
-        np.negative(sides[:, 0], out=step)
-        tangent[:] = sides[:, 1]
-    else:
-        np.multiply(sides[:, 0], scales.negative, out=step)
-        np.multiply(sides[:, 1], units, out=tangent)
+        _equilibrate(work, border, n)
+        sides[:], sign = _least(work.square, sides), 0.0
+    # with F and -n on the right the solution is -x
+    np.multiply(sides[:, 0], units.negative, out=step)
+    np.multiply(sides[:, 1], units.columns, out=tangent)
     return sign
 
 
@@ -150,20 +164,21 @@ def _least(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
         return right.T @ ((left.T @ sides) / values[:, None])
 
 
-def _equilibrated(work: DenseWork, border: np.ndarray, units: np.ndarray | None) -> np.ndarray:
-    """The bordered matrix with columns in units of the scales and rows made equally large."""
-    matrix, rows = work.matrix, work.rows
-    if units is None:
-        matrix[:] = work.system
-        work.last[:] = border
-    else:
-        np.multiply(work.system, units, out=matrix)
-        np.multiply(border, units, out=work.last)
-    np.abs(matrix, out=work.sizes)
-    np.maximum.reduce(work.sizes, axis=1, out=rows)
-    if np.count_nonzero(rows) != len(rows):
-        rows[rows == 0.0] = 1.0
-    return np.divide(matrix, work.column, out=matrix)
+def _equilibrate(work: DenseWork, border: np.ndarray, n: float) -> None:
+    """The bordered matrix and its right-hand sides (F, -n) and (0, 1), with rows of about one size."""
+    last, ends = work.last, work.ends
+    np.multiply(work.table, work.units.table, out=work.matrix)
+    np.multiply(border, work.units.columns, out=last)
+    size = abs(float(last[position(last)])) or 1.0
+    np.divide(last, size, out=last)
+    ends[0], ends[1] = -n / size, 1.0 / size
+    factors, _, ratio, _, _, failed = ROWS(work.square)
+    if not ratio >= EVEN or failed:
+        if 0 < failed <= len(last):  # a row of zeros
+            rows = np.abs(work.square).max(axis=1)
+            rows[rows == 0.0] = 1.0
+            factors = 1.0 / rows
+        np.multiply(work.matrix, factors[:, None], out=work.matrix)
 
 
 def distance_to_singular(data: Any, work: DenseWork) -> float:

@@ -37,6 +37,7 @@ class UserFunction:
 
     def __init__(self, f: Callable[..., Any], name: str, parameters: ParameterSet) -> None:
         self.f, self.name, self.parameters = f, name, parameters
+        self.alone = not parameters.named
 
     def raw(self, u: np.ndarray, p: Any) -> Any:
         """What f returns, whatever it is.
@@ -47,7 +48,8 @@ class UserFunction:
             If f raises anything but an interrupt.
         """
         try:
-            return self.f(readonly(u) if u.flags.writeable else u, self.parameters.at(p))
+            seen = readonly(u) if u.flags.writeable else u
+            return self.f(seen, p if self.alone else self.parameters.at(p))
         except Exception as error:
             hint = ""
             if isinstance(error, ValueError) and "read-only" in str(error):

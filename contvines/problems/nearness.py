@@ -28,7 +28,7 @@ def side(rows: np.ndarray) -> np.ndarray:
 
 def distance(image: np.ndarray) -> float:
     """1/|M^-1 b|, with M^-1 b in units of unknowns and parameter."""
-    square = float(image @ image)
+    square = float(image.dot(image))
     return math.sqrt(len(image) / square) if 0.0 < square < math.inf else 0.0
 
 

@@ -42,11 +42,6 @@ class Scales:
         """Scales of (u, p)."""
         return np.append(self.unknowns, self.parameter)
 
-    @cached_property
-    def negative(self) -> np.ndarray:
-        """The same with the other sign."""
-        return -self.vector
-
     def head(self, n: int) -> Scales:
         """Of the first n unknowns only."""
         return Scales(self.unknowns[:n], self.parameter, self.rows[:n], self.rate, self.noise)

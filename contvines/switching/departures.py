@@ -14,6 +14,7 @@ KERNEL = 4  # null vectors that are followed at most
 EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
 SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
+GRAZING = 1e4  # ... if nothing is found at that
 # the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
 LEAST = 1.6
 ATTEMPTS = 22  # halvings of the amplitude
@@ -127,6 +128,7 @@ def departures(
     amplitude: float,
     one_sided: bool,
     directions: list[np.ndarray] | None = None,
+    most: int | None = None,
 ) -> list[Departure]:
     """The branches that leave a branch point of the engine's problem.
 
@@ -145,9 +147,11 @@ def departures(
         The other side is an image of this one.
     directions : list of ndarray, optional
         Null vectors; computed if left out.
+    most : int, optional
+        How many null vectors there are at most: as many as multipliers are critical. Where equations are badly conditioned more seem to be.
     """
     if directions is None:
-        directions = null_vectors(engine, u, p, tangent)
+        directions = null_vectors(engine, u, p, tangent)[:most]
     if len(directions) > 1:
         return _multiple(engine, u, p, tangent, amplitude, one_sided, directions)
     found = [_depart(engine, u, p, tangent, amplitude, one_sided, direction) for direction in directions]
@@ -264,8 +268,8 @@ def _depart(
     bend: float = 0.0,
 ) -> Departure | None:
     """The branch in a direction; see :func:`departures`."""
-    for least in (LEAST, 0.0):
-        found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least)
+    for least, reach in ((LEAST, SLANTED), (LEAST, GRAZING), (0.0, SLANTED)):
+        found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least, reach)
         if found is not None:
             return found
     return None
@@ -281,8 +285,9 @@ def _lined(
     direction: np.ndarray,
     bend: float,
     least: float,
+    reach: float,
 ) -> Departure | None:
-    """The branch in a direction whose first points are so much further away at twice the amplitude."""
+    """The branch in a direction whose first points are so much further away at twice the amplitude, and within reach."""
     z = engine.join(u, p)
     best: Departure | None = None
     for attempt in range(ATTEMPTS):
@@ -290,12 +295,12 @@ def _lined(
             break
         half, offset = 0.5 * amplitude, bend * amplitude**2
         ahead, near = (
-            _at(engine, z, direction, x, y, SLANTED) for x, y in ((amplitude, offset), (half, 0.25 * offset))
+            _at(engine, z, direction, x, y, reach) for x, y in ((amplitude, offset), (half, 0.25 * offset))
         )
         back = behind = None
         if not one_sided:
             back, behind = (
-                _at(engine, z, direction, x, y, SLANTED)
+                _at(engine, z, direction, x, y, reach)
                 for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
             )
             if not _lined_up(engine, z, back, behind, least):

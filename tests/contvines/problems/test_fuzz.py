@@ -43,3 +43,8 @@ def test_rounding_far_out_is_no_length():
 def test_a_branch_that_is_crossed_at_a_small_angle_while_it_bends_away():
     # x = 0 crosses another branch, whose other unknowns are 24 x^2: beside the crossing that one is met first, and again
     assert System(9879).wrong() == []
+
+
+def test_a_branch_that_leaves_at_so_small_an_angle_that_its_first_points_count_as_the_same():
+    # x (x - 1) (p - 3 x) = 0: x = p / 3 leaves x = 0 at an angle of 0.0016 in units of unknowns of which the largest is 500
+    assert System(21265).wrong() == []

@@ -120,3 +120,12 @@ def test_right_beside_a_period_doubling_signs_are_not_those_of_rounding():
     for i in range(1, len(branch) - 1):
         assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
         assert branch.stable[i]
+
+
+def test_one_multiplier_at_minus_one_begets_one_branch():
+    """Where the equations of a long word are badly conditioned, too: the other multiplier is next to nothing, in eighty digits."""
+    graph = diagram("cavity", 358, 409)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.725696358352232) < 1e-11)
+    there = exact(doubling.orbit)
+    assert (np.abs(there.multipliers + 1.0) < 1e-6).sum() == 1
+    assert sum(branch.seed == doubling.label for branch in graph) == 1
