@@ -11,6 +11,7 @@ from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
 from ..events.located import Role
 from ..events.watch import Watch
+from ..journal import NullJournal
 from .half_branch import HalfBranch, Piece, piece_of, single
 from .opening import SHORTER, opening
 from .records import pack, unpack
@@ -65,7 +66,8 @@ def trace_half(
         scan = watch.scan(chunk, real)
         if known is None:
             events = watch.look(chunk, scan, real)
-            journal.record(name, pack(events, engine))
+            if not isinstance(journal, NullJournal):
+                journal.record(name, pack(events, engine))
         else:
             events = unpack(known)
         status, count = chunk.status, len(chunk)

@@ -24,6 +24,7 @@ from .pending import Origin, Pending
 from .run import Run
 
 DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
+CRITICAL = 1e-3  # distance from the boundary within which multipliers cross there, double ones included
 OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
 
@@ -89,6 +90,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             target.unit(np.asarray(child.tangent, dtype=float)),
             run.settings.amplitude,
             one_sided=not generic,
+            most=_critical(engine, spectrum, critical),
         )
         if not found:
             run.remark(point.label, "no branch that leaves here was found")
@@ -122,6 +124,13 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     first_step=min(run.settings.first_step, departure.amplitude),
                 )
             )
+
+
+def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
+    """How many multipliers are critical, and so how many null vectors there may be; None where the multipliers do not tell."""
+    if engine.problem.spectrum != "map":
+        return None
+    return int((np.abs(spectrum - critical) < CRITICAL).sum()) or None
 
 
 def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:

@@ -221,7 +221,7 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
                 continue
             a, b = rows[i][j], rows[i + 1][j]
             ends = (last and abs(b) < 1e-9) or (i == 0 and abs(a) < 1e-9)
-            if not (a * b < 0.0 or ends) or not np.isfinite(a + b):
+            if not (np.isfinite(a) and np.isfinite(b)) or not (a * b < 0.0 or ends):
                 continue
             guess = (
                 places[i]

@@ -25,7 +25,8 @@ class References:
     def __init__(self, plane: Plane, locus: LocusProblem, near: References | None = None) -> None:
         problem, maps = plane.problem, plane.problem.spectrum == "map"
         self.plus: Null = plane.first.null_vectors(near=None if near is None else near.plus)
-        flips = maps and not problem.movable
+        # without a flip the unknowns hold no perturbations that could change sign over the period
+        flips = maps and not problem.movable and problem.kernels.flip is not None
         before = None if near is None else near.minus
         self.minus: Null | None = plane.first.null_vectors(True, before) if flips else None
         self.reference = locus.reference

@@ -66,7 +66,7 @@ def _tables(chart: Chart) -> list[Table]:
         (
             locus.label,
             locus.kind + _realness(locus),
-            short_word(str(locus.branch.description.get("word") or "")),
+            _word(locus),
             across(locus, 1),
             across(locus, 0),
             str(len(locus)),
@@ -98,6 +98,12 @@ def _tables(chart: Chart) -> list[Table]:
     found += [Table(("point", "kind", q, p, "on", "coefficients"), points)] if points else []
     head = (f"region at {q}", p, "share", "stable there (simulated)")
     return [*found, *([Table(head, regions)] if regions else [])]
+
+
+def _word(locus: Locus) -> str:
+    """Of the motion; "stuck" for one without events, nothing where solutions have no words."""
+    word = locus.branch.description.get("word")
+    return "" if word is None else short_word(str(word)) or "stuck"
 
 
 def _realness(locus: Locus) -> str:

@@ -128,6 +128,7 @@ def departures(
     amplitude: float,
     one_sided: bool,
     directions: list[np.ndarray] | None = None,
+    most: int | None = None,
 ) -> list[Departure]:
     """The branches that leave a branch point of the engine's problem.
 
@@ -146,9 +147,11 @@ def departures(
         The other side is an image of this one.
     directions : list of ndarray, optional
         Null vectors; computed if left out.
+    most : int, optional
+        How many null vectors there are at most: as many as multipliers are critical. Where equations are badly conditioned more seem to be.
     """
     if directions is None:
-        directions = null_vectors(engine, u, p, tangent)
+        directions = null_vectors(engine, u, p, tangent)[:most]
     if len(directions) > 1:
         return _multiple(engine, u, p, tangent, amplitude, one_sided, directions)
     found = [_depart(engine, u, p, tangent, amplitude, one_sided, direction) for direction in directions]

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.machines.base import Model
-from orbits.machines.path import along
+from orbits.machines.path import along, assign
 
 
 class RestKernels(NamedTuple):
-    """What a continuation and `newton` call; a state without events has no loci, so that what they need is not there."""
+    """What a continuation, a locus of its border, and `newton` call."""
 
     linearise: Any
     bordered: Any
@@ -20,10 +20,10 @@ class RestKernels(NamedTuple):
     examine: Any
     compiled: bool = False
     digest: str = "stuck"
-    assign: None = None
-    flip: None = None
-    transpose: None = None
-    column: int = -1
+    assign: Any = None
+    flip: None = None  # the unknowns hold no perturbations that could change sign
+    transpose: Any = None
+    column: int = 2
     matrix: None = None
 
 
@@ -37,8 +37,10 @@ class RestEquations:
     unit = np.ones((0, 1))  # there are no nodes
 
     def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
-        self.model, self.params, self.parameter = model, params, parameter
-        self.path = model.path(parameter, params)
+        self.model, self.params, self.parameter = model, params.copy(), parameter
+        self.path = model.path(parameter, params).copy()
+        self.law, self.active = model.law, model.place_of(parameter)
+        self.amounts = np.array(model.amounts(params), dtype=float) if len(self.law) else self.params
         self.dimension = model.rest.unknowns
         self.n_multipliers = model.rest.multipliers(params).size
         self.data = self
@@ -137,4 +139,10 @@ def _examine(data: RestEquations, u: np.ndarray, p: float, work: tuple, row: np.
     return residual
 
 
-KERNELS = RestKernels(_linearise, _bordered, _inspect, _newton, _examine)
+def _transpose(data: RestEquations, work: tuple, column: np.ndarray, other: tuple) -> None:
+    other[1][:], other[2][:] = work[1].T, column
+
+
+KERNELS = RestKernels(
+    _linearise, _bordered, _inspect, _newton, _examine, assign=assign.py_func, transpose=_transpose
+)

@@ -192,3 +192,35 @@ def test_touched_borders_open_as_their_coefficients_say(graph):
     for forcing, kept in ((point.value[1] - 0.02, True), (point.value[1] + 0.02, False)):
         orbit = Coupled(forcing=forcing, **MACHINE).orbit("LR", frequency=point.value[0])
         assert orbit.real is kept
+
+
+# ---------------------------------------------------------------------- where the absorber begins to move
+def forcing_that_moves_it(frequency):
+    """The oscillator with the absorber stuck is linear: its largest acceleration is mu g."""
+    eps, drag = MACHINE["mass_ratio"], MACHINE["mass_ratio"] * MACHINE["damping"] * frequency
+    response = eps * np.hypot(1.0, drag) / np.hypot(1.0 - (1.0 + eps) * frequency**2, drag)
+    return MACHINE["friction"] * MACHINE["gravity"] / (frequency**2 * response)
+
+
+@pytest.fixture(scope="module")
+def slipping():
+    """Stick-slip up to the border at which the slips vanish, and the absorber stuck beyond."""
+    orbit = Coupled(forcing=2.47, **MACHINE).attractor(frequency=1.06).orbit
+    return cv.diagram(orbit, over="frequency", within=(1.055, 1.09), depth=1)
+
+
+def test_the_border_of_the_stuck_absorber_has_a_locus_in_closed_form(slipping):
+    point = next(s for s in slipping.special.values() if s.kind == "stick")
+    assert forcing_that_moves_it(point.value) == pytest.approx(2.47, rel=1e-9)
+    locus = cv.locus(point, over="forcing", within=(1.0, 4.0), bounds=(1.02, 1.2))
+    assert len(locus) > 5 and locus.real.all()
+    for frequency, forcing in locus.values:
+        assert forcing == pytest.approx(forcing_that_moves_it(frequency), rel=1e-9)
+
+
+def test_a_chart_with_a_border_of_the_stuck_absorber(slipping):
+    chart = cv.chart(slipping, over="forcing", within=(2.4, 2.6), regions=False)
+    (locus,) = (one for one in chart.loci.values() if one.kind == "stick")
+    assert locus.values[:, 1].min() == pytest.approx(2.4) and locus.values[:, 1].max() == pytest.approx(2.6)
+    for frequency, forcing in locus.values:
+        assert forcing == pytest.approx(forcing_that_moves_it(frequency), rel=1e-9)
