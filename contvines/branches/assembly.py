@@ -66,13 +66,14 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
     special : list of int
         Indices of the special points.
     """
-    stable = engine.stable(spectrum)
+    outermost = engine.outermost(spectrum)
+    stable = outermost < 0.0
     n = len(stable)
     if n < 2:
         return stable
     is_special = np.zeros(n, dtype=bool)
     is_special[special] = True
-    telling = ~is_special & ~engine.marginal(spectrum, MARGINAL)
+    telling = ~is_special & ~(np.abs(outermost) <= MARGINAL)
     for start, stop in _runs(~is_special):
         known = start + np.flatnonzero(telling[start:stop])
         if len(known) == stop - start:

@@ -88,7 +88,10 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
-    sums = {name: part(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    in_any_order = njit(
+        fastmath={"reassoc", "contract", "nsz", "arcp"}, **OPTIONS
+    )  # NaN and infinity keep their meaning
+    sums = {name: in_any_order(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = part(copy_with(corrector.improve, suffix, **sums))
     # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
     # is compiled, the corrector is optimised once; inlined by force afterwards, twice.

@@ -8,6 +8,8 @@ from .chunk import Chunk
 from .engine import Engine, Solved
 from .status import Status
 
+NEAR = 1.5  # distances of neighbours from the start at which a branch may close
+
 
 class Closing:
     """Recognises that a branch comes back to its start, modulo the shift by a period."""
@@ -21,9 +23,12 @@ class Closing:
             None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
         )
 
-    def cut(self, chunk: Chunk) -> Chunk | None:
-        """The chunk up to the start, or None if it does not get there."""
+    def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
+        """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
         engine = self.engine
+        far = NEAR * apart * (engine.upper - engine.lower)
+        if self.start.p < chunk.values.min() - far or self.start.p > chunk.values.max() + far:
+            return None
         along = chunk.points @ self.border[:-1] + chunk.values * self.border[-1] - self.border @ self.z
         turns = np.zeros(len(chunk))
         if self.shift is not None:
@@ -37,7 +42,7 @@ class Closing:
             gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - self.z
             if self.shift is not None:
                 gaps = gaps - turns[pair, None] * self.shift
-            if np.sqrt((gaps**2) @ engine.weights).min() > 1.5 * engine.norm(gaps[1] - gaps[0]):
+            if np.sqrt((gaps**2) @ engine.weights).min() > NEAR * engine.norm(gaps[1] - gaps[0]):
                 continue
             share = along[i] / (along[i] - along[i + 1])
             guess = self.z + gaps[0] + share * (gaps[1] - gaps[0])

@@ -78,7 +78,8 @@ class Keeper:
         kind = typeof(frame)
         if not _plain(kind):
             if self.plain is None:
-                self.plain = self.make(njit(**self.options)(_itself))
+                itself: Any = njit(**self.options)
+                self.plain = self.make(itself(_itself))
             return self.plain, frame, None
         context: Any = cpu_target.target_context
         size = -(-context.get_abi_sizeof(context.get_data_type(kind)) // 8)

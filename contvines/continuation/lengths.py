@@ -30,10 +30,11 @@ def correction_size(step, u, p, metric):
     finite = step[n] - step[n]
     for i in range(n):
         finite += step[i] - step[i]
-        change = abs(step[i]) / (1.0 + abs(u[i]))
-        if change > size:
-            size = change
-    return size if finite == 0.0 else math.inf
+    if finite != 0.0:
+        return math.inf
+    for i in range(n):
+        size = max(size, abs(step[i]) / (1.0 + abs(u[i])))
+    return size
 
 
 def add(u, step):

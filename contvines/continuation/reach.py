@@ -47,11 +47,17 @@ class Reach:
             return 1.0
         return max(1.0, float(self._distances(point.u[None, :])[0]) / GROW)
 
-    def escapes(self, chunk: Chunk) -> int | None:
-        """Index of the first point at which the branch has run away, or None."""
+    def escapes(self, chunk: Chunk, apart: float = np.inf) -> int | None:
+        """Index of the first point at which the branch has run away, or None; neighbours are at most so far apart."""
         escape = self.engine.settings.escape
         if not self.learned:
-            away = _away(chunk.points, self.start.u, escape, self.engine.scale[:-1])
+            scale = self.engine.scale[:-1]
+            begin = float(
+                np.abs((chunk.points[0] - self.start.u) / scale).max()
+            )  # no root mean square is larger
+            if begin + len(chunk) * apart < escape:
+                return None
+            away = _away(chunk.points, self.start.u, escape, scale)
             return int(np.argmax(away)) if away.any() else None
         distances = self._distances(chunk.points)
         if not distances.max() > 0.5 * self.doubled:

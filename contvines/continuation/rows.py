@@ -8,6 +8,16 @@ from numpy.typing import NDArray
 from ..problems.protocol import Problem
 
 
+def _of_rows(extreme: np.ufunc, rows: np.ndarray) -> np.ndarray:
+    """The smallest or largest of each row; of few columns a column at a time, which takes a tenth of a reduction's time."""
+    if rows.ndim == 1 or rows.shape[-1] > 16:
+        return np.asarray(extreme.reduce(rows, axis=-1))
+    found = rows[..., 0].copy()
+    for j in range(1, rows.shape[-1]):
+        extreme(found, rows[..., j], out=found)
+    return found
+
+
 class Rows:
     """The part of an engine that reads rows: ``m`` multipliers as (re, im) pairs, then the margins.
 
@@ -30,8 +40,8 @@ class Rows:
 
     def spectrum(self, rows: np.ndarray) -> NDArray[np.complex128]:
         """Raw multipliers of some rows, shape (..., m)."""
-        m = self.m
-        return rows[..., 0 : 2 * m : 2] + 1j * rows[..., 1 : 2 * m : 2]
+        pairs = np.ascontiguousarray(rows[..., : 2 * self.m])
+        return pairs.view(np.complex128) + 0.0  # a copy, without negative zeros
 
     def margins(self, rows: np.ndarray) -> np.ndarray:
         """Margins of some rows, shape (..., n_margins); NaN counts as not applicable."""
@@ -43,14 +53,9 @@ class Rows:
             return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
         if margins.ndim == 1:
-            smallest = float(np.fmin.reduce(margins))
-            return np.asarray(smallest if smallest == smallest else np.inf)
-        if margins.shape[-1] > 16:
-            smallest = np.fmin.reduce(margins, axis=-1)
-        else:  # few columns, many rows
-            smallest = margins[..., 0].copy()
-            for j in range(1, margins.shape[-1]):
-                np.fmin(smallest, margins[..., j], out=smallest)
+            least = float(np.fmin.reduce(margins))
+            return np.asarray(least if least == least else np.inf)
+        smallest = _of_rows(np.fmin, margins)
         return np.where(np.isnan(smallest), np.inf, smallest)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:
@@ -59,21 +64,15 @@ class Rows:
 
     def stable(self, rows: np.ndarray) -> np.ndarray:
         """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows)."""
-        spectrum = self.spectrum(rows)
-        if self.problem.spectrum == "map":
-            return np.all(np.abs(spectrum) < 1.0, axis=-1)
-        if self.problem.spectrum == "flow":
-            return np.all(spectrum.real < 0.0, axis=-1)
-        return np.zeros(rows.shape[:-1], dtype=bool)
+        return self.outermost(rows) < 0.0
 
-    def marginal(self, rows: np.ndarray, tolerance: float) -> np.ndarray:
-        """Whether the outermost multiplier is on the unit circle (the imaginary axis) up to a tolerance."""
-        if self.problem.spectrum == "none" or not self.m:
-            return np.zeros(rows.shape[:-1], dtype=bool)
+    def outermost(self, rows: np.ndarray) -> np.ndarray:
+        """How far the outermost multiplier is outside the unit circle (right of the imaginary axis for flows); NaN where nothing says."""
+        if self.problem.spectrum not in ("map", "flow"):
+            return np.full(rows.shape[:-1], np.nan)
+        if not self.m:
+            return np.full(rows.shape[:-1], -np.inf)
         spectrum = self.spectrum(rows)
-        outermost = (
-            spectrum.real.max(axis=-1)
-            if self.problem.spectrum == "flow"
-            else np.abs(spectrum).max(axis=-1) - 1.0
-        )
-        return np.abs(outermost) <= tolerance
+        if self.problem.spectrum == "flow":
+            return _of_rows(np.maximum, spectrum.real)
+        return _of_rows(np.maximum, np.abs(spectrum)) - 1.0

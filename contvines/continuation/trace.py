@@ -19,6 +19,7 @@ from .engine import Engine, Solved
 from .reach import Reach
 from .settings import Settings
 from .status import Status
+from .step_rule import BY_ANGLE
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 FEWEST = 8  # points in a chunk, however many unknowns there are
@@ -95,9 +96,10 @@ def chunks(
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
             room = min(room, max(settings.max_points - total, 1))
+            apart = _apart(engine, max(h, longest))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
-            closed = closing.cut(chunk)
-            away = reach.escapes(chunk)
+            closed = closing.cut(chunk, apart)
+            away = reach.escapes(chunk, apart)
             if closed is not None:
                 chunk = closed
             elif away is not None:
@@ -150,6 +152,14 @@ def _march(
             engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch
         )
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
+
+
+def _apart(engine: Engine, longest: float) -> float:
+    """The largest distance of neighbours after steps of at most this length; of a user's step rule nothing is known.
+
+    The rule allows an error of angle < 1 times the length, and the step to the end of the interval may be 1.5^2 times as long.
+    """
+    return 4.5 * longest if engine.settings.step_rule is BY_ANGLE else np.inf
 
 
 def _pack(solved: list[Solved], status: Status) -> Chunk:

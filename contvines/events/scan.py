@@ -70,8 +70,8 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
     whole = 0.0
     for j in range(columns):
         whole += shift[j] * shift[j]
-    plus, minus, pairs, damping = 0, 0, 0, 0.0
-    before, before_that = 0.0, 0.0  # damping of the two points before
+    plus, minus, pairs, outermost = 0, 0, 0, 0.0
+    before, before_that = 0.0, 0.0  # outermost multiplier of the two points before
     short = 0.0  # length of the segment before
     for i in range(count):
         # smallest margin; comparisons pass over NaN
@@ -89,6 +89,7 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
         smallest[i] = min(min(a, b), min(c, d))
         # multipliers past the circle
         old_plus, old_minus, old_pairs = plus, minus, pairs
+        before_that, before = before, outermost
         plus, minus, pairs = 0, 0, 0
         outermost = -np.inf
         for j in range(0, first_margin, 2):
@@ -109,11 +110,6 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
                     pairs += im > 0.0 and re > PAST
             elif kind == REAL:
                 plus += re > PAST
-        before_that, before = before, damping
-        if kind == MAP:
-            damping = -math.log(outermost) if outermost > 0.0 else np.inf
-        else:
-            damping = -outermost
         # the part that a symmetry changes, modulo shifts by a period
         now = i % 2
         for s in range(orders.shape[0]):
@@ -162,16 +158,33 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
             if i > 1 and dips(side * slopes[i - 2], side * here, side * there, short, length):
                 flags[i - 2] |= HUMP
                 flags[i - 1] |= HUMP
-        if i > 1:
+        if i > 1 and short > 0.0 and length > 0.0:
+            # a parabola through three values falls below the lowest of them by at most this part of the changes between them
+            uneven = max(short / length, length / short)
+            share = 0.25 * uneven * uneven
+            a, b, c = smallest[i - 2], smallest[i - 1], smallest[i]
             if real and (
-                dips(smallest[i - 2], smallest[i - 1], smallest[i], short, length)
-                or one_dips(rows, i, first_margin, short, length)
+                (min(min(a, b), c) < share * (abs(b - a) + abs(c - b)) and dips(a, b, c, short, length))
+                or one_dips(rows, i, first_margin, short, length, share)
             ):
                 flags[i - 2] |= SHALLOW
                 flags[i - 1] |= SHALLOW
-            if kind in (MAP, FLOW) and first_margin > 0 and dips(before_that, before, damping, short, length):
-                flags[i - 2] |= DAMPED
-                flags[i - 1] |= DAMPED
+            if kind in (MAP, FLOW) and first_margin > 0:
+                a, b, c = before_that, before, outermost
+                most, least, changes = max(max(a, b), c), min(min(a, b), c), abs(b - a) + abs(c - b)
+                if kind == FLOW:
+                    lost = dips(-a, -b, -c, short, length)
+                else:
+                    # -log x is at least 1 - x, and steepest at the least x; logarithms take longer than all else here
+                    lost = (
+                        least > 0.0
+                        and most < 1.0
+                        and (1.0 - most) * least < share * changes
+                        and dips(-math.log(a), -math.log(b), -math.log(c), short, length)
+                    )
+                if lost:
+                    flags[i - 2] |= DAMPED
+                    flags[i - 1] |= DAMPED
         short = length
 
 
@@ -190,12 +203,11 @@ def dips(left, middle, right, h1, h2):
     return -h1 < vertex < h2 and middle - 0.25 * slope * slope / bend < 0.0
 
 
-def one_dips(rows, i, first_margin, h1, h2):
-    """Whether one of the margins dips before point i, be others smaller or lost: by the parabola through the last three points."""
-    if not (h1 > 0.0 and h2 > 0.0):
-        return False
-    # a parabola through the three falls below the lowest of them by at most this part of the changes between them
-    share = 0.25 * max(h1 / h2, h2 / h1) ** 2
+def one_dips(rows, i, first_margin, h1, h2, share):
+    """Whether one of the margins dips before point i, be others smaller or lost: by the parabola through the last three points.
+
+    Below the lowest of them a parabola falls by at most ``share`` of the changes between them.
+    """
     suspects = 0
     for j in range(first_margin, rows.shape[1]):
         a, b, c = rows[i - 2, j], rows[i - 1, j], rows[i, j]

@@ -328,7 +328,7 @@ def _inside(position: float) -> float:
 
 def without_zeros(signs: np.ndarray) -> np.ndarray:
     """Signs in which a zero (a point that is singular to roundoff) has taken the sign before it."""
-    if np.all(signs):
+    if np.count_nonzero(signs) == len(signs):
         return signs
     signs = signs.copy()
     for i in np.flatnonzero(signs == 0.0):

@@ -82,6 +82,8 @@ def watch(data, u, work, law, out):
     # s w' has its interior minima where sin Psi = -s k_s/peak and s cos Psi < 0, with k_s = a_s + s b
     left_ratio, left_reversal = reversal(law.pull_left, peak)
     right_ratio, right_reversal = reversal(-law.pull_right, peak)
+    left_cosine = -np.sqrt(max(0.0, 1.0 - left_ratio * left_ratio))
+    right_cosine = np.sqrt(max(0.0, 1.0 - right_ratio * right_ratio))
     for i in range(length):
         event = events[i]
         mode = modes[i]
@@ -127,7 +129,7 @@ def watch(data, u, work, law, out):
                 # a slip starts at such a minimum, which is not inside the flight; the next one is 2 pi away
                 early = 1.0 if event == 4 else (1e-9 if event >= 2 else 0.0)
                 if last > psi0 + early:
-                    cosine = -mode * np.sqrt(1.0 - ratio * ratio)
+                    cosine = left_cosine if mode > 0 else right_cosine
                     # s w' = s (speed cos - beta) - k_s (t - t0): the last minimum is the lowest one, the first one if k_s < 0
                     if pull < 0.0:
                         last -= two_pi * np.ceil((last - psi0 - early) / two_pi - 1.0)

@@ -113,16 +113,3 @@ def test_tuples_are_kept_by_their_types():
         function, address, memory = keeper.keep(frame)
         assert memory is not None and function(address) == array.sum() + 0.5
     assert len(made) == 3
-
-
-def test_tuples_with_more_than_arrays_and_numbers_are_handed_over_themselves():
-    def make(unpack):
-        def first(frame):
-            _, number = unpack(frame)
-            return number
-
-        return njit(**OPTIONS)(first)
-
-    frame = (range(3), 0.5)
-    function, argument, memory = Keeper(make, OPTIONS, "of_that_test").keep(frame)
-    assert memory is None and argument is frame and function(argument) == 0.5
