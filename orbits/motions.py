@@ -62,8 +62,10 @@ class Simulated:
         if not len(self.word):
             raise ValueError("the absorber that never slides has no section")
         code, mode = int(self.word.codes[0]), int(self.word.mode_codes[0])
+        params = self.values(p)
         unit = unit_nodes(self.word, self.model.node, self.units)[0]
-        return Section(stepper(self.model.name), self.values(p), code, mode, self.periods, unit)
+        left, right = (float(r) for r in self.model.restitutions(params))
+        return Section(stepper(self.model.name), params, code, mode, self.periods, unit, (left, right))
 
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter of the machine cannot have.

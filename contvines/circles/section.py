@@ -10,6 +10,8 @@ The contract, in words:
 5. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
 6. ``section.varied(x)``, where a section has it: the next point with its derivatives by x, shape (d, d), and by the parameter, shape
    (d,); NaN where they are not known. Without it differences of ``step`` stand in.
+7. ``section.struck(x, near)``, where a section has it: of a point at a wall, or no farther from it than `near`, the other point there from
+   which the motion goes on alike (just before and just after an impact); None elsewhere.
 """
 
 from __future__ import annotations
@@ -40,6 +42,13 @@ class Varied(Protocol):
     """A section that knows the derivatives of its steps."""
 
     def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+
+
+@runtime_checkable
+class Walled(Protocol):
+    """A section that knows the walls at which motions rebound."""
+
+    def struck(self, x: np.ndarray, near: float) -> np.ndarray | None: ...
 
 
 def section_of(problem: Problem, p: float) -> Section:

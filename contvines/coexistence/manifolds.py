@@ -1,7 +1,8 @@
 """Stable manifolds of saddles on a plane section: the curves that separate basins.
 
 They are grown without the inverse of the motion (England, Krauskopf and Osinga, SIAM J. Appl. Dyn. Syst. 3 (2004) 161): the next
-point lies on a small circle round the last one, where its image falls on the part of the curve that is known already.
+point lies on a small circle round the last one, where its image falls on the part of the curve that is known already. At a wall a curve
+goes on from the other velocity there: just before an impact and just after it the motion is one and the same.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..circles.section import section_of
+from ..circles.section import Section, Walled, section_of
 from ..graph.graph import Graph
 from .solutions import solutions_at
 
@@ -25,6 +26,8 @@ TURN, STRAIGHT = (
 )  # angles between two steps beyond which the radius shrinks, and below which it grows
 CORNER = 1e-3  # of the plane's size: radius below which the curve may have a corner, as where an impact begins to be missed
 BENT = 2.6  # largest angle of a corner
+INWARD = 1.55  # largest angle to the inward normal at which a curve comes out of a wall
+PIECES = 40  # of a curve between walls, at most
 ARCS = 12  # candidates on the part of a circle that is searched
 REFINED = 40  # halvings of an angle
 DIFFERENCE = 1e-6  # of the plane's size: for the derivative at the saddle
@@ -41,9 +44,10 @@ class Manifold:
         Of the saddle.
     word : str
     points : float array (n, 2)
-        From the saddle outwards.
+        From the saddle outwards, or from a wall on at which the one before it ends.
     ended : str
-        ``leaves`` the plane, is ``long``, or ``breaks``: where the motion is not continuous the curve cannot be followed further.
+        ``leaves`` the plane, comes to a ``wall`` and goes on in the next one, is ``long``, or ``breaks``: cannot be followed further, as
+        where the motion is not continuous.
     """
 
     branch: str
@@ -90,7 +94,7 @@ def stable_manifolds(
                 continue
             word = str(branch.description.get("word", branch.label))
             for place in _places(branch.problem, section, u):
-                for points, ended in _halves(section.step, place, limits, longest):
+                for points, ended in _halves(section, place, limits, longest):
                     found.append(Manifold(branch.label, word, points, ended))
     return found
 
@@ -139,8 +143,10 @@ def _saddles(branch: Any, at: float) -> list[np.ndarray]:
 
 
 def _halves(
-    step: Callable[[np.ndarray], np.ndarray], place: np.ndarray, limits: np.ndarray, longest: float
+    section: Section, place: np.ndarray, limits: np.ndarray, longest: float
 ) -> list[tuple[np.ndarray, str]]:
+    """The pieces of both halves, and how each ends."""
+    step = section.step
     size = float(np.ptp(limits, axis=1).max())
     jacobian = np.empty((2, 2))
     for j in range(2):
@@ -157,58 +163,98 @@ def _halves(
     k = int(np.abs(values).argmin())
     twice = float(values.real[k]) < 0.0  # the two halves change places: every second image stays on one
     image = (lambda x: step(step(x))) if twice else step
-    return [_grown(image, place, side * vectors.real[:, k], limits, size, longest) for side in (1.0, -1.0)]
+    struck = section.struck if isinstance(section, Walled) else None
+    pieces = []
+    for side in (1.0, -1.0):
+        ray = side * vectors.real[:, k] / np.linalg.norm(vectors.real[:, k])
+        pieces += _Half(image, struck, place, ray, limits).grown(longest)
+    return pieces
 
 
-def _grown(
-    image: Callable[[np.ndarray], np.ndarray],
-    place: np.ndarray,
-    direction: np.ndarray,
-    limits: np.ndarray,
-    size: float,
-    longest: float,
-) -> tuple[np.ndarray, str]:
-    points = [place, place + FIRST * size * direction / np.linalg.norm(direction)]
-    radius, length, at = FIRST * size, FIRST * size, 0
-    ended = "long"
-    while length < longest * size:
-        heading = points[-1] - points[-2]
-        found = _next(image, points, heading, radius, at, TURN)
-        if found is None and radius < CORNER * size:
-            found = _next(image, points, heading, radius, at, BENT)
-        if found is None:
-            radius *= 0.5
-            if radius < SMALLEST * size:
-                edge = np.abs(points[-1][:, None] - limits).min() < CORNER * size  # no start beyond a wall
-                ended = "leaves" if edge else "breaks"
+class _Half:
+    """One half of a stable manifold while it grows; pieces of it follow one another through walls."""
+
+    def __init__(
+        self,
+        image: Callable[[np.ndarray], np.ndarray],
+        struck: Callable[[np.ndarray, float], np.ndarray | None] | None,
+        place: np.ndarray,
+        ray: np.ndarray,
+        limits: np.ndarray,
+    ) -> None:
+        self.image, self.struck, self.limits = image, struck, limits
+        self.size = float(np.ptp(limits, axis=1).max())
+        self.pieces = [[place, place + FIRST * self.size * ray]]
+        self.heading, self.at, self.length = ray, 0, FIRST * self.size
+
+    def grown(self, longest: float) -> list[tuple[np.ndarray, str]]:
+        """The pieces, and how each ends."""
+        ends = [self._on(FIRST * self.size, TURN, longest * self.size)]
+        while ends[-1] == "leaves" and self._through():
+            ended = self._on(CORNER * self.size, INWARD, longest * self.size)
+            if len(self.pieces[-1]) == 1:  # it does not come out of the wall
+                self.pieces.pop()
                 break
-            continue
-        point, at, turn = found
-        points.append(point)
-        length += radius
-        if np.any(point < limits[:, 0]) or np.any(point > limits[:, 1]):
-            ended = "leaves"
-            break
-        if turn < STRAIGHT:
-            radius = min(2.0 * radius, LARGEST * size)
-    return np.array(points), ended
+            ends[-1] = "wall"
+            ends.append("long" if len(ends) + 1 == PIECES else ended)
+        return [(np.array(points), end) for points, end in zip(self.pieces, ends, strict=True)]
+
+    def _on(self, radius: float, widest: float, longest: float) -> str:
+        """Grow the last piece as far as it goes."""
+        points, size, limits = self.pieces[-1], self.size, self.limits
+        while self.length < longest:
+            starts, ends = self._segments()
+            known = (starts, ends, self.at)
+            found = _next(self.image, known, points[-1], self.heading, radius, widest)
+            if found is None and widest == TURN and radius < CORNER * size:
+                found = _next(self.image, known, points[-1], self.heading, radius, BENT)
+            if found is None:
+                radius *= 0.5
+                if radius < SMALLEST * size:
+                    # no start beyond a wall
+                    edge = len(points) > 1 and np.abs(points[-1][:, None] - limits).min() < CORNER * size
+                    return "leaves" if edge else "breaks"
+                continue
+            point, self.at, turn = found
+            self.heading = point - points[-1]
+            points.append(point)
+            self.length += radius
+            if np.any(point < limits[:, 0]) or np.any(point > limits[:, 1]):
+                return "leaves"
+            if turn < STRAIGHT or widest > TURN:
+                radius = min(2.0 * radius, LARGEST * size)
+            widest = TURN
+        return "long"
+
+    def _through(self) -> bool:
+        """Begin another piece on the other side of an impact; whether there is one within the plane."""
+        last = self.pieces[-1][-1]
+        other = None if self.struck is None else self.struck(last, CORNER * self.size)
+        if other is None or np.any(other < self.limits[:, 0]) or np.any(other > self.limits[:, 1]):
+            return False
+        self.pieces.append([other])
+        self.heading = np.array([self.limits[0].mean() - other[0], 0.0])
+        return True
+
+    def _segments(self) -> tuple[np.ndarray, np.ndarray]:
+        """Where the segments of all pieces begin and end."""
+        pieces = [np.array(points) for points in self.pieces]
+        return np.concatenate([x[:-1] for x in pieces]), np.concatenate([x[1:] for x in pieces])
 
 
 def _next(
     image: Callable[[np.ndarray], np.ndarray],
-    points: list[np.ndarray],
+    known: tuple[np.ndarray, np.ndarray, int],
+    last: np.ndarray,
     heading: np.ndarray,
     radius: float,
-    at: int,
     widest: float,
 ) -> tuple[np.ndarray, int, float] | None:
-    """The point on the circle whose image lies on the curve, the segment on which it lies, and the angle turned by."""
+    """The point on the circle whose image lies on the known segments, from `known[2]` on, the segment on which it lies, and the angle turned by."""
     middle = np.arctan2(heading[1], heading[0])
-    known = np.array(points)
 
     def offset(angle: float) -> tuple[float, int]:
-        point = points[-1] + radius * np.array([np.cos(angle), np.sin(angle)])
-        return _beside(known, image(point), at)
+        return _beside(*known, image(last + radius * np.array([np.cos(angle), np.sin(angle)])))
 
     count = int(np.ceil(ARCS * max(1.0, widest))) if widest > TURN else ARCS
     turns = [float(turn) for turn in widest * np.linspace(-1.0, 1.0, count + 1)]
@@ -221,7 +267,7 @@ def _next(
         (a, _), (b, _) = sides[low], sides[high]
         if not (np.isfinite(a) and np.isfinite(b)) or a * b > 0.0:
             continue
-        segment = at
+        segment = known[2]
         for _ in range(REFINED):
             half = 0.5 * (low + high)
             value, segment = offset(middle + half)
@@ -235,19 +281,19 @@ def _next(
             continue
         angle = middle + 0.5 * (low + high)
         return (
-            points[-1] + radius * np.array([np.cos(angle), np.sin(angle)]),
+            last + radius * np.array([np.cos(angle), np.sin(angle)]),
             segment,
             abs(0.5 * (low + high)),
         )
     return None
 
 
-def _beside(known: np.ndarray, point: np.ndarray, at: int) -> tuple[float, int]:
-    """Signed distance of a point to the known curve near its segment `at` or later ones, and the nearest segment."""
+def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int]:
+    """Signed distance of a point to known segments near that numbered `at` or later ones, and the nearest segment."""
     if not np.all(np.isfinite(point)):
         return float("nan"), at
     first = max(at - 2, 0)
-    starts, ends = known[first:-1], known[first + 1 :]
+    starts, ends = starts[first:], ends[first:]
     along = ends - starts
     lengths = np.maximum((along * along).sum(axis=1), 1e-300)
     part = ((point - starts) * along).sum(axis=1) / lengths

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
+from ..graph.shortening import short_word
 from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 ENDS = {
     "leaves": "leaves the plane",
     "long": "cut where it was very long",
-    "breaks": "cut where the motion is not continuous",
+    "breaks": "cut where it cannot be followed",
 }
 
 
@@ -65,8 +66,13 @@ def _boundary(basins: Basins) -> list[str]:
         lines.append(f"uncertainty exponent of the boundary: {exponent:.2f} +- {error:.2f}")
     except ValueError:
         pass
-    for curve in basins.manifolds:
+    for branch, word in dict.fromkeys((curve.branch, curve.word) for curve in basins.manifolds):
+        pieces = [curve for curve in basins.manifolds if (curve.branch, curve.word) == (branch, word)]
+        ends = [curve.ended for curve in pieces if curve.ended in ENDS]
+        counted = [f"{ends.count(name)} {text}" for name, text in ENDS.items() if name in ends]
+        points = sum(len(curve.points) for curve in pieces)
+        several = f" in {len(pieces)} pieces between walls" if len(pieces) > len(ends) else ""
         lines.append(
-            f"stable manifold of {curve.word} on {curve.branch}: {len(curve.points)} points, {ENDS[curve.ended]}"
+            f"stable manifold of {short_word(word)} on {branch}: {points} points{several}; of {len(ends)} halves {', '.join(counted)}"
         )
     return lines

@@ -24,13 +24,23 @@ class Section:
         Forcing periods of the cycle.
     unit : ndarray, shape (n,)
         What 1 is in each of the first node's unknowns, in the machine's units.
+    restitutions : (float, float)
+        Of the left and of the right wall.
     """
 
     def __init__(
-        self, engine: Machine, params: np.ndarray, code: int, mode: int, periods: int, unit: np.ndarray
+        self,
+        engine: Machine,
+        params: np.ndarray,
+        code: int,
+        mode: int,
+        periods: int,
+        unit: np.ndarray,
+        restitutions: tuple[float, float],
     ) -> None:
         self.engine, self.params = engine, params
         self.code, self.mode, self.periods, self.unit = code, mode, periods, unit
+        self.restitutions = restitutions
         self.places = list(engine.places)
         self.scratch = buffers(engine, 64)
 
@@ -59,6 +69,15 @@ class Section:
             return np.full(len(self.places), np.nan)
         self.engine.launch(state, self.params)
         return self._after(state, float(self.periods))
+
+    def struck(self, x: np.ndarray, near: float) -> np.ndarray | None:
+        """Of a point at a wall the other one there: just after the impact, or just before it; None elsewhere."""
+        for wall, side, r in zip(self.engine.walls(self.params), (1.0, -1.0), self.restitutions):
+            if abs(x[0] - wall) < near and x[1] != 0.0:
+                other = np.array(x, dtype=float)
+                other[0], other[1] = wall, -x[1] * r if side * x[1] > 0.0 else -x[1] / r
+                return other if np.all(np.isfinite(other)) else None
+        return None
 
     def _first(self, u: np.ndarray) -> np.ndarray:
         """The state right after the first event."""

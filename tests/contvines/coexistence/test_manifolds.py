@@ -69,6 +69,17 @@ def test_the_two_sides_of_a_manifold_reach_different_motions(absorber):
             motions, index, _ = population.settle(np.column_stack([np.zeros(len(states)), states]), 0.3)
             sides.append(np.array([motions[k].word for k in index]))
         assert np.all(sides[0] != sides[1])
+    # every cell beside one of another colour lies beside a curve: they go on from wall to wall
+    points = np.concatenate([curve.points for curve in found.manifolds])
+    cells = np.array([found.x[1] - found.x[0], found.y[1] - found.y[0]])
+    differ = found.index[:, 1:] != found.index[:, :-1]
+    middles = [(0.5 * (found.x[j] + found.x[j + 1]), found.y[i]) for i, j in np.argwhere(differ)]
+    differ = found.index[1:] != found.index[:-1]
+    middles += [(found.x[j], 0.5 * (found.y[i] + found.y[i + 1])) for i, j in np.argwhere(differ)]
+    assert len(middles) > 40
+    for middle in middles:
+        assert np.abs((points - middle) / cells).max(axis=1).min() < 1.0
+    assert {curve.ended for curve in found.manifolds} == {"wall", "leaves"}
     assert json.loads(json.dumps(found.to_dict()))["manifolds"][0]["word"] == "LR"
     lines = found.plot().axes[0].lines
     assert len(lines) == len(found.manifolds)

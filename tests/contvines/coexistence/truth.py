@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import contvines as cv
+from contvines.coexistence.solutions import solutions_at
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
@@ -211,13 +212,23 @@ def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: 
 
 
 def listed_twice(graph: cv.Graph) -> list[str]:
-    """Attractors that stand twice at one value."""
+    """Attractors that stand more often at one value than their branch has stable solutions there."""
     seen: dict[tuple, int] = {}
     for a in graph.attractors:
         if a.branch is not None:
             key = (a.value, a.starts, a.branch, a.word, a.periods)
             seen[key] = seen.get(key, 0) + 1
-    return [f"{word} on {label} at {value}" for (value, _, label, word, _), n in seen.items() if n > 1]
+    return [
+        f"{word} on {label} at {value}"
+        for (value, _, label, word, _), n in seen.items()
+        if n > 1 and n > _stable_on(graph[label], value)
+    ]
+
+
+def _stable_on(branch: Any, p: float) -> int:
+    """Stable solutions of a branch at a value: it may pass there more than once."""
+    engine, solved = solutions_at(branch, p)
+    return sum(bool((np.abs(engine.multipliers(one.row)) < 1.0).all()) for one in solved)
 
 
 def _impacts_on(branch: Any, p: float, within: tuple[float, float], engines: dict) -> Iterator[np.ndarray]:
