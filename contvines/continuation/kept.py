@@ -84,8 +84,10 @@ class Keeper:
         context: Any = cpu_target.target_context
         size = -(-context.get_abi_sizeof(context.get_data_type(kind)) // 8)
 
+        writes: Any = _save
+
         def save(address, frame):
-            return _save(address, frame)
+            return writes(address, frame)
 
         save.__qualname__ = f"save_{self.suffix}"
         compiled: Any = njit(types.int64(types.int64, kind), cache=True, **self.options)
