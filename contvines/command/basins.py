@@ -5,13 +5,14 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.amounts import amount
 from contvines.command.options import SizeOption
 from contvines.command.run import StudyArgument
 
 
 def basins(
     study: StudyArgument,
-    at: Annotated[float, typer.Option("--at", metavar="VALUE", help="Value of the study's parameter.")],
+    at: Annotated[str, typer.Option("--at", metavar="VALUE", help="Value of the study's parameter.")],
     plane: Annotated[
         tuple[str, str] | None,
         typer.Option(
@@ -51,10 +52,12 @@ def basins(
         check_picture(plot)
         check_size(size)
     asked = checked_study(study)
+    own = machine(asked)
+    value = amount("--at", at, asked.parameter, getattr(own, "units", {}))
     fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
-    population = population_of(machine(asked), asked.parameter, **fixed)
+    population = population_of(own, asked.parameter, **fixed)
     graph: Any = None if saddles is None else contvines.load(saddles)
-    found = contvines.basins(population, at=at, plane=plane, points=points, saddles=graph)
+    found = contvines.basins(population, at=value, plane=plane, points=points, saddles=graph)
     if json:
         from contvines.export import json_text
 

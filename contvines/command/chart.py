@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.amounts import interval
 from contvines.command.options import TrustOption
 from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
 from contvines.command.stored import refuse_detached
@@ -20,8 +21,12 @@ def chart(
         typer.Option("--over", metavar="NAME", help="The second parameter; by default [chart] parameter."),
     ] = None,
     within: Annotated[
-        tuple[float, float] | None,
-        typer.Option("--within", metavar="LOW HIGH", help="Its interval; by default [chart] within."),
+        tuple[str, str] | None,
+        typer.Option(
+            "--within",
+            metavar="LOW HIGH",
+            help="Its interval, numbers or quantities as '0.1 mm' '0.6 mm'; by default [chart] within.",
+        ),
     ] = None,
     output: Annotated[
         Path | None,
@@ -40,12 +45,12 @@ def chart(
 
     target = output or beside(file, "-chart.vines")
     check_place(target)
-    graph, over, within = _diagram(file, over, within, trust, quiet)
-    check(within, plot, target, file)
+    check(plot, target, file)
+    graph, over, ends = _diagram(file, over, within, trust, quiet)
     refuse_detached(
         graph, (label for label, point in graph.special.items() if point.kind not in ("end", "user"))
     )
-    fingerprint = _fingerprint(graph, over, within, virtual)
+    fingerprint = _fingerprint(graph, over, ends, virtual)
     found: Any = None
     if target.exists():
         with Store.open(target) as store:
@@ -63,10 +68,10 @@ def chart(
         note = f"all finished points are kept in {target}; the same command goes on from there"
         begun = False
         try:
-            with Store.attach(target, fingerprint, {"chart": [over, *within]}) as store:
+            with Store.attach(target, fingerprint, {"chart": [over, *ends]}) as store:
                 with interruptible(note), shown(quiet=quiet) as progress:
                     try:
-                        found = make(graph, over, within, virtual=virtual, journal=store, progress=progress)
+                        found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
                     finally:
                         begun = store.records > 0
                 store.tidy()
@@ -78,7 +83,7 @@ def chart(
 
 
 def _diagram(
-    file: Path, over: str | None, within: tuple[float, float] | None, trust: bool, quiet: bool
+    file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, quiet: bool
 ) -> tuple[Any, str, tuple[float, float]]:
     """The diagram to chart, made first if a study is given, and what to chart it over."""
     from contvines.command.study import is_database
@@ -92,21 +97,25 @@ def _diagram(
         if over is None or within is None:
             missing = "--over" if over is None else "--within"
             raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8 would do.")
-        return graph, over, within
+        return graph, over, interval("--within", within, over, graph.units)
     from contvines.command.compose import beside, checked_study
     from contvines.command.run import diagram
 
     study = checked_study(file)
+    said = None
     if study.chart is not None:
         over = over or study.chart.parameter
-        within = within or (study.chart.within[0], study.chart.within[1])
-    if over is None or within is None:
+        said = (study.chart.within[0], study.chart.within[1])
+    if over is None or (within is None and said is None):
         raise ValueError(
             f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
             "parameter and within."
         )
     diagram(file, quiet=True)
-    return load(beside(file, ".vines")), over, within
+    graph = load(beside(file, ".vines"))
+    ends = said if within is None else interval("--within", within, over, graph.units)
+    assert ends is not None
+    return graph, over, ends
 
 
 def _fingerprint(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:

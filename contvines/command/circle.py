@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from contvines.command.amounts import amount
 from contvines.command.options import FileArgument, SizeOption, TrustOption
 from contvines.command.stored import refuse_detached
 
@@ -13,7 +14,7 @@ def circle(
     file: FileArgument,
     label: Annotated[str, typer.Argument(metavar="LABEL", help="A Neimark-Sacker point, for example NS1.")],
     to: Annotated[
-        float | None,
+        str | None,
         typer.Option(
             "--to", metavar="VALUE", help="Parameter value to go to; by default half the size of the motion."
         ),
@@ -42,7 +43,7 @@ def circle(
             f"{file}: {label} is no label of it; its Neimark-Sacker points are {known or 'none'}."
         )
     refuse_detached(graph, [label])
-    found = special[label].circles(to)
+    found = special[label].circles(None if to is None else amount("--to", to, graph.parameter, graph.units))
     if json:
         import json as text
 

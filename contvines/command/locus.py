@@ -5,13 +5,17 @@ from typing import Annotated
 
 import typer
 
+from contvines.command.amounts import interval
 from contvines.command.options import FileArgument, TrustOption
 from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
 from contvines.command.stored import refuse_detached
 
 OverOption = Annotated[str, typer.Option("--over", metavar="NAME", help="The second parameter.")]
 WithinOption = Annotated[
-    tuple[float, float], typer.Option("--within", metavar="LOW HIGH", help="Its interval.")
+    tuple[str, str],
+    typer.Option(
+        "--within", metavar="LOW HIGH", help="Its interval: numbers, or quantities as '0.1 mm' '0.6 mm'."
+    ),
 ]
 
 
@@ -40,7 +44,7 @@ def locus(
 
     target = output or beside(file, f"-{label}.vines")
     check_place(target)
-    check(within, plot, target, file)
+    check(plot, target, file)
     graph = load(file, trust=trust)
     refuse_charts(graph, file)
     if label not in graph.special:
@@ -49,10 +53,11 @@ def locus(
             f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
         )
     refuse_detached(graph, [label])
+    ends = interval("--within", within, over, graph.units)
     from contvines.command.progress import shown
     from contvines.loci.charting import chart_of_one
 
     with shown(quiet=quiet) as progress:
-        found = chart_of_one(graph, label, over, within, virtual=virtual, progress=progress)
+        found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress)
     found.save(target)
     tell(found, target, plot, quiet)

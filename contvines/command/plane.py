@@ -14,11 +14,8 @@ VirtualOption = Annotated[
 ]
 
 
-def check(within: tuple[float, float], plot: Path | None, target: Path, source: Path) -> None:
-    """Refuse an interval or a place that will not do, before any work."""
-    low, high = within
-    if not low < high:
-        raise ValueError(f"--within {low:g} {high:g}: give the lower number first, then the higher one.")
+def check(plot: Path | None, target: Path, source: Path) -> None:
+    """Refuse a place that will not do, before any work."""
     if target.resolve() == source.resolve():
         raise ValueError(f"{target}: this is the file itself; choose another name with -o.")
     if plot is not None:

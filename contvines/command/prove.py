@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.amounts import interval
 from contvines.command.options import TrustOption
 from contvines.text_table import fitted
 
@@ -36,7 +37,7 @@ def prove(
         typer.Option("--bits", min=64, max=4096, help="Precision to begin with; raised where that helps."),
     ] = None,
     within: Annotated[
-        tuple[float, float] | None,
+        tuple[str, str] | None,
         typer.Option(
             "--within", metavar="LOW HIGH", help="Of branches, prove just this interval of the parameter."
         ),
@@ -90,7 +91,7 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
 
 
 def _of_file(
-    file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[float, float] | None
+    file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
 ) -> dict[str, Any]:
     from contvines.command.run import interruptible
     from contvines.graph.proving import prove as prove_labels
@@ -102,11 +103,10 @@ def _of_file(
         raise ValueError(f"{file} has no special points to prove; give branches or orbits, B1 or B1:12.")
     if within is not None and not (labels and all(label in graph.branches for label in labels)):
         raise ValueError(
-            f"--within {within[0]:g} {within[1]:g} is for branches; name them, {next(iter(graph.branches))} for one."
+            f"--within {within[0]} {within[1]} is for branches; name them, {next(iter(graph.branches))} for one."
         )
-    if within is not None and not within[0] < within[1]:
-        raise ValueError(f"--within {within[0]:g} {within[1]:g} is empty; LOW < HIGH would do.")
-    options = {} if within is None else {"within": within}
+    ends = None if within is None else interval("--within", within, graph.parameter, graph.units)
+    options = {} if ends is None else {"within": ends}
     for label in labels:
         subject(graph, label)
     proofs: dict[str, Any] = {}

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.amounts import amount
 from contvines.command.options import FileArgument, SizeOption, TrustOption
 
 
@@ -14,7 +15,7 @@ def robustness(
         str, typer.Argument(metavar="LABEL", help="A branch (B1), or one of its stable points (B1:12).")
     ],
     at: Annotated[
-        float | None, typer.Option("--at", metavar="VALUE", help="Of a branch, the value of its parameter.")
+        str | None, typer.Option("--at", metavar="VALUE", help="Of a branch, the value of its parameter.")
     ] = None,
     values: Annotated[
         int, typer.Option("--values", min=1, help="Of a whole branch, how many values of its stable part.")
@@ -56,19 +57,20 @@ def robustness(
     if name not in branches:
         raise ValueError(f"{file}: {name} is no branch of it; it has {', '.join(branches) or 'none'}.")
     branch = branches[name]
+    value = None if at is None else amount("--at", at, graph.parameter, graph.units)
     if place:
         if not place.isdigit() or int(place) >= len(branch):
             raise ValueError(f"{label}: the points of {name} are numbered from 0 to {len(branch) - 1}.")
-        at = float(branch.values[int(place)])
-    if plot is not None and at is not None:
+        value = float(branch.values[int(place)])
+    if plot is not None and value is not None:
         raise ValueError("--plot draws the erosion curve of a whole branch: leave out --at and the point.")
     found: Any
-    if at is None:
+    if value is None:
         if vary:
             raise ValueError("--vary needs one motion: give a point (B1:12), or --at VALUE.")
         found = contvines.erosion(branch, values, starts=starts, seed=seed)
     else:
-        found = contvines.robustness(branch, at, starts=starts, seed=seed, vary=tuple(vary or ()))
+        found = contvines.robustness(branch, value, starts=starts, seed=seed, vary=tuple(vary or ()))
     if json:
         from contvines.export import json_text
 

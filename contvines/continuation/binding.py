@@ -83,16 +83,14 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
-    in_any_order = njit(
-        fastmath={"reassoc", "contract", "nsz", "arcp"}, **OPTIONS
-    )  # NaN and infinity keep their meaning
+    # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
+    in_any_order = njit(fastmath={"reassoc", "contract", "nsz", "arcp"}, **OPTIONS)
     sums = {name: in_any_order(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
-    improve = part(copy_with(corrector.improve, suffix, **sums))
+    improve = copy_with(corrector.improve, suffix, **sums)
     # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
     # is compiled, the corrector is optimised once; inlined by force afterwards, twice.
-    correct = njit(inline="always", **OPTIONS)(
-        copy_with(corrector.correct, suffix, improve=improve, **sums, **functions)
-    )
+    inlined = njit(inline="always", **OPTIONS)
+    correct = inlined(copy_with(corrector.correct, suffix, improve=inlined(improve), **sums, **functions))
     own = (
         rule is not BY_ANGLE
     )  # a user's function may change while its loop is kept on disk: compiled in every process
@@ -100,7 +98,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     march = njit(cache=not own, **OPTIONS)(
         copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
     )
-    point = copy_with(corrector.point, suffix, improve=improve, **sums, **functions)
+    point = copy_with(corrector.point, suffix, improve=part(improve), **sums, **functions)
     return Bound(march, njit(cache=True, **OPTIONS)(point))
 
 
@@ -112,8 +110,8 @@ def compiled_rule(rule: StepRule) -> Any:
 
 
 def _loop_digest() -> str:
-    """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls."""
-    digest = hashlib.blake2b(digest_size=4)
+    """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls, nor at how it is compiled."""
+    digest = hashlib.blake2b(Path(__file__).read_bytes(), digest_size=4)
     for module in (corrector, lengths, loop, step_rule):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()

@@ -14,6 +14,7 @@ from .engine import Engine, Solved
 TOLD = (
     1e-2  # distance of a start from the solution that was found, in typical sizes, from which on it is told
 )
+SOLVED = 1e-9  # residual of a start that is a solution
 
 
 def check_interval(within: Any) -> tuple[float, float]:
@@ -102,9 +103,14 @@ def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = N
     found = engine.start(u, p, tangent)
     if found is None:
         residual = engine.residual(u, p)
+        why = f"does not converge (its residual is {residual:.3g})"
+        if residual < SOLVED:
+            why = "is a solution, but where the derivatives of the equations vanish or are singular, in the parameter, too"
+        elif not residual < np.inf:
+            trouble = getattr(engine.problem, "trouble", "")
+            why = "cannot be evaluated with its derivatives" + (f"; {trouble}" if trouble else "")
         raise ValueError(
-            f"the start at {name} = {p:.10g} does not converge (its residual is {residual:.3g}); "
-            "give a better guess or another parameter value"
+            f"the start at {name} = {p:.10g} {why}; give a better guess or another parameter value"
         )
     return found
 

@@ -31,6 +31,11 @@ from .taylor import Line, along_line
 NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
 
 
+def _size(vector: Any) -> float:
+    """Largest entry."""
+    return float(np.abs(vector).max())
+
+
 class Coefficient(NamedTuple):
     """A normal-form coefficient with an estimate of its error."""
 
@@ -222,7 +227,7 @@ class Forms:
             v = -v
         line, weight = self.line(v, 1.0), float(w @ self.K @ v) or np.nan
         value = -0.5 * float(w @ line.second @ self.extended(v, 1.0)) / weight
-        return self._timed(value, abs(0.5 * self.n * line.second_error / weight))
+        return self._timed(value, abs(0.5 * self.n * line.second_error * _size(v) / weight))
 
     def _timed(self, value: float, error: float) -> Coefficient:
         """A coefficient of a rate of change, in the user's own unit of time."""
@@ -254,7 +259,8 @@ class Forms:
         else:
             h = self._solve(regular, -(line.second @ x))
         total = w @ (line.third @ x) + 3.0 * w @ (line.second @ self.extended(h, 1.0))
-        error = abs(self.n * (line.third_error + 3.0 * line.second_error) / (6.0 * weight))
+        missed = line.third_error * _size(x) + 3.0 * line.second_error * _size(h)
+        error = abs(self.n * missed / (6.0 * weight))
         return self._timed(-float(total) / (6.0 * weight), error)
 
     @staticmethod
@@ -280,7 +286,9 @@ class Forms:
         total = total + 2.0 * first @ self.extended(h11, 1.0)
         total = total + first.conj() @ self.extended(pair.h20, multiplier**2)
         c = complex(-0.5 * (pair.left @ total) / pair.weight)
-        error = float(abs(self.n * (pair.a.third_error + 3.0 * pair.a.second_error) / pair.weight))
+        bent = 2.0 * _size(h11) + _size(pair.h20)
+        missed = pair.a.third_error * _size(one) + pair.a.second_error * bent
+        error = float(abs(self.n * missed / pair.weight))
         if self.flow:
             omega = abs(multiplier.imag)
             return Coefficient(c.real / omega, error / omega), self.rate * c

@@ -105,15 +105,17 @@ def tell_waiting(run: Run) -> None:
 def trace_pending(run: Run, pending: Pending) -> None:
     """Trace a branch unless it is known, and queue what leaves it."""
     first = first_point(run, run.engine(pending.problem)[0], pending)
-    shorter = None if first is None else pending.problem.root(first.u, first.p)
+    # the virtual rest of a branch goes on in its own equations, though at the border it repeats a shorter solution
+    rest = pending.kind is Origin.REST and not pending.real
+    shorter = None if first is None or rest else pending.problem.root(first.u, first.p)
     if first is not None and shorter is not None:
         # a solution that only repeats a shorter one is followed as that one
         pending.problem, pending.u = shorter
-        pending.kind, pending.p, pending.tangent = (
-            Origin.ROOT if pending.kind is Origin.SWITCH else pending.kind,
-            first.p,
-            None,
-        )
+        pending.p, pending.tangent = first.p, None
+        if pending.kind is Origin.REST:  # a virtual branch has come to the border of the shorter solutions
+            pending.kind, pending.real = Origin.BORDER, None
+        elif pending.kind is Origin.SWITCH:
+            pending.kind = Origin.ROOT
         first = first_point(run, run.engine(pending.problem)[0], pending)
     if first is None:
         return

@@ -19,11 +19,16 @@ def same_vector(
     a: np.ndarray, b: np.ndarray, tolerance: float = SAME, scale: np.ndarray | None = None
 ) -> bool:
     """Equal up to the tolerance, relative to 1 + largest entry, in units of a scale of the entries."""
-    if scale is not None and a.shape == b.shape and not (scale[:-1] == 1.0).all():
-        a, b = a / scale[: len(a)], b / scale[: len(a)]
+    if a.shape == b.shape:
+        a, b = _in_units(a, scale), _in_units(b, scale)
     return a.shape == b.shape and bool(
         np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0))
     )
+
+
+def _in_units(vector: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
+    """A canonical vector in units of the unknowns. Where all of these are 1 it may have more entries than there are unknowns: a whole cycle's."""
+    return vector if scale is None or (scale[:-1] == 1.0).all() else vector / scale[: len(vector)]
 
 
 class Register:
@@ -113,8 +118,7 @@ def _gap(branch: Branch, engine: Engine, point: Solved) -> float:
             continue
         here, near = engine.problem.canonical(found.u, point.p)
         if here == key and near.shape == vector.shape:
-            scale = engine.scale[: len(vector)]
-            a, b = near / scale, vector / scale
+            a, b = _in_units(near, engine.scale), _in_units(vector, engine.scale)
             least = min(least, float(np.abs(a - b).max(initial=0.0)) / (1.0 + np.abs(b).max(initial=0.0)))
     return least
 

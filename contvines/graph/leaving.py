@@ -32,7 +32,7 @@ FAMILY = (
     "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
     "give the problem conditions= that pick one of them"
 )
-
+VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
 DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
@@ -96,7 +96,9 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             run.remark(point.label, "no branch that leaves here was found")
         for departure in found:
             transcritical = abs(departure.slope) > 0.1 * run.unit(point.value) * departure.amplitude
-            if point.criticality is None and not transcritical:
+            if departure.upright(run.unit(point.value)):
+                run.remark(point.label, VERTICAL)
+            elif point.criticality is None and not transcritical:
                 curvature = departure.curvature / target.amplitude(departure.direction) ** 2
                 point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
                 exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)

@@ -119,7 +119,10 @@ def _end(run: Run, engine: Engine, half: HalfBranch, index: int) -> Located:
     u, p, tangent = half.at(index)
     bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
     point = engine.polish(u, p, engine.at_parameter, p, tangent)
-    assert point is not None
+    if point is None:  # by chance the equations end just there, and cannot be differentiated
+        row = np.full(engine.row_size, np.nan)
+        row[: 2 * engine.m] = half.joined().spectrum[index]
+        point = Solved(u, p, tangent, row, 1.0, 0.0, 0.0)
     return Located(float(index), "end", 0, point, (bound, bound), 0.0)
 
 

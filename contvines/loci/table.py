@@ -6,7 +6,7 @@ import html
 from typing import TYPE_CHECKING, Any
 
 from ..graph.shortening import short_word
-from ..graph.table import size_of
+from ..graph.table import size_of, with_unit
 from ..number_text import number_text
 from ..text_table import Table, fitted, terminal_width
 
@@ -47,12 +47,16 @@ def page(chart: Chart) -> str:
 def _title(chart: Chart) -> str:
     p, q = chart.parameters
     (plo, phi), (qlo, qhi) = chart.within
-    return f"chart of {p} within [{plo:.6g}, {phi:.6g}] and {q} within [{qlo:.6g}, {qhi:.6g}]"
+    ends = (f"[{plo:.6g}, {phi:.6g}]", f"[{qlo:.6g}, {qhi:.6g}]")
+    first, second = (
+        f"{name} within {end} {chart.units.get(name, '')}".rstrip() for name, end in zip((p, q), ends)
+    )
+    return f"chart of {first} and {second}"
 
 
 def _tables(chart: Chart) -> list[Table]:
     """Loci, then points and regions where there are any."""
-    p, q = chart.parameters
+    p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
     sizes = [size_of(within) for within in chart.within]
 
     def across(locus: Locus, which: int) -> str:

@@ -21,7 +21,7 @@ from .parameters import ParameterSet
 from .pieces import Pieces
 from .protocol import Seed, Symmetry
 from .registry import addresses, find_callables
-from .scales import given_scale
+from .scales import flat_start, given_scale
 from .simulated import SimulatedFlow
 from .spectra import WATCHED, reference_of, rounding, vectors_of, watched, without_roundoff
 
@@ -107,7 +107,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             raise ValueError(f'spectrum = {spectrum!r} must be "none" or "flow"; for maps use MapProblem')
         if not (isinstance(leading, int) and leading >= 1):
             raise ValueError(f"leading = {leading!r} must be a whole number of at least 1")
-        start = np.array(u0, dtype=float).reshape(-1)
+        start = flat_start(u0)
         self.values = ParameterSet(p0, parameter)
         self.spectrum, self.name = spectrum, name
         self.node = len(start)

@@ -26,6 +26,8 @@ NOTICED = 1e-13  # noise of the unknowns below this is roundoff
 ROUNDING = 64 * 2.0**-53
 TERMS = 62  # roundings of more unknowns than this cancel
 WORST = 1e-4  # more noise than this is not believed
+NEXT = 1e-3  # how far beyond the end of a branch given derivatives are looked at, too
+FELT = 1e-6  # more noise than this may be why a branch ends
 
 
 class CallableProblem(ProblemDefaults):
@@ -66,7 +68,17 @@ class CallableProblem(ProblemDefaults):
     pieces: Pieces
 
     def _wrapped(self, pieces: Pieces) -> tuple[Any, Any, Any]:
-        """The equations and their given derivatives in a piece."""
+        """The equations and their given derivatives in a piece.
+
+        Raises
+        ------
+        ValueError
+            If one of them is no function.
+        """
+        for key in ("F", "jacobian", "derivative"):
+            given = self.given[key]
+            if not (callable(given) or isinstance(given, Mapping) or (given is None and key != "F")):
+                raise ValueError(f"{key} = {given!r} must be a function of (u, p)")
         return tuple(pieces.wrap(self.given[key]) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
 
     # ------------------------------------------------------------------ parameters
@@ -235,6 +247,10 @@ class CallableProblem(ProblemDefaults):
         """
         if not evaluable:
             return self.trouble
+        for beyond in (0.0, NEXT):
+            wrong = self.check(u + beyond * tangent[:-1], p + beyond * float(tangent[-1]))
+            if wrong is not None:
+                return wrong
         rows = np.ones(self.dimension) if self.scales is None else self.scales.rows
 
         def line(t: float) -> np.ndarray:
@@ -254,6 +270,12 @@ class CallableProblem(ProblemDefaults):
                 if found.kind == "jump":
                     return f"the equations jump {where}"
                 return f"the equations have a kink {where}; switches= would select their pieces"
+        if self.noise > FELT:
+            j = int(np.argmax(self.functions.noise))
+            return (
+                f"{self.functions.name} has noise of {self.functions.noise[j]:.1g} in row {j}, which moves the solution by "
+                f"{self.noise:.1g} of its size: it may be too much for a branch to be followed"
+            )
         return ""
 
     def check(self, u: np.ndarray, p: float) -> str | None:

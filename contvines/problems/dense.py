@@ -11,7 +11,7 @@ from scipy.linalg import get_lapack_funcs
 from .abilities import Nearing
 from .blas import dot, position
 from .functions import NotEvaluable
-from .interpreted import assign, inspect
+from .interpreted import assign, inspect, not_finite
 from .kernels import Kernels
 from .nearness import distance, nearest
 from .spectra import reference_of, watched
@@ -126,7 +126,10 @@ def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
         sizes = np.divide(work.residual, units.rows, out=work.parts)
     # a sum is finite if its terms are, but for an overflow, which would not do either
     total = dot(work.flat, work.ones)
-    return abs(float(sizes[position(sizes)])) if total - total == 0.0 else math.inf
+    if total - total == 0.0:
+        return abs(float(sizes[position(sizes)]))
+    data.trouble = not_finite(work.residual, work.jacobian, work.derivative)
+    return math.inf
 
 
 def bordered(

@@ -65,6 +65,8 @@ class UserFunction:
             If f raises, or returns complex numbers for real ones, or no numbers at all.
         """
         value = self.raw(u, p)
+        if value is None:
+            raise NotEvaluable(f"{self.name} returns None; numbers are needed")
         if type(value) is np.ndarray and value.dtype == FLOAT:
             return value.flatten()
         try:
@@ -95,6 +97,8 @@ def as_matrix(given: Any, n: int) -> Any:
         if given.shape != (n, n):
             raise NotEvaluable(f"jacobian returns shape {given.shape}; ({n}, {n}) is needed")
         return given
+    if given is None:
+        raise NotEvaluable(f"jacobian returns None; a matrix of shape ({n}, {n}) is needed")
     try:
         matrix = np.array(given, dtype=float)
     except (TypeError, ValueError) as error:

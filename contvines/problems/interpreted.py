@@ -16,6 +16,20 @@ def inspect(data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> N
         row[m:] = data.margins(u, p)
 
 
+def not_finite(residual: np.ndarray, jacobian: np.ndarray, derivative: np.ndarray) -> str:
+    """A sentence on what is not a finite number, and in which row."""
+    names = (
+        ("F", residual),
+        ("the derivative of F in the unknowns", jacobian),
+        ("the one in the parameter", derivative),
+    )
+    for name, values in names:
+        bad = ~np.isfinite(values if values.ndim == 1 else values.sum(axis=1))
+        if bad.any():
+            return f"{name} is not finite in row {int(np.argmax(bad))}"
+    return ""
+
+
 def assign(data: Any, other: Any, value: float) -> None:
     """Give the parameter that varies in ``other`` a value in ``data``, in place."""
     data.values.assign(other.parameter, value)

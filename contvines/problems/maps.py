@@ -19,7 +19,7 @@ from .parameters import ParameterSet
 from .pieces import Pieces
 from .protocol import Embedding, Seed, Symmetry
 from .registry import addresses, find_callables
-from .scales import given_scale
+from .scales import flat_start, given_scale
 from .simulated import SimulatedMap
 from .spectra import without_roundoff
 
@@ -86,7 +86,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         if not (isinstance(cycle, (int, np.integer)) and cycle >= 1):
             raise ValueError(f"cycle = {cycle!r} must be a whole number of at least 1")
         start = np.array(u0, dtype=float)
-        flat = start.reshape(-1)
+        flat = flat_start(start.reshape(-1))
         if dimension is None:
             if start.ndim == 2 or (cycle > 1 and len(flat) % cycle == 0 and len(flat) >= cycle):
                 d = len(flat) // (start.shape[0] if start.ndim == 2 else cycle)

@@ -53,6 +53,27 @@ class Scales:
         )
 
 
+def flat_start(u0: Any) -> np.ndarray:
+    """A user's start as a flat array of its own.
+
+    Raises
+    ------
+    ValueError
+        If it is empty, no numbers, or has several axes.
+    """
+    try:
+        start = np.array(u0, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"u0 = {u0!r} must be numbers, one for each unknown: {error}") from None
+    if start.size == 0:
+        raise ValueError("u0 is empty; give a start for each unknown")
+    if start.ndim > 1:
+        raise ValueError(
+            f"u0 has shape {start.shape}; the equations see their unknowns in a row: give u0 of shape ({start.size},)"
+        )
+    return start.reshape(-1)
+
+
 def given_scale(scale: Any, n: int) -> np.ndarray | None:
     """A user's ``scale`` as an array of n positive numbers; None stays None.
 

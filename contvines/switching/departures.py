@@ -18,6 +18,7 @@ GRAZING = 1e4  # ... if nothing is found at that
 # the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
 LEAST = 1.6
 ATTEMPTS = 22  # halvings of the amplitude
+UPRIGHT, VISIBLE = 1e-14, 1e-4  # a change of the parameter that is none, over at least this length
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
 ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
 ASIDE = (0.0, 1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
@@ -57,6 +58,11 @@ class Departure:
     curvature: float
     slope: float
     family: bool = False
+
+    def upright(self, unit: float) -> bool:
+        """Whether the parameter, in this unit, does not change along the branch."""
+        moved = max(abs(self.ahead.p - self.origin.p), abs(self.slope) * self.amplitude)
+        return moved <= UPRIGHT * unit and self.amplitude > VISIBLE
 
 
 def null_vectors(

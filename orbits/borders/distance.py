@@ -9,7 +9,9 @@ import numpy as np
 from orbits.cycles.sampling import PER_PERIOD
 from orbits.cycles.solution import Solution
 
-SAME = 1e-5  # motions whose w differs by less are one
+SAME = (
+    1e-7  # motions whose w differs by less are one; two borders whose values agree to 1e-12 may be 5e-6 apart
+)
 CLOSE = 0.05  # largest difference in w between a border orbit and one that goes on from it, wherever that is measured
 ALIKE = 1e-7  # motions that differ by less need not come any nearer
 SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on the way to the border

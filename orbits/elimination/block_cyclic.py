@@ -252,6 +252,15 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         call(listed[1], length, twist, address)
         return sign
 
+    @njit(forceinline=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)
+    def products(border, solution):
+        """Products of a row with the null and with the particular solution, summed in any order."""
+        along, across = 0.0, 0.0
+        for i in range(border.shape[0]):
+            across += border[i] * solution[0, i]
+            along += border[i] * solution[1, i]
+        return along, across
+
     @kernel
     def bordered(data, work, border, target, step, tangent):
         """Solve [[J, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`.
@@ -290,10 +299,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
             sign = eliminate(
                 F, A, D, Q, data.twist, work.stored, work.panel, work.small, work.order, solution
             )
-        along, across = 0.0, 0.0
-        for i in range(size + 1):
-            across += border[i] * solution[0, i]
-            along += border[i] * solution[1, i]
+        along, across = products(border, solution)
         if along == 0.0:
             along = TINY
             sign = 0.0

@@ -76,6 +76,7 @@ def watch(data, u, work, law, out):
     length = events.shape[0]
     C, omega = law.amplitude, law.omega
     free = law.pull_left == law.pull_right  # without friction turns are no events
+    by_omega = 1.0 / omega
     peak = C * omega * omega
     speed = C * omega
     two_pi = 2.0 * np.pi
@@ -96,7 +97,7 @@ def watch(data, u, work, law, out):
             arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
         s0, c0 = sines[i], cosines[i]
         c1 = cosines[i + 1]
-        d = (psi1 - psi0) / omega
+        d = (psi1 - psi0) * by_omega
         beta = u[2 * i + 1] if event < 2 else speed * c0
         flight = np.inf
         if mode == 0:
@@ -133,7 +134,7 @@ def watch(data, u, work, law, out):
                     # s w' = s (speed cos - beta) - k_s (t - t0): the last minimum is the lowest one, the first one if k_s < 0
                     if pull < 0.0:
                         last -= two_pi * np.ceil((last - psi0 - early) / two_pi - 1.0)
-                    flight = mode * (speed * cosine - beta) - pull * (last - psi0) / omega
+                    flight = mode * (speed * cosine - beta) - pull * (last - psi0) * by_omega
         else:
             # without friction the flight may reverse; the walls must hold inside it: extrema where cos Psi = beta/speed
             w0 = (law.left if event == 0 else law.right) if event < 2 else u[2 * i + 1]
@@ -146,7 +147,7 @@ def watch(data, u, work, law, out):
                     psi += two_pi * np.ceil((psi0 - psi) / two_pi)
                     while psi < psi1:
                         if psi > psi0:
-                            w = w0 + C * (np.sin(psi) - s0) - beta * (psi - psi0) / omega
+                            w = w0 + C * (np.sin(psi) - s0) - beta * (psi - psi0) * by_omega
                             flight = min(flight, min(law.left - w, w - law.right))
                         psi += two_pi
         out[4 * i] = flight

@@ -69,7 +69,7 @@ def test_a_file_its_labels_and_its_certificates(kept, capsys, tmp_path):
         (["B1:9999"], "numbered from 0"),
         (["SB1:1"], "single point"),
         (["SB1", "--within", "0.5", "0.6"], "for branches"),
-        (["B1", "--within", "0.6", "0.5"], "empty"),
+        (["B1", "--within", "0.6", "0.5"], "give the lower value first"),
     ],
 )
 def test_what_cannot_be_proved_is_refused_in_a_sentence(kept, capsys, words, says):

@@ -301,3 +301,28 @@ def test_a_border_at_which_the_equations_are_singular(turn, max_step):
     assert graph["B1"].range[0] == -1.0 and not graph["B2"].real
     x, t = problem.rotation.T @ graph["B2"].points.T
     assert graph["B2"].range[1] == pytest.approx(1.0) and np.allclose(t, -3.0 * graph["B2"].values, atol=1e-9)
+
+
+class Twice(Line):
+    """u = (p, 2 p - 1/2): two rounds, which are alike at p = 1/2 only; real for p > 1/2 by their margin."""
+
+    dimension = 2
+
+    def workspace(self):
+        return dense_workspace(2)
+
+    def equations(self, u, p):
+        return u - np.array([p, 2.0 * p - 0.5]), np.eye(2), np.array([-1.0, -2.0])
+
+    def root(self, u, p):
+        return (Line("a", 0.0, 1.0, [1.0], [0.5]), u[:1]) if abs(u[0] - u[1]) < 1e-9 else None
+
+
+def test_a_virtual_branch_that_comes_to_the_border_of_shorter_solutions_leads_on_to_these():
+    twice = Twice("aa", 0.0, 1.0, [1.0], [0.5])
+    twice.u0 = np.array([0.3, 0.1])
+    graph = cv.diagram(twice, within=(0.0, 1.0), virtual=True)
+    assert [(b.description["word"], b.real) for b in graph] == [("aa", False), ("a", True)]
+    assert [(s.source, s.target, s.note) for s in graph.switches] == [("B1", "B2", "real again")]
+    assert graph["B2"].range == pytest.approx((0.5, 1.0), abs=1e-12)
+    assert graph["B2"].points[:, 0] == pytest.approx(graph["B2"].values, abs=1e-12)

@@ -110,7 +110,7 @@ def test_ctrl_c_says_how_to_go_on(diagram, undisturbed, tmp_path):
         ({"--over": "viscosity"}, "over = 'viscosity': the problem has no such parameter; it has amplitude"),
         ({"--over": "amplitude"}, "over = 'amplitude' is the parameter of the diagram itself"),
         ({"--within": ("0.6", "0.9")}, "was made at friction = 0.5, outside of within"),
-        ({"--within": ("0.9", "0.2")}, "give the lower number first"),
+        ({"--within": ("0.9", "0.2")}, "give the lower value first"),
         ({"--within": ("-1", "0.9")}, "friction = -1 is out of range"),
     ],
 )

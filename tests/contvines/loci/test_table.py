@@ -28,7 +28,7 @@ def chart():
     )
     region = SimpleNamespace(at=(3e-15, 5e-4), share=1.0, words=["LR"])
     return SimpleNamespace(
-        parameters=("p", "q"), within=((-1.0, 1.0), (-1e-3, 1e-3)), loci={"LP1": locus}, points={"CP1": point},
+        parameters=("p", "q"), units={"q": "mm"}, within=((-1.0, 1.0), (-1e-3, 1e-3)), loci={"LP1": locus}, points={"CP1": point},
         regions=[region], message="",
     )  # fmt: skip
 
@@ -38,6 +38,12 @@ def test_what_is_only_rounding_is_zero():
     assert "e-15" not in text and "e-18" not in text
     assert "0..0.5" in text and "0..0.001" in text and "c = 0" in text
     assert "0.0001" in text
+
+
+def test_units_stand_in_the_title_and_the_heads():
+    lines = table(chart()).splitlines()
+    assert lines[0] == "chart of p within [-1, 1] and q within [-0.001, 0.001] mm"
+    assert lines[2].split()[3:6] == ["q", "[mm]", "p"]
 
 
 def test_every_line_fits():

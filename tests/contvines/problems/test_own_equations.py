@@ -282,3 +282,61 @@ def test_a_small_circle_through_two_branch_points_is_cheap(radius):
     found = sorted(point.value for point in graph.of_kind("branch-point"))
     assert found == pytest.approx([0.5 - radius, 0.5 + radius], abs=1e-12)
     assert calls[0] < 25 * sum(len(branch) for branch in graph)
+
+
+def straight(u, p):
+    return u - p
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: cv.AlgebraicProblem(straight, []), "u0 is empty"),
+        (lambda: cv.MapProblem(straight, [], 0.0), "u0 is empty"),
+        (lambda: cv.AlgebraicProblem(straight, np.zeros((2, 2))), r"give u0 of shape \(4,\)"),
+        (lambda: cv.AlgebraicProblem(straight, ["a"]), "must be numbers"),
+        (lambda: cv.AlgebraicProblem(lambda u, p: None, [0.0]), "F returns None; numbers are needed"),
+        (lambda: cv.AlgebraicProblem(3, [0.0]), r"F = 3 must be a function of \(u, p\)"),
+        (lambda: cv.AlgebraicProblem(straight, [0.0], jacobian="3-point"), "jacobian = '3-point' must be"),
+        (lambda: cv.AlgebraicProblem(straight, [0.0], jacobian=lambda u, p: None), "jacobian returns None"),
+    ],
+)
+def test_what_is_no_problem_is_refused_with_a_sentence(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+def test_a_jacobian_that_becomes_wrong_is_named_where_the_branch_ends():
+    def jacobian(u, p):
+        return [[2.0 * u[0] if p > 0.5 else -u[0]]]
+
+    graph = cv.diagram(
+        cv.AlgebraicProblem(lambda u, p: u**2 - p, [1.0], 1.0, jacobian=jacobian), within=(0.1, 1.0)
+    )
+    assert any("jacobian disagrees with F in row 0, column 0" in said for said in graph["B1"].ended)
+
+
+def test_what_is_not_finite_is_named():
+    def F(u, p):
+        with np.errstate(all="ignore"):
+            return [u[0] - p, u[1] - np.log(p)]
+
+    graph = cv.diagram(
+        cv.AlgebraicProblem(F, [1.0, 0.0], 1.0), within=(-1.0, 2.0), bounds={"u1": (-5.0, None)}
+    )
+    assert graph["B1"].values.min() == pytest.approx(np.exp(-5.0), rel=1e-12)
+    graph = cv.diagram(cv.AlgebraicProblem(lambda u, p: u - np.sqrt(p), [1.0], 1.0), within=(-1.0, 2.0))
+    assert any("F is not finite in row 0" in said for said in graph["B1"].ended)
+
+
+def test_a_branch_may_end_where_its_equations_do():
+    # u = (1 + p)^2 by a root that becomes complex beyond the end of the interval, and has no derivative there
+    graph = cv.diagram(
+        cv.AlgebraicProblem(lambda u, p: np.emath.sqrt(u) - p - 1.0, [1.0], 0.0), within=(-1.0, 1.0)
+    )
+    assert all("end of the interval" in said for said in graph["B1"].ended)
+
+
+def test_too_much_noise_is_named():
+    with pytest.raises(ValueError, match="F has noise of"):
+        cv.diagram(cv.AlgebraicProblem(noisy(1e-2), [1.0], 1.0), within=(-1.0, 1.5), depth=0)

@@ -137,3 +137,15 @@ def test_a_matrix_that_is_singular_to_the_last_bit():
         assert point.criticality == "supercritical"
         side = next(branch for branch in graph if branch.seed == "SB1")
         assert not side.problem.symmetric and side.stable[1:-1].all()
+
+
+def test_a_branch_that_stands_upright_has_no_criticality():
+    # p u = 0: at p = 0 every u solves
+    graph = cv.diagram(
+        cv.AlgebraicProblem(lambda u, p: p * u, [0.0], -0.5, spectrum="flow", scale=1.0), within=(-1.0, 1.0)
+    )
+    (point,) = graph.of_kind("branch-point")
+    assert point.value == pytest.approx(0.0, abs=1e-15)
+    assert point.criticality is None
+    assert any("stands upright" in said for said in point.remarks)
+    assert len(graph) == 2 and np.ptp(graph["B2"].values) < 1e-14

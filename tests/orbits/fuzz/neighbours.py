@@ -113,7 +113,8 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         for m in (point.multipliers, point.multipliers_beyond)
     ):
         tally.count("ends of branches with multipliers of a third branch")
-    seen = [(d, orbit.multipliers) for d, orbit in between.beside(i, ways[0], NEARER)]
+    beside = list(between.beside(i, ways[0], NEARER))
+    seen = [(d, orbit.multipliers) for d, orbit in beside]
     if len(seen) < 3:
         tally.count("borders beside which nothing can be solved for")
         return
@@ -135,6 +136,14 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
     if _within_rounding(listed, [orbit for _, orbit in nearest[-2:]]):
         tally.count("multipliers at borders that are off by what rounding does to those beside them")
         return
+    known = [
+        orbit
+        for _, orbit in beside + nearest
+        if abs(branch.problem.value(orbit.params) - point.value) <= point.location_error
+    ]
+    if _among(listed, known):
+        tally.count("multipliers at borders that change by more within the told error")
+        return
     what = f"{_text(listed)} listed, {_text(seen[-1][1])} at {seen[-1][0]:.0e}, {_text(seen[-3][1])} at {seen[-3][0]:.0e}"
     tally.find("limit", f"{branch.label} at {point.label} ({point.kind}, {point.value:.10g}): {what}")
 
@@ -153,6 +162,18 @@ def _within_rounding(listed: np.ndarray, beside: list[Any]) -> bool:
         return False
     off = max(alike(orbit.multipliers, found.multipliers) for orbit, found in known)
     return alike(listed, known[-1][1].multipliers) <= min(off, ROUNDED)
+
+
+def _among(listed: np.ndarray, known: list[Any]) -> bool:
+    """Whether the characteristic polynomial lies between those of orbits that the border cannot be told from."""
+    if len(known) < 2:
+        return False
+    polynomials = np.array([np.poly(orbit.multipliers).real for orbit in known])
+    slack = LIMIT * np.abs(polynomials).max()
+    own = np.poly(listed).real
+    return bool(
+        (own >= polynomials.min(axis=0) - slack).all() and (own <= polynomials.max(axis=0) + slack).all()
+    )
 
 
 def _text(multipliers: np.ndarray) -> str:

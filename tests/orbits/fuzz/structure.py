@@ -9,7 +9,7 @@ import numpy as np
 from contvines.events.kinds import BORDERS
 from orbits.cycles.claim import REAL
 from orbits.starts.find import polish
-from tests.orbits.fuzz.many_digits import rounds_apart
+from tests.orbits.fuzz.many_digits import exact, rounds_apart
 from tests.orbits.fuzz.motion import apart, shortest
 from tests.orbits.fuzz.tally import Tally
 
@@ -21,7 +21,8 @@ REPEATED, OF_EXTENT = (
 )  # parts of a motion that differ by less are one; the same as a part of the branch's extent
 APART = 1e-30  # rounds of one motion, in many digits, that differ by more are two
 SHARED = 1e-6  # motions nearer than this to that of a special point are those of all branches that meet there
-NOTHING = 1e-7  # extent of a branch, in parameter and unknowns
+NOTHING = 1e-7  # extent of a branch, in parameter and unknowns, that needs a proof ...
+PART = 1e-2  # ... in many digits: part of it, and of its margin, by which an orbit may be elsewhere
 ROUNDOFF = 1e-9
 FOLLOWED, FAR_FOLLOWED = (
     2e-5,
@@ -50,7 +51,7 @@ def _branch(branch: Any, tally: Tally) -> None:
     if branch.real and len(inner) and inner.min() < REAL:
         tally.find("margin", f"{branch.label} is called real, a margin inside is {inner.min():.1e}")
     extent = max(float(np.ptp(branch.values)), float(np.ptp(branch.points, axis=0).max(initial=0.0)))
-    if branch.real and len(branch) > 1 and extent < NOTHING:
+    if branch.real and len(branch) > 1 and extent < NOTHING and not _certainly_there(branch, extent):
         tally.find("no length", f"{branch.label} is called real, but is {extent:.1e} long")
     marked = {i for i, _ in branch.marks}
     flips = np.flatnonzero(branch.stable[1:] != branch.stable[:-1])
@@ -78,6 +79,13 @@ def _branch(branch: Any, tally: Tally) -> None:
             "repeated",
             f"{branch.label} {branch.description['word']} k={branch.problem.periods} repeats a shorter orbit",
         )
+
+
+def _certainly_there(branch: Any, extent: float) -> bool:
+    """Whether the orbit of the largest margin, in many digits, is off its place by next to nothing of the margin and of the branch."""
+    orbit = branch.orbit(int(np.argmax(branch.margin)))
+    found = exact(orbit)
+    return found is not None and abs(found.shift) + found.moved < PART * min(orbit.margin, extent)
 
 
 def _point(graph: Any, point: Any, tally: Tally) -> None:

@@ -129,3 +129,17 @@ def test_one_multiplier_at_minus_one_begets_one_branch():
     there = exact(doubling.orbit)
     assert (np.abs(there.multipliers + 1.0) < 1e-6).sum() == 1
     assert sum(branch.seed == doubling.label for branch in graph) == 1
+
+
+def test_two_borders_that_differ_by_1e_12_are_two():
+    """In eighty digits their values are as far apart as told, and their motions, of other words, too."""
+    graph = diagram("cavity", 376, 409)
+    borders = [p for p in graph.of_kind("wall-graze") if abs(p.value - 1.649868584062) < 2e-12]
+    assert len(borders) == 2
+    known = [exact(p.orbit) for p in borders]
+    values = [p.value + found.shift for p, found in zip(borders, known)]
+    assert all(abs(found.shift) < 1e-14 for found in known)
+    assert abs(values[1] - values[0]) > 1e-12
+    assert apart(borders[0].orbit, borders[1].orbit) > 1e-6
+    joined = {frozenset((s.source, s.target)) for s in graph.switches}
+    assert frozenset(p.branch for p in borders) not in joined

@@ -12,6 +12,7 @@ from contvines.events.kinds import KINDS
 
 from . import listed, maps
 from .make_table import TABLE
+from .units import SETS, UNITS
 
 PAGE = Path(__file__).parents[4] / "docs" / "demos.md"
 HEAD = """# Demos of other packages
@@ -29,6 +30,9 @@ Printed is what the source prints; a closed form is what its equations say by ha
 repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation, and nothing was found: these
 demos show their values when they are run, or as pictures. What MatCont's, MatContM's and COCO's tutorials may print beyond the values here was not to be had.
 
+In other units: the same demos with u, p and the rows of F times 1e9 or 1e-9, in {sets} sets of units that nothing is said about
+(`python -m tests.contvines.problems.demos.units`); the column counts those in which the special points are the same to 1e-10: {alike} of {all} in all.
+
 LP fold, BP branch point, SB symmetry breaking, HB Hopf, PD period doubling, NS Neimark-Sacker; ^2 a cycle of length two.
 """
 
@@ -37,13 +41,22 @@ def render() -> str:
     """The page."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
     demos = [*listed.DEMOS, *maps.DEMOS]
-    lines = [HEAD.format(demos=len(demos), points=sum(len(rows) for rows in table.values()))]
+    alike = json.loads(UNITS.read_text(encoding="utf-8"))
+    lines = [
+        HEAD.format(
+            demos=len(demos),
+            points=sum(len(rows) for rows in table.values()),
+            sets=len(SETS),
+            alike=sum(alike.values()),
+            all=len(SETS) * len(demos),
+        )
+    ]
     for title, kind in (("Equilibria", "flow"), ("Maps", "map")):
         lines += [
             f"## {title}",
             "",
-            "| demo | comes with | parameter | special points | ours differ by | printed |",
-            "|---|---|---|---|---|---|",
+            "| demo | comes with | parameter | special points | ours differ by | in other units | printed |",
+            "|---|---|---|---|---|---|---|",
         ]
         for demo in demos:
             if demo.kind != kind:
@@ -63,6 +76,7 @@ def render() -> str:
                 f"{demo.parameter} in {low:g} to {high:g}",
                 points,
                 ("0" if max(away) == 0.0 else f"{max(away):.0e}") if away else "",
+                str(alike[demo.name]),
                 demo.printed or "none",
             )
             lines.append("| " + " | ".join(cells) + " |")

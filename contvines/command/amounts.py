@@ -1,0 +1,59 @@
+"""Values of parameters on the command line: numbers in the file's units, or quantities with a unit of their own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+
+def amount(option: str, text: str, name: str, units: Mapping[str, str]) -> float:
+    """A value of a parameter, counted in the file's unit.
+
+    Parameters
+    ----------
+    option : str
+        With which it was given, for refusals.
+    text : str
+        ``"7.9"``, or ``"7.9 Hz"`` where the parameter has a unit.
+    name : str
+        Of the parameter.
+    units : mapping
+        Units by name of parameter; those without one are missing.
+
+    Raises
+    ------
+    ValueError
+        If it is neither; the sentence says what would do.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        unit = units.get(name, "")
+        if not unit:
+            raise ValueError(
+                f"{option} {text}: {name} is a plain number here; {option} 0.5 would do."
+            ) from None
+        from orbits.machines.physical.units import counted
+
+        try:
+            value = counted(name, text, unit)
+        except ValueError as error:
+            raise ValueError(f"{option} {text}: {error}.") from None
+    if not math.isfinite(value):
+        raise ValueError(f"{option} {text}: {name} must be finite.")
+    return value
+
+
+def interval(option: str, ends: tuple[str, str], name: str, units: Mapping[str, str]) -> tuple[float, float]:
+    """Both ends of an interval, the lower one first.
+
+    Raises
+    ------
+    ValueError
+        As `amount`, or if the interval is empty or reversed.
+    """
+    low, high = (amount(option, text, name, units) for text in ends)
+    if not low < high:
+        shown = " ".join(repr(text) if " " in text else text for text in ends)
+        raise ValueError(f"{option} {shown}: give the lower value first, then the higher one.")
+    return low, high
