@@ -42,6 +42,17 @@ def graph():
     return cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=1)
 
 
+def test_another_unit_of_time_gives_the_same_kick(graph):
+    # with time counted in 1/1.4 and gravity 1.4^2 times as large the equations are the same; velocities are 1.4 times as large
+    other = Absorber(restitution=0.76, friction=0.5, gravity=0.211 * 1.96, mass_ratio=0.006, frequency=1.4)
+    same = cv.diagram(other.orbit("LR", amplitude=0.3), over="amplitude", within=(0.28, 0.32), depth=0)
+    one = cv.robustness(graph["B1"], 0.3, starts=0)
+    two = cv.robustness(same["B1"], 0.3, starts=0, units={"w_rate": 1.4})
+    assert two.place == pytest.approx(one.place * [1.0, 1.4], abs=1e-8)
+    assert two.distance == pytest.approx(one.distance, rel=1e-6)
+    assert two.kick == pytest.approx(one.kick * [1.0, 1.4], rel=1e-5)
+
+
 def test_a_kick_leads_elsewhere_and_a_smaller_one_does_not(graph):
     found = cv.robustness(graph["B1"], 0.3, starts=2000)
     machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)

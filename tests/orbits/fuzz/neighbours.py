@@ -80,7 +80,7 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
             continue
         tally.count("ways to special points followed")
         # the nearer to a branch point the more singular the equations: a motion that was that near does not come nearer
-        nearest = gaps[-1] if point.kind in BORDERS or point.kind == "fold" else min(gaps)
+        nearest = gaps[-1] if point.kind in BORDERS or point.kind == "fold" else float(np.nanmin(gaps))
         falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
             tally.count("ways to special points shorter than the last bit of the parameter")
