@@ -17,6 +17,9 @@ from .dips import below_zero
 from .scan_arrays import dips
 from .segment import Segment
 
+SHOWN = 1e-6  # margins that are certainly positive: where a doubled branch passes through the border of its root, as one round gets what
+# another one loses, equations are singular, and margins are known to half their digits
+
 
 def windows(engine: Engine, chunk: Chunk) -> NDArray[np.bool_]:
     """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,).
@@ -52,7 +55,7 @@ def passed(segment: Segment) -> tuple[float, Solved] | None:
         return None
     middle = 0.5 * (begins.position + ends.position)
     point = segment.at(middle)
-    if point is None or float(engine.smallest_margin(point.row)) < MARGIN:
+    if point is None or float(engine.smallest_margin(point.row)) < SHOWN:
         return None
     return middle, point
 
@@ -60,4 +63,6 @@ def passed(segment: Segment) -> tuple[float, Solved] | None:
 def real_inside(segment: Segment) -> tuple[float, Solved] | None:
     """A point of a virtual segment at which all margins are positive, or None; see :func:`windows` for which segments may have one."""
     engine = segment.engine
-    return passed(segment) or below_zero(segment, lambda point: -float(engine.smallest_margin(point.row)))
+    return passed(segment) or below_zero(
+        segment, lambda point: SHOWN - float(engine.smallest_margin(point.row))
+    )
