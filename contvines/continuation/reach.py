@@ -15,7 +15,6 @@ from .engine import Engine, Solved
 
 # doublings of the distance, to FAR, for which the rest of the interval has to have room, on branches that go on
 DOUBLINGS = 26
-STEADY = 200.0  # ... once they are so many times `escape` away
 # a doubling that takes so much less than the one before, and so little of the interval, is one of the last
 SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
@@ -73,8 +72,7 @@ class Reach:
             moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
             room = self.engine.upper - value if ahead else value - self.engine.lower
             last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
-            certain = DOUBLINGS * moved < room and distances[i] > STEADY * escape
-            bound = moved <= self.moved and (last or certain)
+            bound = moved <= self.moved and (last or DOUBLINGS * moved < room)
             if self.doubled > escape and (bound or distances[i] > FAR * escape):
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
