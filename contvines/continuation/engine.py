@@ -204,10 +204,8 @@ class Engine(Rows):
         if outcome == corrector.NOWHERE:
             return None
         point = solved_points(found)[0]
-        if point is None:
-            return None
         one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
-        if outcome == corrector.AT_END:
+        if outcome == corrector.AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
         place = one if abs(f_one) < abs(f_other) else other
         width = abs(p_one - p_other) + 4e-16 * abs(point.p)

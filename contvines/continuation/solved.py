@@ -26,10 +26,10 @@ class Solved(NamedTuple):
 
 
 class Hit(NamedTuple):
-    """Where a number passes zero along a chord: the place, the point, the error of its parameter value, how much the number changes there."""
+    """Where a number passes zero along a chord: the place, the point (None if it is not found again), the error of its parameter value, how much the number changes there."""
 
     place: float
-    point: Solved
+    point: Solved | None
     error: float
     jump: float
 

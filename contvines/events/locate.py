@@ -65,7 +65,11 @@ def locate(
     """
     if isinstance(test, Aim):
         hit = segment.search(test._replace(anyway=int(fallback_zero)), tolerance, jump)
-        return None if hit is None else Root(hit.place, hit.point, hit.error, hit.jump <= JUMP)
+        if hit is None:
+            return None
+        if hit.point is not None:
+            return Root(hit.place, hit.point, hit.error, hit.jump <= JUMP)
+        # a place that was solved for once and is not found again, as where equations are singular: every point is kept below
     solved: dict[float, Solved] = {}
 
     def value(s: float) -> float:
