@@ -88,9 +88,8 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
-    # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
-    in_any_order = njit(fastmath={"reassoc", "contract", "nsz", "arcp"}, **OPTIONS)
-    sums = {name: in_any_order(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    # in the order in which they are written: sums in any order would differ from one compilation to the next, and results with them
+    sums = {name: part(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = copy_with(corrector.improve, suffix, **sums)
     # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
     # is compiled, the corrector is optimised once; inlined by force afterwards, twice.

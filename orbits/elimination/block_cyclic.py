@@ -252,9 +252,9 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         call(listed[1], length, twist, address)
         return sign
 
-    @njit(forceinline=True, fastmath={"reassoc", "contract", "nsz"}, **OPTIONS)
+    @njit(forceinline=True, **OPTIONS)
     def products(border, solution):
-        """Products of a row with the null and with the particular solution, summed in any order."""
+        """Products of a row with the null and with the particular solution."""
         along, across = 0.0, 0.0
         for i in range(border.shape[0]):
             across += border[i] * solution[0, i]
