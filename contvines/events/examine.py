@@ -65,6 +65,7 @@ class Examiner:
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
         self.many = isinstance(problem, Nearing) and problem.many
+        self.signed = not isinstance(problem, Nearing) or problem.signed
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -98,7 +99,7 @@ class Examiner:
         crossings: list[Located] = []
         before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
         # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
-        rounded = self.scaled and int(after[0] - before[0]) % 2 != turned(a, b)
+        rounded = self.scaled and self.signed and int(after[0] - before[0]) % 2 != turned(a, b)
         if abs(int(after[0] - before[0])) == 1 and self.scaled:
             # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
             one_fold = len(folds) == 1 and a.sign * b.sign > 0.0

@@ -110,10 +110,14 @@ class Blurred(Protocol):
 
 @runtime_checkable
 class Nearing(Protocol):
-    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`."""
+    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`.
+
+    `signed`: whether the sign of the determinant is known.
+    """
 
     many: bool
     closely: bool
+    signed: bool
 
 
 @runtime_checkable
