@@ -9,7 +9,6 @@ import numpy as np
 
 from ..continuation.aims import NO_COLUMNS, SIGN, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
-from ..problems.abilities import Nearing
 from .blur import blurred
 from .borders import find_border
 from .determinant import DeterminantTest, passes, turned
@@ -64,7 +63,7 @@ class Examiner:
         self.scaled = problem.scales is not None
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
-        self.many = isinstance(problem, Nearing) and problem.many
+        self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
