@@ -8,7 +8,7 @@ multiplied by what one dimensionless unit is.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from types import ModuleType
@@ -220,6 +220,15 @@ class Physical(Model):
         size = units.size(units.unit_of(quantity), quantity.unit)
         assert size
         return np.prod(np.asarray(params, dtype=float) ** powers, axis=-1) / size
+
+    def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
+        """What one of these coordinates is in the unit that is shown, and that unit."""
+        kinds = {name: "velocity" if name.endswith("_rate") else "length" for name in names}
+        table: dict[str, Quantity] = self.tables.GAUGES
+        return {
+            name: (float(self.gauge(kind, params)), units.unit_of(table[kind]))
+            for name, kind in kinds.items()
+        }
 
     # ------------------------------------------------------------------ parameters
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
