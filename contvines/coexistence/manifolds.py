@@ -200,7 +200,7 @@ class _Half:
     def __init__(
         self,
         image: Callable[[np.ndarray], np.ndarray],
-        struck: Callable[[np.ndarray, float], np.ndarray | None] | None,
+        struck: Callable[[np.ndarray, float], tuple[np.ndarray, np.ndarray] | None] | None,
         place: np.ndarray,
         ray: np.ndarray,
         first: float,
@@ -237,8 +237,9 @@ class _Half:
                 radius *= 0.5
                 if radius < self.smallest:
                     # no start beyond a wall
-                    edge = len(points) > 1 and np.abs(points[-1][:, None] - limits).min() < CORNER * size
-                    return "leaves" if edge else "breaks"
+                    edge = np.abs(points[-1][:, None] - limits).min() < CORNER * size
+                    at_wall = len(points) > 1 and (edge or self._struck() is not None)
+                    return "leaves" if at_wall else "breaks"
                 continue
             point, self.at, turn = found
             self.heading = point - points[-1]
@@ -253,13 +254,16 @@ class _Half:
 
     def _through(self) -> bool:
         """Begin another piece on the other side of an impact; whether there is one within the plane."""
-        last = self.pieces[-1][-1]
-        other = None if self.struck is None else self.struck(last, CORNER * self.size)
-        if other is None or np.any(other < self.limits[:, 0]) or np.any(other > self.limits[:, 1]):
+        found = self._struck()
+        if found is None or np.any(found[0] < self.limits[:, 0]) or np.any(found[0] > self.limits[:, 1]):
             return False
-        self.pieces.append([other])
-        self.heading = np.array([self.limits[0].mean() - other[0], 0.0])
+        self.pieces.append([found[0]])
+        self.heading = found[1]
         return True
+
+    def _struck(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Where the curve goes on if its last point is at a wall, and the direction away from the wall."""
+        return None if self.struck is None else self.struck(self.pieces[-1][-1], CORNER * self.size)
 
     def _segments(self) -> tuple[np.ndarray, np.ndarray]:
         """Where the segments of all pieces begin and end."""
