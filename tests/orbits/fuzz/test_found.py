@@ -143,3 +143,12 @@ def test_two_borders_that_differ_by_1e_12_are_two():
     assert apart(borders[0].orbit, borders[1].orbit) > 1e-6
     joined = {frozenset((s.source, s.target)) for s in graph.switches}
     assert frozenset(p.branch for p in borders) not in joined
+
+
+def test_a_branch_comes_home_at_the_nearest_period_doubling():
+    """Two lie 2e-10 apart: in eighty digits its motion comes to that of the one at its end's own value."""
+    graph = diagram("cavity", 371, 410)
+    (branch,) = (b for b in graph if b.problem.periods == 16 and abs(b.values[0] - 1.0419355183) < 1e-9)
+    label = next(label for i, label in branch.marks if i == len(branch) - 1)
+    assert abs(exact(graph[label].orbit).shift) < 1e-13
+    assert abs(graph[label].value - branch.values[-1]) < 1e-13
