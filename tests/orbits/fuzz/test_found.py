@@ -179,3 +179,17 @@ def test_a_virtual_branch_comes_home_to_the_virtual_part_of_its_root():
             seen = replay(between.orbit(int(i), float(share)))
             assert (seen.matches and seen.error < 1e-8) == branch.real
     assert [b.real for b in there].count(True) == 1
+
+
+def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back():
+    """In eighty digits it is stable from the doubling to its border, 7e-12 further on: that it turns, and branches, is rounding."""
+    graph = diagram("cavity", 368, 412)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.24893547944555) < 1e-13)
+    branch = next(b for b in graph if b.seed == doubling.label)
+    assert [graph[label].kind for _, label in branch.marks] == ["period-doubling", "stick"]
+    assert len(branch) > 2 and branch.stable.all()
+    for i in range(1, len(branch) - 1):
+        assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
+    tally = Tally("cavity", 412, 368)
+    structure.judge(graph, tally)
+    assert not tally.findings
