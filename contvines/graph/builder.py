@@ -135,7 +135,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
         return
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
-        known = None if parts_further_on(known, engine, first) else known
+        itself = run.engine(known.problem)[0]
+        known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None:
             if known.label == pending.source:

@@ -27,6 +27,22 @@ def test_a_parabola(slow):
     assert halves[0].points[-1, 1] * halves[1].points[-1, 1] < 0.0
 
 
+def test_a_saddle_that_is_bent_near_by_and_throws_far():
+    # beside a grazing impact one multiplier is large, and the curve straight on a small scale only; here x = h(y) is invariant for any h
+    def bend(y):
+        return 2e-3 * np.tanh(y / 1e-3)
+
+    def step(u, p):
+        return np.array([300.0 * p * (u[0] - bend(u[1])) + bend(0.2 * u[1]), 0.2 * u[1]])
+
+    graph = cv.diagram(cv.MapProblem(step, [0.0, 0.0], 2.0), within=(1.9, 2.1), depth=0)
+    halves = stable_manifolds(graph, 2.0, PLANE)
+    assert [half.ended for half in halves] == ["leaves", "leaves"]
+    for half in halves:
+        assert np.abs(half.points[:, 0] - bend(half.points[:, 1])).max() < 1e-4
+        assert abs(half.points[-1, 1]) > 2.0
+
+
 def test_points_of_henons_manifold_fall_into_the_saddle():
     problem = cv.MapProblem(
         lambda u, p: np.array([1.0 - p * u[0] ** 2 + u[1], 0.3 * u[0]]), [0.63, 0.19], 1.4
