@@ -163,7 +163,7 @@ class Engine(Rows):
         along: np.ndarray | None,
     ) -> Solved | None:
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return self._points(self.guess, (target, 0.0), ONE, border, along, sweeps)[0]
+        return solved_points(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0])[0]
 
     def on_chord(
         self,
@@ -175,7 +175,7 @@ class Engine(Rows):
         along: np.ndarray,
     ) -> list[Solved | None]:
         """The points of a branch at places along a chord; see :func:`contvines.continuation.corrector.points`."""
-        return self._points(chord, (start, length), places, border, along, 40)
+        return solved_points(self._run(chord, (start, length), places, border, along, 40)[0])
 
     def rows_on_chord(
         self,
@@ -224,17 +224,6 @@ class Engine(Rows):
         width = abs(p_one - p_other) + 4e-16 * abs(point.p)
         return Hit(place, point, max(width, point.correction * 1e-3), abs(f_one - f_other))
 
-    def _points(
-        self,
-        chord: np.ndarray,
-        stretch: tuple[float, float],
-        places: np.ndarray,
-        border: np.ndarray,
-        along: np.ndarray | None,
-        sweeps: int,
-    ) -> list[Solved | None]:
-        return solved_points(self._run(chord, stretch, places, border, along, sweeps, NO_AIM)[0])
-
     def _run(
         self,
         chord: np.ndarray,
@@ -243,7 +232,7 @@ class Engine(Rows):
         border: np.ndarray,
         along: np.ndarray | None,
         sweeps: int,
-        aim: Aim,
+        aim: Aim = NO_AIM,
     ) -> tuple[corrector.Found, int]:
         k, n = len(places), self.n
         found = corrector.Found(
