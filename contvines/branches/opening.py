@@ -26,6 +26,8 @@ NEARER = 4  # times that a first point is looked at nearer
 FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times the distance at which they are seen
 NOISY = 1e3  # ... and times the noise of the equations
 BENT = 0.3  # part by which bends of one branch may differ, so near to where it leaves
+UNRESOLVED = 1e-15  # changes of the parameter (in its unit), times the distance at which they are seen, that are rounding
+TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly singular systems
 
 
 def opening(
@@ -113,6 +115,26 @@ def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solv
         if abs(bends[i - 1] - bends[i]) > BENT * max(abs(bends[i - 1]), abs(bends[i])):
             return trail[i]
     return point
+
+
+def without_rounding(engine: Engine, origin: Solved, half: HalfBranch) -> HalfBranch:
+    """The half of a branch that leaves a special point without turns of the parameter that are rounding, and solutions up to these.
+
+    The nearer to where p = p0 + a s^2 the more singular the equations, and the less of p is known: where a s^2 is not, tangents and
+    multipliers do not tell either.
+    """
+    if abs(origin.tangent[-1]) > UPRIGHT * engine.parameter_unit(origin.p):
+        return half
+    turns = {i for i, e in half.events if e.kind in TURNING and not e.ends_branch}
+    last = max((i for i in turns if _unresolved(engine, origin, half, i)), default=0)
+    kept = {i for i, _ in half.events if i not in turns}
+    return half.without([i for i in range(1, last + 1) if i not in kept]) if last else half
+
+
+def _unresolved(engine: Engine, origin: Solved, half: HalfBranch, i: int) -> bool:
+    u, p, _ = half.at(i)
+    rounding = UNRESOLVED * engine.parameter_unit(origin.p)
+    return abs(p - origin.p) * engine.norm(engine.join(u - origin.u, p - origin.p)) < rounding
 
 
 def _bend(engine: Engine, origin: Solved, point: Solved) -> float:

@@ -13,7 +13,7 @@ from ..events.located import Role
 from ..events.watch import Watch
 from ..journal import NullJournal
 from .half_branch import HalfBranch, Piece, piece_of, single
-from .opening import SHORTER, opening
+from .opening import SHORTER, opening, without_rounding
 from .records import pack, unpack
 
 
@@ -104,4 +104,4 @@ def trace_half(
             notice(len(half), half.end)
         if status != Status.RUNNING:
             break
-    return half
+    return half if origin is None or half.status == Status.CLOSED else without_rounding(engine, origin, half)

@@ -11,7 +11,7 @@ The contract, in words:
 6. ``section.varied(x)``, where a section has it: the next point with its derivatives by x, shape (d, d), and by the parameter, shape
    (d,); NaN where they are not known. Without it differences of ``step`` stand in.
 7. ``section.struck(x, near)``, where a section has it: of a point at a wall, or no farther from it than `near`, the other point there from
-   which the motion goes on alike (just before and just after an impact); None elsewhere.
+   which the motion goes on alike (just before and just after an impact), and the direction away from the wall; None elsewhere.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Varied(Protocol):
 class Walled(Protocol):
     """A section that knows the walls at which motions rebound."""
 
-    def struck(self, x: np.ndarray, near: float) -> np.ndarray | None: ...
+    def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
 
 
 def section_of(problem: Problem, p: float) -> Section:

@@ -18,7 +18,13 @@ from ..circles.section import Section, Walled, section_of
 from ..graph.graph import Graph
 from .solutions import solutions_at
 
-FIRST = 1e-4  # of the plane's size: distance of the first point from the saddle
+FIRST = (
+    1e-4,
+    1e-5,
+    1e-6,
+    1e-7,
+)  # of the plane's size: distances of the first point from the saddle, the next where
+LINEAR = 0.1  # images are further, in such distances, from where the derivative has them: a saddle beside a grazing impact is bent
 LARGEST, SMALLEST = 0.01, 1e-6  # of the plane's size: radii of the circles
 TURN, STRAIGHT = (
     0.3,
@@ -30,7 +36,7 @@ INWARD = 1.55  # largest angle to the inward normal at which a curve comes out o
 PIECES = 40  # of a curve between walls, at most
 ARCS = 12  # candidates on the part of a circle that is searched
 REFINED = 40  # halvings of an angle
-DIFFERENCE = 1e-6  # of the plane's size: for the derivative at the saddle
+DIFFERENCE = 0.01  # of the first point's distance: for the derivative at the saddle
 LENGTH = 20.0  # sizes of the plane: a curve ends when it is so long
 
 
@@ -146,29 +152,46 @@ def _halves(
     section: Section, place: np.ndarray, limits: np.ndarray, longest: float
 ) -> list[tuple[np.ndarray, str]]:
     """The pieces of both halves, and how each ends."""
-    step = section.step
     size = float(np.ptp(limits, axis=1).max())
-    jacobian = np.empty((2, 2))
+    found = [saddle for first in FIRST if (saddle := _linear(section.step, place, first * size)) is not None]
+    if not found:
+        return []
+    first, ray, slow, _ = next((saddle for saddle in found if saddle[-1] < LINEAR), found[0])
+    step = section.step
+    image = (
+        (lambda x: step(step(x))) if slow < 0.0 else step
+    )  # the two halves change places: every second image stays on one
+    struck = section.struck if isinstance(section, Walled) else None
+    pieces = []
+    for side in (1.0, -1.0):
+        pieces += _Half(image, struck, place, side * ray, first, limits).grown(longest)
+    return pieces
+
+
+def _linear(
+    step: Callable[[np.ndarray], np.ndarray], place: np.ndarray, first: float
+) -> tuple[float, np.ndarray, float, float] | None:
+    """A distance, the stable direction and multiplier of a saddle, from differences of a hundredth of it, and, in such distances, how far
+
+    the images at the distance are from where these have them; None where it is no saddle.
+    """
+    jacobian, apart = np.empty((2, 2)), DIFFERENCE * first
     for j in range(2):
         moved = np.zeros(2)
-        moved[j] = DIFFERENCE * size
-        jacobian[:, j] = (step(place + moved) - step(place - moved)) / (2.0 * DIFFERENCE * size)
+        moved[j] = apart
+        jacobian[:, j] = (step(place + moved) - step(place - moved)) / (2.0 * apart)
     if not np.all(np.isfinite(jacobian)):
-        return []
+        return None
     values: Any
     vectors: Any
     values, vectors = np.linalg.eig(jacobian)
     if np.abs(values.imag).max() > 0.0 or not np.abs(values).min() < 1.0 < np.abs(values).max():
-        return []
+        return None
     k = int(np.abs(values).argmin())
-    twice = float(values.real[k]) < 0.0  # the two halves change places: every second image stays on one
-    image = (lambda x: step(step(x))) if twice else step
-    struck = section.struck if isinstance(section, Walled) else None
-    pieces = []
-    for side in (1.0, -1.0):
-        ray = side * vectors.real[:, k] / np.linalg.norm(vectors.real[:, k])
-        pieces += _Half(image, struck, place, ray, limits).grown(longest)
-    return pieces
+    slow, ray = float(values.real[k]), vectors.real[:, k] / np.linalg.norm(vectors.real[:, k])
+    images = [step(place + side * first * ray) - place - side * slow * first * ray for side in (1.0, -1.0)]
+    off = max(float(np.linalg.norm(image)) for image in images) / first
+    return first, ray, slow, off if np.isfinite(off) else np.inf
 
 
 class _Half:
@@ -177,19 +200,21 @@ class _Half:
     def __init__(
         self,
         image: Callable[[np.ndarray], np.ndarray],
-        struck: Callable[[np.ndarray, float], np.ndarray | None] | None,
+        struck: Callable[[np.ndarray, float], tuple[np.ndarray, np.ndarray] | None] | None,
         place: np.ndarray,
         ray: np.ndarray,
+        first: float,
         limits: np.ndarray,
     ) -> None:
         self.image, self.struck, self.limits = image, struck, limits
         self.size = float(np.ptp(limits, axis=1).max())
-        self.pieces = [[place, place + FIRST * self.size * ray]]
-        self.heading, self.at, self.length = ray, 0, FIRST * self.size
+        self.pieces = [[place, place + first * ray]]
+        self.heading, self.at, self.length = ray, 0, first
+        self.smallest = min(SMALLEST * self.size, 0.01 * first)
 
     def grown(self, longest: float) -> list[tuple[np.ndarray, str]]:
         """The pieces, and how each ends."""
-        ends = [self._on(FIRST * self.size, TURN, longest * self.size)]
+        ends = [self._on(self.length, TURN, longest * self.size)]
         while ends[-1] == "leaves" and self._through():
             ended = self._on(CORNER * self.size, INWARD, longest * self.size)
             if len(self.pieces[-1]) == 1:  # it does not come out of the wall
@@ -210,10 +235,11 @@ class _Half:
                 found = _next(self.image, known, points[-1], self.heading, radius, BENT)
             if found is None:
                 radius *= 0.5
-                if radius < SMALLEST * size:
+                if radius < self.smallest:
                     # no start beyond a wall
-                    edge = len(points) > 1 and np.abs(points[-1][:, None] - limits).min() < CORNER * size
-                    return "leaves" if edge else "breaks"
+                    edge = np.abs(points[-1][:, None] - limits).min() < CORNER * size
+                    at_wall = len(points) > 1 and (edge or self._struck() is not None)
+                    return "leaves" if at_wall else "breaks"
                 continue
             point, self.at, turn = found
             self.heading = point - points[-1]
@@ -228,13 +254,16 @@ class _Half:
 
     def _through(self) -> bool:
         """Begin another piece on the other side of an impact; whether there is one within the plane."""
-        last = self.pieces[-1][-1]
-        other = None if self.struck is None else self.struck(last, CORNER * self.size)
-        if other is None or np.any(other < self.limits[:, 0]) or np.any(other > self.limits[:, 1]):
+        found = self._struck()
+        if found is None or np.any(found[0] < self.limits[:, 0]) or np.any(found[0] > self.limits[:, 1]):
             return False
-        self.pieces.append([other])
-        self.heading = np.array([self.limits[0].mean() - other[0], 0.0])
+        self.pieces.append([found[0]])
+        self.heading = found[1]
         return True
+
+    def _struck(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Where the curve goes on if its last point is at a wall, and the direction away from the wall."""
+        return None if self.struck is None else self.struck(self.pieces[-1][-1], CORNER * self.size)
 
     def _segments(self) -> tuple[np.ndarray, np.ndarray]:
         """Where the segments of all pieces begin and end."""
@@ -253,31 +282,31 @@ def _next(
     """The point on the circle whose image lies on the known segments, from `known[2]` on, the segment on which it lies, and the angle turned by."""
     middle = np.arctan2(heading[1], heading[0])
 
-    def offset(angle: float) -> tuple[float, int]:
+    def offset(angle: float) -> tuple[float, int, bool]:
         return _beside(*known, image(last + radius * np.array([np.cos(angle), np.sin(angle)])))
 
     count = int(np.ceil(ARCS * max(1.0, widest))) if widest > TURN else ARCS
     turns = [float(turn) for turn in widest * np.linspace(-1.0, 1.0, count + 1)]
     order = sorted(pairwise(turns), key=lambda ends: abs(ends[0] + ends[1]))
-    sides: dict[float, tuple[float, int]] = {}
+    sides: dict[float, tuple[float, int, bool]] = {}
     for low, high in order:
         for turn in (low, high):
             if turn not in sides:
                 sides[turn] = offset(middle + turn)
-        (a, _), (b, _) = sides[low], sides[high]
+        a, b = sides[low][0], sides[high][0]
         if not (np.isfinite(a) and np.isfinite(b)) or a * b > 0.0:
             continue
-        segment = known[2]
+        segment, beyond = known[2], False
         for _ in range(REFINED):
             half = 0.5 * (low + high)
-            value, segment = offset(middle + half)
+            value, segment, beyond = offset(middle + half)
             if not np.isfinite(value):
                 return None
             if value * a > 0.0:
                 low = half
             else:
                 high = half
-        if abs(value) > 1e-3 * radius:  # a jump of the motion, not a crossing of the curve
+        if beyond or abs(value) > 1e-3 * radius:  # a jump of the motion, not a crossing of the curve
             continue
         angle = middle + 0.5 * (low + high)
         return (
@@ -288,10 +317,13 @@ def _next(
     return None
 
 
-def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int]:
-    """Signed distance of a point to known segments near that numbered `at` or later ones, and the nearest segment."""
+def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int, bool]:
+    """Signed distance of a point to known segments near that numbered `at` or later ones, the nearest segment, and whether the point is
+
+    beyond what is known: then the distance is that to the last segment's line, whose side still tells where a saddle throws it.
+    """
     if not np.all(np.isfinite(point)):
-        return float("nan"), at
+        return float("nan"), at, False
     first = max(at - 2, 0)
     starts, ends = starts[first:], ends[first:]
     along = ends - starts
@@ -300,7 +332,7 @@ def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) ->
     inside = np.clip(part, 0.0, 1.0)
     gaps = np.linalg.norm(point - (starts + inside[:, None] * along), axis=1)
     k = int(gaps.argmin())
-    if k == len(gaps) - 1 and part[k] > 1.0:
-        return float("nan"), at  # beyond what is known
     across = along[k, 0] * (point - starts[k])[1] - along[k, 1] * (point - starts[k])[0]
-    return float(np.sign(across) * gaps[k]), first + k
+    if k == len(gaps) - 1 and part[k] > 1.0:
+        return float(across / np.sqrt(lengths[k])), at, True
+    return float(np.sign(across) * gaps[k]), first + k, False

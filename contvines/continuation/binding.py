@@ -88,7 +88,6 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
     part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
-    # in the order in which they are written: sums in any order would differ from one compilation to the next, and results with them
     sums = {name: part(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = copy_with(corrector.improve, suffix, **sums)
     # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
@@ -104,9 +103,9 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     )
     search = _search(part, suffix)
 
-    def make(unpack: Any) -> Any:
+    def make(unpack: Any, mark: str) -> Any:
         names = {"unpack": unpack, "improve": part(improve), **sums, **functions, **search}
-        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix, **names))
+        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix + mark, **names))
 
     return Bound(march, corrector.points, Keeper(make, OPTIONS, suffix))
 

@@ -163,7 +163,7 @@ class Engine(Rows):
         along: np.ndarray | None,
     ) -> Solved | None:
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return self._points(self.guess, (target, 0.0), ONE, border, along, sweeps)[0]
+        return solved_points(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0])[0]
 
     def on_chord(
         self,
@@ -175,7 +175,20 @@ class Engine(Rows):
         along: np.ndarray,
     ) -> list[Solved | None]:
         """The points of a branch at places along a chord; see :func:`contvines.continuation.corrector.points`."""
-        return self._points(chord, (start, length), places, border, along, 40)
+        return solved_points(self._run(chord, (start, length), places, border, along, 40)[0])
+
+    def rows_on_chord(
+        self,
+        chord: np.ndarray,
+        places: np.ndarray,
+        start: float,
+        length: float,
+        border: np.ndarray,
+        along: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of multipliers and margins of the same points, (k, columns), and which of them are solutions, (k,)."""
+        found, _ = self._run(chord, (start, length), places, border, along, 40, NO_AIM)
+        return found.rows, found.numbers[:, 1] >= 0.0
 
     def search(
         self,
@@ -211,17 +224,6 @@ class Engine(Rows):
         width = abs(p_one - p_other) + 4e-16 * abs(point.p)
         return Hit(place, point, max(width, point.correction * 1e-3), abs(f_one - f_other))
 
-    def _points(
-        self,
-        chord: np.ndarray,
-        stretch: tuple[float, float],
-        places: np.ndarray,
-        border: np.ndarray,
-        along: np.ndarray | None,
-        sweeps: int,
-    ) -> list[Solved | None]:
-        return solved_points(self._run(chord, stretch, places, border, along, sweeps, NO_AIM)[0])
-
     def _run(
         self,
         chord: np.ndarray,
@@ -230,7 +232,7 @@ class Engine(Rows):
         border: np.ndarray,
         along: np.ndarray | None,
         sweeps: int,
-        aim: Aim,
+        aim: Aim = NO_AIM,
     ) -> tuple[corrector.Found, int]:
         k, n = len(places), self.n
         found = corrector.Found(

@@ -6,6 +6,7 @@ compiled form of the whole tuple is written to a piece of memory, and calls are 
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from typing import Any
 
@@ -15,7 +16,7 @@ from numba import njit, typeof, types  # pyright: ignore[reportPrivateImportUsag
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
-Maker = Callable[[Any], Callable[..., Any]]
+Maker = Callable[[Any, str], Callable[..., Any]]
 
 
 def _pointer(context: Any, builder: Any, address: Any, kind: Any) -> Any:
@@ -51,7 +52,8 @@ class Keeper:
     Parameters
     ----------
     make : callable
-        From what unpacks a kept tuple to the compiled function, whose first argument is its address.
+        From what unpacks a kept tuple to the compiled function, whose first argument is its address; and from a mark of the
+        tuple's type, which the name has to carry: an address has no type by which what is on disk could be told apart.
     options : dict
         Of the compiler; without reference counts, which nobody would keep for the arrays at an address.
     suffix : str
@@ -79,7 +81,7 @@ class Keeper:
         if not _plain(kind):
             if self.plain is None:
                 itself: Any = njit(**self.options)
-                self.plain = self.make(itself(_itself))
+                self.plain = self.make(itself(_itself), "")
             return self.plain, frame, None
         context: Any = cpu_target.target_context
         size = -(-context.get_abi_sizeof(context.get_data_type(kind)) // 8)
@@ -89,9 +91,10 @@ class Keeper:
         def save(address, frame):
             return writes(address, frame)
 
-        save.__qualname__ = f"save_{self.suffix}"
+        mark = "_" + hashlib.blake2b(str(kind).encode(), digest_size=4).hexdigest()
+        save.__qualname__ = f"save_{self.suffix}{mark}"
         compiled: Any = njit(types.int64(types.int64, kind), cache=True, **self.options)
-        self.known.append((size, compiled(save), self.make(_loader(kind))))
+        self.known.append((size, compiled(save), self.make(_loader(kind), mark)))
         return self.keep(frame)
 
 

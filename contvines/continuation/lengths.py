@@ -26,15 +26,12 @@ class Metric(NamedTuple):
 def correction_size(step, u, p, metric):
     """Largest entry of a correction, relative to 1 + abs(unknown); infinity where it is not finite."""
     n = u.shape[0]
-    size = abs(step[n]) / (1.0 + abs(p))
-    finite = step[n] - step[n]
+    size = total = abs(step[n]) / (1.0 + abs(p))
     for i in range(n):
-        finite += step[i] - step[i]
-    if finite != 0.0:
-        return math.inf
-    for i in range(n):
-        size = max(size, abs(step[i]) / (1.0 + abs(u[i])))
-    return size
+        entry = abs(step[i]) / (1.0 + abs(u[i]))
+        size = max(size, entry)
+        total += entry  # maxima pass over what is not a number
+    return size if total < math.inf else math.inf
 
 
 def add(u, step):
@@ -91,17 +88,15 @@ def compare(tangent, before, u, guess_u, p, guess, metric):
 def orient(tangent, along, border, metric):
     """Length of a tangent, its inner product with another vector, and border.tangent; the length is infinite where one is not finite."""
     n = tangent.shape[0] - 1
-    finite = tangent[n] - tangent[n]
     part_norm, part_same = 0.0, 0.0
     across = border[n] * tangent[n]
     for j in range(n):
-        finite += tangent[j] - tangent[j]
         part_norm += tangent[j] * tangent[j]
         part_same += tangent[j] * along[j]
         across += border[j] * tangent[j]
-    norm = math.sqrt(metric.of_unknowns * part_norm + metric.of_parameter * tangent[n] * tangent[n])
+    square = metric.of_unknowns * part_norm + metric.of_parameter * tangent[n] * tangent[n]
     same = metric.of_unknowns * part_same + metric.of_parameter * tangent[n] * along[n]
-    return norm if finite == 0.0 else math.inf, same, across
+    return math.sqrt(square) if square < math.inf else math.inf, same, across
 
 
 def hermite(chord, s, u, guess):

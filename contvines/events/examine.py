@@ -9,7 +9,6 @@ import numpy as np
 
 from ..continuation.aims import NO_COLUMNS, SIGN, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
-from ..problems.abilities import Nearing
 from .blur import blurred
 from .borders import find_border
 from .determinant import DeterminantTest, passes, turned
@@ -27,9 +26,8 @@ from .users import user_function
 NAMES = ("plus", "minus", "pair")
 AT_FOLDS, AT_SIGNS = Aim(SLOPE, NO_COLUMNS), Aim(SIGN, NO_COLUMNS)
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
-EXACT = (
-    1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
-)
+# residual of a branch point where a side branch turns; halfway between two branches it is larger
+EXACT = 1e-13
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
@@ -64,8 +62,8 @@ class Examiner:
         self.scaled = problem.scales is not None
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
-        self.many = isinstance(problem, Nearing) and problem.many
-        self.signed = not isinstance(problem, Nearing) or problem.signed
+        self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
+        self.signed = bool(getattr(problem, "signed", True))
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -94,12 +92,14 @@ class Examiner:
         a, b = segment.a, segment.b
         met = [e.position for e in events]
         folds = self._fold(segment, met)
-        counted = 0
-        discarded = False
+        counted, discarded = 0, False
         crossings: list[Located] = []
         before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
         # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
-        rounded = self.scaled and self.signed and int(after[0] - before[0]) % 2 != turned(a, b)
+        odd, side = int(after[0] - before[0]) % 2, turned(a, b)
+        rounded = self.scaled and self.signed and odd != side
+        # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes: the ends do not tell
+        infinite = not self.scaled and self.kind == "map" and side is not None and odd != side
         if abs(int(after[0] - before[0])) == 1 and self.scaled:
             # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
             one_fold = len(folds) == 1 and a.sign * b.sign > 0.0
@@ -129,7 +129,7 @@ class Examiner:
         # real multipliers come from one side of the axis to the other as pairs: of an odd number one has passed the circle
         change = after - before
         passed = change @ np.array([1, 1, 2]) != 0 or bool(change[0] % 2)
-        if discarded and passed and depth < DEEPEST:
+        if (infinite or (discarded and passed)) and depth < DEEPEST:
             middle = segment.at(0.5)
             if middle is not None:
                 return self.both(segment, 0.5, middle, real, depth + 1)

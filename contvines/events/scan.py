@@ -163,8 +163,13 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
             uneven = max(short / length, length / short)
             share = 0.25 * uneven * uneven
             a, b, c = smallest[i - 2], smallest[i - 1], smallest[i]
+            bounded = max(max(a, b), c) < np.inf  # infinite without margins
             if real and (
-                (min(min(a, b), c) < share * (abs(b - a) + abs(c - b)) and dips(a, b, c, short, length))
+                (
+                    bounded
+                    and min(min(a, b), c) < share * (abs(b - a) + abs(c - b))
+                    and dips(a, b, c, short, length)
+                )
                 or one_dips(rows, i, first_margin, short, length, share)
             ):
                 flags[i - 2] |= SHALLOW

@@ -14,7 +14,6 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from .borders import first_zero
 from .dips import below_zero
-from .scan_arrays import dips
 from .segment import Segment
 
 SHOWN = 1e-6  # margins that are certainly positive: where a doubled branch passes through the border of its root, as one round gets what
@@ -24,7 +23,8 @@ SHOWN = 1e-6  # margins that are certainly positive: where a doubled branch pass
 def windows(engine: Engine, chunk: Chunk) -> NDArray[np.bool_]:
     """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,).
 
-    A margin that is negative at both ends may be positive in between where the parabola through three neighbours is.
+    A margin that is negative at both ends may be positive in between where the lines through the two points before and through
+    the two behind are, which lie above it wherever it bends downwards, or is a roof, as the reserve of friction is.
     """
     margins = engine.margins(chunk.rows) - MARGIN
     below = margins < 0.0
@@ -34,14 +34,23 @@ def windows(engine: Engine, chunk: Chunk) -> NDArray[np.bool_]:
     steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
     lengths = np.sqrt((steps**2) @ engine.weights)
     for j in np.flatnonzero(kept[found].any(axis=0)):
-        rises = np.zeros(len(found), dtype=bool)
-        if len(found) > 1:
-            with np.errstate(all="ignore"):
-                humps = dips(-margins[:-2, j], -margins[1:-1, j], -margins[2:, j], lengths)
-            rises[:-1] |= humps
-            rises[1:] |= humps
-        found &= rises | ~kept[:, j]
+        found &= _may_rise(margins[:, j], lengths) | ~kept[:, j]
     return found
+
+
+def _may_rise(margin: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Segments in which the lines through the two points before and the two behind, of a margin negative at both ends, are positive at once.
+
+    At either end of the points there is one such line only; of a single segment nothing is known.
+    """
+    if len(lengths) < 2:
+        return np.zeros(len(lengths), dtype=bool)
+    with np.errstate(all="ignore"):
+        slopes = np.diff(margin) / lengths
+        rises = np.where(slopes[:-1] > 0.0, -margin[1:-1] / slopes[:-1], np.inf)
+        falls = np.where(slopes[1:] < 0.0, lengths[:-1] - margin[1:-1] / slopes[1:], -np.inf)
+    begins, ends = np.append(0.0, rises), np.append(falls, lengths[-1])
+    return (begins < ends) & (begins < lengths) & (ends > 0.0)
 
 
 def passed(segment: Segment) -> tuple[float, Solved] | None:

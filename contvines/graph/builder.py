@@ -11,7 +11,7 @@ from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
-from ..branches.opening import on_this_branch, on_this_side
+from ..branches.opening import SHOWN, on_this_branch, on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
@@ -135,7 +135,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
         return
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
-        known = None if parts_further_on(known, engine, first) else known
+        itself = run.engine(known.problem)[0]
+        known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None:
             if known.label == pending.source:
@@ -213,18 +214,22 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
             first = None
     elif pending.kind is Origin.REST:
         first = pending.origin
+        if first is not None and pending.real and pending.first_step is None:
+            pending.first_step = room(engine, first, run.settings.first_step)
     else:
         first = engine.start(pending.u, pending.p, pending.tangent)
         if first is not None:
-            step = 0.0
+            step, side = 0.0, True if pending.kind is Origin.BORDER else None
             if pending.kind is Origin.ROOT and pending.tangent is None:
-                # off the point where the known branch ends, or it would be taken for that branch
+                # off the point where the known branch ends, or it would be taken for that branch, but not past a border
                 step = run.settings.amplitude
+                margin = float(engine.smallest_margin(first.row))
+                side = margin >= MARGIN if abs(margin) > SHOWN else None
             elif abs(first.tangent[-1]) <= 1e-6 * run.unit(first.p) or first.sign == 0.0:
                 # off a fold or branch point, which would else lie on neither of the two halves
                 step = run.settings.first_step
             if step > 0.0:
-                first = off(engine, first, step, pending.kind is Origin.BORDER)
+                first = off(engine, first, step, side)
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
@@ -243,12 +248,23 @@ def _bring_near(engine: Engine, pending: Pending) -> None:
             pending.first_step = min(pending.first_step or step, step)
 
 
-def off(engine: Engine, point: Solved, step: float, real: bool) -> Solved:
-    """A point of the same branch at a small distance, ahead if there is one: of a real branch, which may be shorter, a real one."""
+def room(engine: Engine, border: Solved, step: float) -> float | None:
+    """A first step from a border that ends where the branch is real, if the usual one does not: it may be real in a short window only."""
+    for length in (step, 0.1 * step, 0.01 * step, 1e-3 * step):
+        found = beside(engine, border, length)
+        if found is not None and float(engine.smallest_margin(found.row)) >= MARGIN:
+            return None if length == step else length
+    return None
+
+
+def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
+    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part."""
     for length in (step, 0.1 * step, 0.01 * step):
         for side in (length, -length):
             found = beside(engine, point, side)
-            if found is not None and not (real and float(engine.smallest_margin(found.row)) < MARGIN):
+            if found is None:
+                continue
+            if real is None or (float(engine.smallest_margin(found.row)) >= MARGIN) == real:
                 return found
     return point
 

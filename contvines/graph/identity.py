@@ -78,7 +78,7 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
     return False
 
 
-def parts_further_on(branch: Branch, engine: Engine, first: Solved) -> bool:
+def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solved) -> bool:
     """Whether a branch that begins on a known one, within what counts as the same, is another one: it may leave at a small angle.
 
     It is followed in steps of twice the length until it is away from the known one, or far along it.
@@ -86,11 +86,18 @@ def parts_further_on(branch: Branch, engine: Engine, first: Solved) -> bool:
     Parameters
     ----------
     branch : Branch
-        The known one, of the same problem.
+        The known one.
+    known : Engine
+        Its own: the same solutions may be written with other unknowns there, half a cycle's instead of the whole one's.
     engine : Engine
+        Of the branch that begins.
     first : Solved
     """
-    gap, length, point = _gap(branch, engine, first), 1e-6, first
+
+    def away(point: Solved) -> float:
+        return _gap(branch, known, *engine.problem.canonical(point.u, point.p), point.p)
+
+    gap, length, point = away(first), 1e-6, first
     while EXACTLY < gap <= SAME and 100.0 * engine.noise < EXACTLY and length < FAR:
         border = engine.weights * point.tangent
         guess = engine.join(point.u, point.p) + length * point.tangent
@@ -102,21 +109,20 @@ def parts_further_on(branch: Branch, engine: Engine, first: Solved) -> bool:
             if length < 1e-8:
                 return False
             continue
-        before, gap, point, length = gap, _gap(branch, engine, found), found, 2.0 * length
+        before, gap, point, length = gap, away(found), found, 2.0 * length
         if gap < before:
             return False
     return SAME < gap < np.inf
 
 
-def _gap(branch: Branch, engine: Engine, point: Solved) -> float:
-    """Distance of a point from the branch at its parameter value as :func:`same_vector` has it, infinite where the branch is not near."""
-    key, vector = engine.problem.canonical(point.u, point.p)
-    least, gaps = np.inf, branch.values - point.p
+def _gap(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> float:
+    """Distance of a canonical form from the branch at its parameter value as :func:`same_vector` has it, infinite where the branch is not near."""
+    least, gaps = np.inf, branch.values - p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
-        found = engine.at_value(_at_value(branch, engine, int(i), point.p), point.p)
+        found = engine.at_value(_at_value(branch, engine, int(i), p), p)
         if found is None:
             continue
-        here, near = engine.problem.canonical(found.u, point.p)
+        here, near = engine.problem.canonical(found.u, p)
         if here == key and near.shape == vector.shape:
             a, b = _in_units(near, engine.scale), _in_units(vector, engine.scale)
             least = min(least, float(np.abs(a - b).max(initial=0.0)) / (1.0 + np.abs(b).max(initial=0.0)))

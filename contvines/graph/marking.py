@@ -169,7 +169,7 @@ def _known(
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
                 return other.point
-    form = None
+    form, beside = None, []
     if kind == "fold":
         turning = _turning_at(run, engine, event)
         if turning is not None:
@@ -187,8 +187,9 @@ def _known(
         if same_form(form, run.form(known), engine.scale):
             return known.label
         if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
-            return known.label  # one point seen in two problems, whose forms need not agree
-    return None
+            beside.append((abs(known.value - point.p), known.label))
+    # one point seen in two problems, whose forms need not agree: the nearest, where others are near
+    return min(beside)[1] if beside else None
 
 
 def _without_turnings(

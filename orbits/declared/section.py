@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from orbits.contacts.wall import Wall
 from orbits.declared.machine import Machine
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 from orbits.declared.variations import Variations
@@ -88,6 +89,34 @@ class Section:
                 return np.full(self.machine.size, np.nan)
             left -= found[:2] == self.event
         return self.stepper.state.copy()
+
+    def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere.
+
+        Where the forcing passes phase zero; the points just after the events of a self-excited machine are not told apart.
+        """
+        if not self.machine.forced:
+            return None
+        compiled, x = self.stepper.compiled, np.array(x, dtype=float)
+        numbers = compiled.numbers(self.params, self.modes)
+        gaps = compiled.contact_values().one(x, 0.0, numbers)
+        for j, contact in enumerate(self.machine.contacts):
+            if not isinstance(contact, Wall):
+                continue
+            slopes = compiled.gap_slopes(j).one(x, 0.0, numbers)
+            steep = float(np.linalg.norm(slopes))
+            if not abs(gaps[j]) < near * steep:
+                continue
+            here = x - gaps[j] * slopes / steep**2
+            row = compiled.impact_map(j).one(here, 0.0, numbers)
+            jump, rate = row[:-1] - here, row[-1]
+            if (
+                rate > 0.0
+            ):  # it is the state after an impact: the impulse was larger by 1/restitution and the other way round
+                jump = jump / compiled.rebound(j).one(here, 0.0, numbers)[1]
+            if rate != 0.0 and np.all(np.isfinite(jump)):
+                return here + jump, slopes / steep
+        return None
 
     def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """`step` with its derivatives by x, shape (d, d), and by the parameter, shape (d,); NaN where a wall holds the body."""

@@ -70,13 +70,14 @@ class Section:
         self.engine.launch(state, self.params)
         return self._after(state, float(self.periods))
 
-    def struck(self, x: np.ndarray, near: float) -> np.ndarray | None:
-        """Of a point at a wall the other one there: just after the impact, or just before it; None elsewhere."""
+    def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere."""
         for wall, side, r in zip(self.engine.walls(self.params), (1.0, -1.0), self.restitutions):
             if abs(x[0] - wall) < near and x[1] != 0.0:
-                other = np.array(x, dtype=float)
+                other, away = np.array(x, dtype=float), np.zeros(len(x))
                 other[0], other[1] = wall, -x[1] * r if side * x[1] > 0.0 else -x[1] / r
-                return other if np.all(np.isfinite(other)) else None
+                away[0] = -side
+                return (other, away) if np.all(np.isfinite(other)) else None
         return None
 
     def _first(self, u: np.ndarray) -> np.ndarray:

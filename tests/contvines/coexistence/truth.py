@@ -3,7 +3,7 @@
 ``python -m tests.contvines.coexistence.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
 ``python -m tests.contvines.coexistence.truth frequency 200``  the coupled machine, 40 frequencies, two forcings, so many starts at each (2000)
 ``python -m tests.contvines.coexistence.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``, ``declared``)
-``python -m tests.contvines.coexistence.truth absorber 5 10``  five of them, from the tenth on
+``python -m tests.contvines.coexistence.truth absorber 5 10``  five of them, from the tenth on; the sum so far is told after each
 """
 
 from __future__ import annotations
@@ -27,11 +27,9 @@ from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
 from orbits.declared.loading import load_page
-from orbits.declared.orbit import DeclaredOrbit
 from tests.contvines.coexistence.drawn import OPTIONS, STARTS, drawn
+from tests.contvines.coexistence.impacts import impacts_of, kind_of, same
 
-TWO_PI = 2.0 * np.pi
-SAME = 2e-6  # difference of phases and velocities of impacts
 SIGMAS = 3.0
 ENOUGH = 1000  # starts of our own for shares
 FEW_OF_A_PAGE = 100  # starts for shares: those of a page are followed one by one
@@ -61,6 +59,8 @@ class Tally:
     share: float = 0.0
     missing_share: float = 0.0
     unnamed: int = 0
+    kinds: int = 0
+    lost: int = 0
     compared: int = 0
     apart: int = 0
 
@@ -70,6 +70,7 @@ class Tally:
     def __str__(self) -> str:
         return (
             f"{self.met - self.missing} of {self.met} attractors, {1.0 - self.missing_share / max(self.share, 1e-300):.4%} of starts, "
+            f"{self.kinds - self.lost} of {self.kinds} kinds, "
             f"{self.unnamed} wandering values without a name; {self.apart} of {self.compared} shares beyond {SIGMAS:g} sigma"
         )
 
@@ -139,8 +140,12 @@ def _numbers(machine: Any, over: str, p: float, box: np.ndarray) -> list[float]:
 
 
 def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any = print) -> Tally:
-    """Look for everything that was met on a stable real branch of a graph."""
+    """Look for everything that was met on a stable real branch of a graph.
+
+    Those of one kind, wherever they were met, have as many periods and the same walls in a row; a kind is lost if one of them is.
+    """
     tally, engines = Tally(), {}
+    kinds: dict[tuple, bool] = {}
     low, high = graph.within
     for here in met:
         stable = [
@@ -158,20 +163,24 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
             on = (
                 "chatter" in named  # infinitely many impacts have no word
                 if piles
-                else any(_same(row, one, mirror) for one in known)
+                else any(same(row, one, mirror) for one in known)
                 if hits
                 else any(not set(w) & set("LR") for w in resting)
             )
             tally += Tally(1, not on, share, 0.0 if on else share)
+            kind = kind_of(periods, row, piles, mirror)
+            kinds[kind] = kinds.get(kind, False) or not on
             if not on:
                 say(
                     f"missing at {here.value:.8g}: {hits} impacts in {periods} periods, share {share:.4f} of the starts"
                 )
-        if here.wandering and not named & NAMED:
-            share = here.wandering / total
-            tally += Tally(unnamed=1)
-            say(f"not named near {here.value:.8g}: share {share:.4f} of the starts wanders")
-    return tally
+        if here.wandering:
+            share, on = here.wandering / total, bool(named & NAMED)
+            tally += Tally(unnamed=not on, share=share, missing_share=0.0 if on else share)
+            kinds[("wanders",)] = kinds.get(("wanders",), False) or not on
+            if not on:
+                say(f"not named near {here.value:.8g}: share {share:.4f} of the starts wanders")
+    return tally + Tally(kinds=len(kinds), lost=sum(kinds.values()))
 
 
 def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: Any = print) -> Tally:
@@ -188,7 +197,8 @@ def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: 
                 ours = sum(
                     n
                     for m, n in own
-                    if m.kind == "periodic" and _same(row, _impacts(m.problem.orbit(m.u, here.value)), mirror)
+                    if m.kind == "periodic"
+                    and same(row, impacts_of(m.problem.orbit(m.u, here.value)), mirror)
                 )
             else:
                 ours = sum(
@@ -239,46 +249,7 @@ def _impacts_on(branch: Any, p: float, within: tuple[float, float], engines: dic
         t = gaps[i] / (gaps[i] - gaps[i + 1])
         solved = engine.at_value(branch.points[i] * (1.0 - t) + branch.points[i + 1] * t, p)
         if solved is not None:
-            yield _impacts(branch.problem.orbit(solved.u, p))
-
-
-def _impacts(orbit: Any) -> np.ndarray:
-    """Wall (1 left, -1 right), phase and B (velocity of the cavity less that of the mass in it) of every impact, shape (n, 3)."""
-    if isinstance(orbit, DeclaredOrbit):  # the absorber as a page: its states are w and w'
-        of = dict(zip(orbit.machine.parameter_names, orbit.params, strict=True))
-        letters = [orbit.word.letter(i).text for i in range(len(orbit.word))]
-        rows = [
-            (
-                1.0 if letter == "L" else -1.0,
-                phase,
-                of["amplitude"] * of["frequency"] * math.cos(phase) - rate,
-            )
-            for letter, (phase, _, rate) in zip(letters, orbit.nodes, strict=True)
-            if letter in "LR"
-        ]
-        return np.array(rows).reshape(-1, 3)
-    rows = [
-        (1.0 if letter == "L" else -1.0, node[0], node[1])
-        for letter, node in zip(orbit.word.events, orbit.nodes, strict=True)
-        if letter in "LR"
-    ]
-    return np.array(rows).reshape(-1, 3)
-
-
-def _same(one: np.ndarray, other: np.ndarray, mirror: bool) -> bool:
-    """Whether two lists of impacts are one cycle, or mirror images."""
-    image = other * [-1.0, 1.0, -1.0] + [0.0, np.pi, 0.0]
-    return _alike(one, other) or (mirror and _alike(one, image))
-
-
-def _alike(one: np.ndarray, other: np.ndarray) -> bool:
-    if len(one) != len(other):
-        return False
-    phases = np.abs((one[:, None, 1] - other[None, :, 1] + np.pi) % TWO_PI - np.pi)
-    gaps = np.maximum(phases, np.abs(one[:, None, 2] - other[None, :, 2]))
-    gaps[one[:, None, 0] != other[None, :, 0]] = np.inf
-    nearest = gaps.argmin(axis=1)
-    return bool(len(set(nearest)) == len(one) and gaps.min(axis=1).max(initial=0.0) < SAME)
+            yield impacts_of(branch.problem.orbit(solved.u, p))
 
 
 def studied(
@@ -338,6 +309,7 @@ def main() -> None:
             tally += studied(
                 machine, over, (low, high), list(values), STARTS[what], what == "declared", **OPTIONS[what]
             )
+            print(f"   so far: {tally}", flush=True)
     print(tally)
 
 

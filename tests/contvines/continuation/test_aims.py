@@ -95,9 +95,11 @@ def test_points_of_a_segment_are_solved_together_as_one_by_one():
 
 def test_tuples_are_kept_by_their_types():
     """A tuple of other types is not read as one of those that came before."""
-    made = []
+    made, marks = [], set()
 
-    def make(unpack):
+    def make(unpack, mark):
+        marks.add(mark)
+
         def total(address):
             array, number = unpack(address)
             for value in array.flat:
@@ -112,4 +114,5 @@ def test_tuples_are_kept_by_their_types():
         frame = (array, 0.5)
         function, address, memory = keeper.keep(frame)
         assert memory is not None and function(address) == array.sum() + 0.5
-    assert len(made) == 3
+    # what is on disk under a name without its mark would read another's memory
+    assert len(made) == len(marks) == 3

@@ -5,6 +5,9 @@ import pytest
 
 import contvines as cv
 from contvines.events.kinds import BORDERS
+from contvines.problems.dense import KERNELS
+from contvines.problems.protocol import Kernels
+from tests.contvines.events.test_dips import Line
 
 
 def map_of(excess, bend, middle):
@@ -50,3 +53,30 @@ def test_multipliers_that_change_the_side_of_the_axis_beside_a_fold(k, side):
     graph = cv.diagram(problem, within=(-0.01, 0.03), settings={"max_step": 0.05}, depth=0)
     (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
     assert abs(fold.value) < 1e-15 and flip.value == pytest.approx((9.0 / k) ** 2, rel=1e-9)
+
+
+class Parabola(Line):
+    """p = u^2, turning at u = 0, with the multiplier 1 + k u/(pole - u): at infinity where u = pole, from above to below."""
+
+    u0, p0 = np.array([-0.6]), 0.36
+
+    def __init__(self, k, pole):
+        def inspect(data, u, p, work, row):
+            row[:] = 1.0 + k * u[0] / (pole - u[0]), 0.0, 1.0
+
+        super().__init__()
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect)
+
+    def equations(self, u, p):
+        return p - u * u, np.diag(-2.0 * u), np.array([1.0])
+
+
+@pytest.mark.parametrize("max_step", [0.1, 0.03])
+@pytest.mark.parametrize("pole", [1e-5, 1e-3, 4e-3, 0.0237])
+@pytest.mark.parametrize("k", [0.3, 0.9, 1.1])
+def test_a_multiplier_that_comes_back_from_infinity_beside_a_fold(max_step, pole, k):
+    """As where an event of a virtual orbit grazes. It is -1 at u = 2 pole/(2 - k), and inside the circle before the fold and behind that."""
+    graph = cv.diagram(Parabola(k, pole), within=(-0.2, 0.4), settings={"max_step": max_step}, depth=0)
+    (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
+    assert abs(fold.value) < 1e-14
+    assert flip.u[0] == pytest.approx(2.0 * pole / (2.0 - k), rel=1e-8)

@@ -63,6 +63,14 @@ def test_a_margin_rises_above_zero_between_two_points(centre, half):
     assert found == pytest.approx((centre - half, centre + half), abs=1e-12)
 
 
+@settings(max_examples=15, deadline=None)
+@given(CENTRES, HALVES, st.floats(0.5, 2.0))
+def test_a_margin_rises_above_zero_as_a_roof(centre, half, slope):
+    """As the reserve of friction does, which is the smaller one of two. No parabola through points on its sides is above zero."""
+    (found,) = real_from_to(lambda p: min(p - centre + half, slope * (centre + half - p)))
+    assert found == pytest.approx((centre - half, centre + half), abs=1e-12)
+
+
 @settings(max_examples=10, deadline=None)
 @given(CENTRES, HALVES)
 def test_where_one_is_lost_before_the_other_comes_back_nothing_is_real(centre, half):

@@ -92,5 +92,12 @@ def test_a_symmetric_branch_does_not_part_from_itself():
     point = engine.start(problem.reduce(machine.symmetric_orbit(amplitude=0.6001).nodes), 0.6001)
     aside = point._replace(u=point.u + 1e-8)  # further off than rounding
     assert len(engine.problem.canonical(point.u, point.p)[1]) > engine.n
-    assert not parts_further_on(graph["B1"], engine, point)
-    assert not parts_further_on(graph["B1"], engine, aside)
+    assert not parts_further_on(graph["B1"], engine, engine, point)
+    assert not parts_further_on(graph["B1"], engine, engine, aside)
+    full = machine.symmetric_orbit(amplitude=0.6001)
+    unhalved = full.problem("amplitude", symmetric=False)
+    whole = Engine(unhalved, (0.55, 0.65), Settings())
+    same = whole.start(*full.seed(unhalved))
+    assert whole.n > engine.n
+    assert not parts_further_on(graph["B1"], engine, whole, same)
+    assert not parts_further_on(graph["B1"], engine, whole, same._replace(u=same.u + 1e-8))

@@ -22,6 +22,7 @@ BESIDE = 1e-6  # margins as small make events a matter of rounding
 WILD = 1e6  # multipliers as large are lost within a period
 DIFFERENCES = 1e-4  # of characteristic polynomials, relative
 EXACTLY = 1e-5  # of the same, in many digits
+ROUGHLY = 1e-3  # ... where floating point does not resolve the stretch: multipliers run from one end of the circle to the other within 1e-10
 PARAMETER = 1e-10  # by which the orbit in many digits may be another machine's: rounding of phases, times what an event's map amplifies
 UNRESOLVED = 1e-12  # stretches of the parameter, relative, that floating point does not resolve
 NARROW = 1e-10  # stretches of the parameter, relative, in which a basin may be narrower than the displacement of a simulation
@@ -43,12 +44,13 @@ def judge(graph: Any, tally: Tally, rng: np.random.Generator) -> None:
                 continue
             settled = branch.stable[i] if branch.stable[i] == branch.stable[i + 1] else None
             if branch.real:
+                width = _stretch(branch, int(i))
                 if settled is not None and not settled and _unsaid(graph, branch, int(i)):
                     tally.count(
                         "places between points that are said to be too near for stable orbits to show"
                     )
-                    settled = None
-                follow(orbit, branch.label, settled, tally, width=_stretch(branch, int(i)))
+                    settled, width = None, 0.0
+                follow(orbit, branch.label, settled, tally, width)
             else:
                 _refused(orbit, branch.label, tally)
 
@@ -116,7 +118,7 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: flo
     ):  # beside a border positions tell more than nodes
         tally.find("replay", f"{said}: nodes differ by {seen.error:.1e} (multipliers to {growth:.1e})")
     if len(seen.multipliers):
-        moved = _compared(orbit, _without_trivial(orbit, seen.multipliers), said, tally)
+        moved = _compared(orbit, _without_trivial(orbit, seen.multipliers), said, tally, width)
         outermost = float(np.abs(moved).max())
         if stable is not None and abs(outermost - 1.0) > 1e-3 and (outermost < 1.0) != stable:
             tally.find(
@@ -140,7 +142,7 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: flo
             )
 
 
-def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> np.ndarray:
+def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally, width: float = np.inf) -> np.ndarray:
     """Multipliers against differences; where the return map is steep, and so curved within a displacement, against smaller ones.
 
     Where these cannot tell either, against those of the orbit in many digits. Returns the multipliers that are to be believed.
@@ -161,7 +163,7 @@ def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> np.ndarr
         if gap < DIFFERENCES:
             tally.count("multipliers against smaller differences")
             return orbit.multipliers
-    if in_many_digits(orbit):
+    if in_many_digits(orbit, ROUGHLY if width < UNRESOLVED else EXACTLY):
         tally.count("multipliers against many digits")
         return orbit.multipliers
     tally.find(
@@ -170,13 +172,13 @@ def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally) -> np.ndarr
     return seen
 
 
-def in_many_digits(orbit: Any) -> bool:
+def in_many_digits(orbit: Any, exactly: float = EXACTLY) -> bool:
     """Whether the orbit, solved for in many digits, has these multipliers, at the same parameters but for rounding."""
     found = exact(orbit)
     return (
         found is not None
         and abs(found.shift) < PARAMETER
-        and alike(orbit.multipliers, found.multipliers) < EXACTLY
+        and alike(orbit.multipliers, found.multipliers) < exactly
     )
 
 

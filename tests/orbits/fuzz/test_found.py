@@ -143,3 +143,53 @@ def test_two_borders_that_differ_by_1e_12_are_two():
     assert apart(borders[0].orbit, borders[1].orbit) > 1e-6
     joined = {frozenset((s.source, s.target)) for s in graph.switches}
     assert frozenset(p.branch for p in borders) not in joined
+
+
+def test_a_branch_comes_home_at_the_nearest_period_doubling():
+    """Two lie 2e-10 apart: in eighty digits its motion comes to that of the one at its end's own value."""
+    graph = diagram("cavity", 371, 410)
+    (branch,) = (b for b in graph if b.problem.periods == 16 and abs(b.values[0] - 1.0419355183) < 1e-9)
+    label = next(label for i, label in branch.marks if i == len(branch) - 1)
+    assert abs(exact(graph[label].orbit).shift) < 1e-13
+    assert abs(graph[label].value - branch.values[-1]) < 1e-13
+
+
+def test_a_virtual_branch_comes_home_to_the_virtual_part_of_its_root():
+    """In eighty digits the root has the multiplier -1 there, between a fold, 2e-9 away, and the border at which it becomes real."""
+    graph = diagram("cavity", 11, 410)
+    home = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.43719760116) < 1e-11)
+    root, (link,) = graph[home.branch], (s for s in graph.switches if s.point == home.label)
+    assert not root.real and (link.target, graph[link.source].real) == (root.label, False)
+    there = exact(home.orbit)
+    assert abs(there.shift) < 1e-13 and np.abs(there.multipliers + 1.0).min() < 1e-6
+    (place,) = (i for i, label in root.marks if label == home.label)
+    assert (graph[link.source].endings[1].point, graph[link.source].endings[1].other) == (
+        home.label,
+        root.label,
+    )
+    border = root.values[-1]
+    assert root.values[place - 2 :].argmin() == 0 and root.values[place] < border
+    # from the border on it is real, as far as the simulation follows it, and only one branch says so
+    value = 1.43725
+    there = [b for b in graph if b.problem.word == root.problem.word and b.range[0] < value < b.range[1]]
+    for branch in there:
+        between = Between(branch, graph.within)
+        for i in np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) < 0.0):
+            share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
+            seen = replay(between.orbit(int(i), float(share)))
+            assert (seen.matches and seen.error < 1e-8) == branch.real
+    assert [b.real for b in there].count(True) == 1
+
+
+def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back():
+    """In eighty digits it is stable from the doubling to its border, 7e-12 further on: that it turns, and branches, is rounding."""
+    graph = diagram("cavity", 368, 412)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.24893547944555) < 1e-13)
+    branch = next(b for b in graph if b.seed == doubling.label)
+    assert [graph[label].kind for _, label in branch.marks] == ["period-doubling", "stick"]
+    assert len(branch) > 2 and branch.stable.all()
+    for i in range(1, len(branch) - 1):
+        assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
+    tally = Tally("cavity", 412, 368)
+    structure.judge(graph, tally)
+    assert not tally.findings
