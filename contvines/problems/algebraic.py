@@ -138,6 +138,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         self.n_margins = self.pieces.count
         self.data = self
         self._check_start(start)
+        self._check_rows(start)
         self._find_structure(start)
         self._find_symmetries()
         self.describe()  # its callables are known by their addresses from now on

@@ -11,7 +11,7 @@ import numpy as np
 from ..doors import above
 from . import dense, sparse
 from .breaks import find_break
-from .checks import disagreement
+from .checks import disagreement, empty_row
 from .derivatives import Differentiated
 from .extents import weighed
 from .functions import NotEvaluable
@@ -310,6 +310,12 @@ class CallableProblem(ProblemDefaults):
             wrong = disagreement(self.functions, u, self.p0)
         except NotEvaluable as error:
             wrong = str(error)
+        if wrong is not None:
+            raise ValueError(wrong)
+
+    def _check_rows(self, u: np.ndarray) -> None:
+        with np.errstate(all="ignore"):
+            wrong = empty_row(self.functions, u, self.p0)
         if wrong is not None:
             raise ValueError(wrong)
 

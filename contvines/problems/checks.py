@@ -29,6 +29,31 @@ def disagreement(
             return None
 
 
+def empty_row(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
+    """A sentence on an entry of f that is zero at the start and all round it, and so is no equation; None if there is none."""
+    draw = np.random.default_rng(8)
+    zero, name = functions.value(u, p) == 0.0, functions.parameters.varying
+    for reach in (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0):  # far, too: an equation may be flat where it starts
+        step, shift = (
+            reach * functions.lengths * draw.uniform(-1.0, 1.0, len(u)),
+            reach * draw.uniform(-1.0, 1.0),
+        )
+        for side in (1.0, -1.0):
+            if not zero.any():
+                return None
+            try:
+                zero = zero & (functions.value(u + side * step, p + side * shift) == 0.0)
+            except NotEvaluable:
+                return None
+    if not zero.any():
+        return None
+    i = int(np.argmax(zero))
+    return (
+        f"row {i} of {functions.name} is zero at the start and wherever it was tried round it, whatever the unknowns and {name} are: "
+        f"it is no equation, and {len(u)} are needed for {len(u)} unknowns"
+    )
+
+
 def _wrong_derivative(
     functions: Differentiated, u: np.ndarray, p: float, scales: Scales | None
 ) -> str | None:

@@ -20,6 +20,7 @@ COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
 SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
 STEEP = 1e-4  # ... what seems to be a step above this part is a steep piece of it
+BESIDE = (-0.37, 0.41)  # lengths aside where noise is there as well
 BRIEF = 1e-4  # seconds of a call that is not measured twice
 
 
@@ -286,6 +287,9 @@ class Differentiated:
             noise = noise_of(line, 1e-6)
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
             floor = SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
+            if (noise > floor).any():  # that of one place alone, as at the root of |u|, is a singularity
+                beside = [noise_of(lambda t, s=s: line(s + t), 1e-6) for s in BESIDE]
+                noise = np.where((noise > floor) & (np.max(beside, axis=0) <= floor), 0.0, noise)
             # between the stairs of a staircase neighbouring samples tell nothing
             steps = roughness(line)
             noise = np.where((noise <= floor) & (steps > floor) & (steps < STEEP * change), steps, noise)
