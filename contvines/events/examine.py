@@ -12,6 +12,7 @@ from ..continuation.engine import Engine, Solved
 from .blur import blurred
 from .borders import find_border
 from .determinant import DeterminantTest, passes, turned
+from .eliminated import by_elimination
 from .leaps import SHORTEST
 from .limits import one_sided
 from .locate import Root, locate, locate_singular
@@ -263,13 +264,11 @@ class Examiner:
             group = [e for e in points if abs(e.position - points[0].position) <= 1e-6]
             points = [e for e in points if e not in group]
             tests = [self._multiplier("plus", e.index) for e in group]
-            others = [abs(e.position - group[0].position) for e in points]
-            root = locate_singular(
-                segment,
-                lambda point, tests=tests: sum(test(point) for test in tests) / len(tests),
-                group[0].position,
-                width=min([0.2, *(0.4 * gap for gap in others)]),
-            )
+            gaps = [0.4 * abs(e.position - group[0].position) for e in points]
+            mean = lambda point, tests=tests: sum(test(point) for test in tests) / len(tests)  # noqa: E731
+            root = locate_singular(segment, mean, group[0].position, width=min([0.2, *gaps]))
+            if self.kind == "real" and len(group) == 1:
+                root = by_elimination(segment, root)
             for event in group:
                 found = event if root is None else self._located(root, event.kind, event.index)
                 result.append(blurred(segment, found, self._multiplier("plus", event.index)))

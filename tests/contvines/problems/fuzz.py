@@ -5,7 +5,8 @@
 A plane curve g(x, p) = 0, often reducible, is hidden in two or three unknowns: y = q(x, p), z = s(x, y, p), then unknowns and rows
 are mixed by unimodular matrices. The witness: parameter values at which real roots of g(., p) meet or go to infinity are the
 roots of its discriminant and leading coefficient; between two of them the roots are arcs in a fixed order, at each of them
-those arcs hang together that end in the multiple root. Systems with two such values closer than CLOSE, or with other
+those arcs hang together that end in the multiple root. Of an arc towards a pole only what lies within `escape`
+is asked for, where a branch says that it ends for that. Systems with two such values closer than CLOSE, or with other
 singular points than folds and simple branch points, are not used.
 """
 
@@ -22,6 +23,7 @@ import numpy as np
 import sympy as sy
 
 import contvines as cv
+from contvines.branches.ending import Reason
 
 LOW, HIGH, CLOSE = -2.0, 2.0, 3e-3
 X, P, Y, Z = sy.symbols("x p y z")
@@ -283,13 +285,23 @@ class System:
                         float((self.back @ ((1 - t) * branch.points[m] + t * branch.points[m + 1]))[0])
                     )
             wanted = [x for m, x in enumerate(roots) if (j, m) in arcs]
+            low, high = self.curve.ends[j], self.curve.ends[j + 1]
             for x in wanted:
+                if self.beyond(problem, graph, x, p, (float(low), float(high))):
+                    continue
                 if not any(abs(x - y) < 0.02 * (1.0 + abs(x)) for y in crossed):
                     said.append(f"lacks the arc at p = {p}, x = {x}")
             for y in crossed:
                 if not any(abs(x - y) < 0.02 * (1.0 + abs(x)) for x in wanted):
                     said.append(f"has an arc at p = {p}, x = {y}")
         return said
+
+    def beyond(self, problem: Any, graph: Any, x: float, p: float, arc: tuple[float, float]) -> bool:
+        """Whether a place on an arc towards a pole is further away than `escape` says, and a branch has ended for that on such an arc."""
+        distance = (self.unknowns(x, p) - problem.u0) / problem.scales.unknowns
+        far = np.sqrt((distance**2).mean()) > graph.settings["escape"]
+        ends = [end for branch in graph for end in branch.endings if end.reason is Reason.ESCAPED]
+        return bool(far) and any(arc[0] < end.value < arc[1] for end in ends)
 
 
 def suitable(first: int) -> Any:
