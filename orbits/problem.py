@@ -15,7 +15,7 @@ from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import SAME, distance
 from orbits.cycles import measures as measuring
-from orbits.cycles.equations import equations
+from orbits.cycles.equations import PLAIN, equations
 from orbits.cycles.identity import canonical, is_symmetric, root_orbit
 from orbits.cycles.margins import DURATION, FLIGHT, border_kind, margin_name
 from orbits.doors import above
@@ -180,7 +180,10 @@ class OrbitProblem(Simulated, Relatives, Answers):
         if not len(self.word):
             return ("stuck", self.model.name), np.array(u, dtype=float)
         mirrored = self.model.has_mirror(self.values(p))
-        return canonical(self.word, self.periods, self.expand(u) / self.equations.unit, mirrored)
+        nodes = self.expand(u)
+        if self.units != PLAIN:
+            nodes = nodes / self.equations.unit
+        return canonical(self.word, self.periods, nodes, mirrored)
 
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
@@ -231,6 +234,10 @@ class OrbitProblem(Simulated, Relatives, Answers):
     ) -> Any:
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
         return above("of_point")(self, kind, u, p, margin, bits)
+
+    def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]:
+        """What one of these coordinates of a motion (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; empty for a machine of plain numbers."""
+        return self.model.gauges(names, self.values(p))
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""

@@ -53,7 +53,7 @@ def test_the_choice_is_at_worst_as_good_as_the_worst_of_every_sample_of_the_surv
     monkeypatch.chdir(tmp_path)
     text = STUDY.read_text().replace("count = 7", "count = 3").replace("samples = 6", "samples = 2")
     text = text.replace("depth = 2", "depth = 0").replace("vary.friction = { uniform = [0.05, 0.3] }\n", "")
-    text = text.replace('"lower_peak", "covered", "stable:LR"', '"stable:LRLtR"').replace(
+    text = text.replace('"lower_peak", "covered", "stable:LR"', '"stable:LRLt"').replace(
         'within = ["8 mm", "20 mm"]', 'within = ["13 mm", "15 mm"]'
     )
     (tmp_path / "case.toml").write_text(text)
@@ -83,7 +83,7 @@ def test_the_choice_is_at_worst_as_good_as_the_worst_of_every_sample_of_the_surv
     assert run(*words) == 0
     said = capsys.readouterr().out
     assert "at worst over 2 samples, the lowest that was found" in said
-    assert "stable_LRLtR_from = -" in said and "nan" not in said  # a motion that none of the samples has
+    assert "stable_LRLt_from = -" in said and "nan" not in said  # a motion that none of the samples has
 
 
 @pytest.mark.parametrize(

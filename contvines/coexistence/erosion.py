@@ -10,6 +10,7 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..doors import above
+from ..graph.table import with_unit
 from ..hints import hinted, hinting
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, robustness
@@ -50,6 +51,11 @@ class Erosion:
         """Shares of the starts that reach the motion (global integrity), shape (n,)."""
         return np.array([one.share for one in self.entries])
 
+    @property
+    def unit(self) -> str:
+        """Of the parameter, empty where it is a plain number."""
+        return next((one.units.get(one.parameter, "") for one in self.entries), "")
+
     def to_dict(self) -> dict[str, Any]:
         """Ready for JSON."""
         return {
@@ -69,7 +75,7 @@ class Erosion:
             )
             for one in self.entries
         ]
-        numbers = (self.parameter, "share", "smallest kick")
+        numbers = (with_unit(self.parameter, self.unit), "share", "smallest kick")
         table = Table((*numbers, "to"), rows, right=numbers)
         return "\n".join([f"{self.label}  {self.word}", "", *table.lines(terminal_width())])
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..branches.branch import Branch
 from ..circles.section import section_of
 from ..hints import hinting
+from ..problems.abilities import Gauged
 from ..text_table import fitted
 from .basins import wilson
 from .population import Population, population_of
@@ -32,9 +33,11 @@ class Robustness:
     names : tuple of str
         Coordinates of the section on which it is kicked: the states when the forcing passes phase zero, or the map's own.
     place, kick : float array (d,)
-        The point of the motion, and the change of it, of the smallest kick found that leads elsewhere; a kick of nan: none did.
+        The point of the motion, and the change of it, of the smallest kick found that leads elsewhere, in the machine's own
+        numbers, as starts of a simulation are; a kick of nan: none did.
     distance : float
-        Length of the kick, each coordinate in its unit; inf if no kick within the box of starts leads elsewhere. Where the boundary
+        Length of the kick, each coordinate in its unit (of a machine of physical quantities half-widths, and as many per
+        radian of the free oscillation); inf if no kick within the box of starts leads elsewhere. Where the boundary
         is smooth it is exact up to about a percent; it is an upper bound always.
     reaches : str
         What the kicked motion goes to.
@@ -42,6 +45,10 @@ class Robustness:
         Share of the starts in the machine's box that reach the motion itself (not its mirror image), with a 95 % interval.
     parameters : dict
         By name the interval of a parameter in which the motion stays stable and real, the others as they are.
+    units : dict
+        Units of parameters by name, empty where they are plain numbers.
+    gauges : dict
+        What one of a coordinate is in the unit in which people are told it, and that unit, by name; empty for plain numbers.
     """
 
     parameter: str
@@ -56,18 +63,33 @@ class Robustness:
     share: float
     share_interval: tuple[float, float]
     parameters: dict[str, tuple[float, float]] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
+
+    def shown(self, state: np.ndarray) -> np.ndarray:
+        """A state, or a change of one, in the units in which people are told it."""
+        return state * np.array([self.gauges.get(name, (1.0, ""))[0] for name in self.names])
+
+    @property
+    def shown_units(self) -> dict[str, str]:
+        """The units of the numbers that are told, by name of parameter and coordinate."""
+        named = (self.parameter, *self.parameters)
+        own = {name: self.units[name] for name in named if self.units.get(name)}
+        return own | {name: unit for name, (_, unit) in self.gauges.items()}
 
     def to_dict(self) -> dict[str, Any]:
-        """Ready for JSON; no finite kick is null."""
+        """Ready for JSON, in the units that stand beside the numbers; no finite kick is null."""
         finite = bool(np.isfinite(self.distance))
+        units = self.shown_units
         return {
+            **({"units": units} if units else {}),
             "parameter": self.parameter,
             "value": self.value,
             "word": self.word,
             "periods": self.periods,
             "coordinates": list(self.names),
-            "place": [float(x) for x in self.place],
-            "kick": [float(x) for x in self.kick] if finite else None,
+            "place": [float(x) for x in self.shown(self.place)],
+            "kick": [float(x) for x in self.shown(self.kick)] if finite else None,
             "distance": self.distance if finite else None,
             "reaches": self.reaches,
             "share": self.share,
@@ -77,16 +99,22 @@ class Robustness:
 
     def __str__(self) -> str:
         low, high = self.share_interval
-        text = f"{self.word}  k={self.periods}  {self.parameter} = {self.value:.10g}\n"
+        units = self.shown_units
+
+        def told(number: str, name: str) -> str:
+            return f"{number} {units.get(name, '')}".rstrip()
+
+        text = f"{self.word}  k={self.periods}  {self.parameter} = {told(f'{self.value:.10g}', self.parameter)}\n"
         text += f"  share of starts: {self.share:.2%} ({low:.2%} to {high:.2%})\n"
         if np.isfinite(self.distance):
-            kick = ", ".join(f"{name} {x:+.4g}" for name, x in zip(self.names, self.kick))
-            place = ", ".join(f"{name} = {x:.4g}" for name, x in zip(self.names, self.place))
+            changes, at = self.shown(self.kick), self.shown(self.place)
+            kick = ", ".join(f"{name} {told(f'{x:+.4g}', name)}" for name, x in zip(self.names, changes))
+            place = ", ".join(f"{name} = {told(f'{x:.4g}', name)}" for name, x in zip(self.names, at))
             text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {self.reaches}"
         else:
             text += "  no kick within the box of starts leads elsewhere"
         for name, (first, last) in self.parameters.items():
-            text += f"\n  stable and real for {name} from {first:.8g} to {last:.8g}"
+            text += f"\n  stable and real for {name} from {first:.8g} to {told(f'{last:.8g}', name)}"
         return fitted(text)
 
 
@@ -155,6 +183,8 @@ def robustness(
         share,
         interval,
         {name: stable_range(problem, u, float(at), name) for name in vary},
+        dict(branch.description.get("units") or {}),
+        problem.gauges(section.names, float(at)) if isinstance(problem, Gauged) else {},
     )
 
 

@@ -143,18 +143,23 @@ def _bounds(own: dict[str, str], bounds: dict[str, Any], section: str) -> tuple[
     return found, wrong
 
 
-def number_of(machine: Any, name: str, value: Any, place: str) -> tuple[Any, str | None]:
-    """A value of quantity `name` counted in the machine's unit of it, and a refusal; plain numbers are counted in it already."""
+def number_of(
+    machine: Any, name: str, value: Any, place: str, spread: bool = False
+) -> tuple[Any, str | None]:
+    """A value of quantity `name` counted in the machine's unit of it, and a refusal.
+
+    A `spread` of values, their deviation, may be as small as it likes. What is neither text nor a number is left to others to refuse.
+    """
     from orbits.machines.physical import units
     from orbits.machines.physical.quantities import QuantityError
 
-    if not isinstance(value, str):
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
         return value, None
     quantity = machine.tables.QUANTITIES[name]
     own = machine.units.get(name, "")
     try:
         number, unit = units.read(quantity, value)
-        if not machine.unusual:
+        if not machine.unusual and not spread:
             units.check_usual(quantity, units.si(quantity, number, unit), f"{name} = {value!r}")
     except QuantityError as error:
         return value, f"{place} = {str(error).partition(' = ')[2]}."

@@ -83,7 +83,7 @@ def outcomes_of(study: Study) -> list[Any]:
     from contvines.survey.survey import outcome_named
 
     found = []
-    for said in study.survey.outcomes:
+    for said in _spelled(study):
         file, _, function = said.rpartition(":")
         try:
             if said.startswith("share:") and not (study.survey.atlas or study.survey.values):
@@ -102,6 +102,36 @@ def outcomes_of(study: Study) -> list[Any]:
                 found.append(outcome_named(said, OWN))
         except ValueError as error:
             raise ValueError(f"{study.path}: {error}.") from None
+    return found
+
+
+def _spelled(study: Study) -> list[str]:
+    """A survey's outcomes as they are said; the word of a built-in machine's motion as tables spell it, whichever event it began with.
+
+    Raises
+    ------
+    ValueError
+        If a motion that is to be stable has no word.
+    """
+    from contvines.command.compose import loose, machine
+    from orbits.words import Word
+
+    if study.machine is not None:
+        return list(study.survey.outcomes)
+    found = []
+    for said in study.survey.outcomes:
+        kind, _, text = said.partition(":")
+        if kind in ("stable", "share") and text:
+            model = machine(study)
+            params = model.vector(loose(study))
+            try:
+                word = Word.parse(text, frictionless=model.frictionless(params))
+            except ValueError as error:
+                if kind == "stable":
+                    raise ValueError(f"{study.path}: [survey] outcomes: {said!r}: {error}.") from None
+            else:
+                said = f"{kind}:{word.spelled(model.has_mirror(params, study.parameter))}"
+        found.append(said)
     return found
 
 
@@ -135,7 +165,7 @@ def units_of(study: Study, model: Any) -> dict[str, str]:
     units |= dict.fromkeys(
         ("peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"), over
     )
-    for said in study.survey.outcomes:
+    for said in _spelled(study):
         kind, _, rest = said.partition(":")
         if kind == "stable":
             units |= dict.fromkeys((f"stable_{rest}", f"stable_{rest}_from", f"stable_{rest}_to"), over)
@@ -189,17 +219,20 @@ def _numbers(model: Any, name: str, said: Any, place: str) -> Any:
     """Quantities as numbers counted in the machine's unit."""
     from contvines.command.physical_study import number_of
 
-    def read(values: Any, where: str) -> Any:
+    def read(values: Any, where: str, spread: int | None = None) -> Any:
         if not isinstance(values, list):
             return values
         found = []
         for i, value in enumerate(values):
-            number, refusal = number_of(model, name, value, f"{where}[{i}]")
+            number, refusal = number_of(model, name, value, f"{where}[{i}]", i == spread)
             if refusal:
                 raise ValueError(refusal)
             found.append(number)
         return found
 
     if isinstance(said, dict):
-        return {key: read(value, f"{place}.{key}") if key in TEXTS else value for key, value in said.items()}
+        return {
+            key: read(value, f"{place}.{key}", 1 if key == "normal" else None) if key in TEXTS else value
+            for key, value in said.items()
+        }
     return read(said, place)

@@ -26,6 +26,10 @@ class Closing:
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
         engine = self.engine
+        if chunk.values[0] == self.start.p:
+            rises = chunk.values[1:] > chunk.values[:-1]
+            if rises.all() or (chunk.values[1:] < chunk.values[:-1]).all():
+                return None  # from the start on the parameter only rises, or only falls
         far = NEAR * apart * (engine.upper - engine.lower)
         if self.start.p < chunk.values.min() - far or self.start.p > chunk.values.max() + far:
             return None

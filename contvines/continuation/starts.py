@@ -103,6 +103,8 @@ def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = N
     found = engine.start(u, p, tangent)
     if found is None:
         residual = engine.residual(u, p)
+        if stuck := getattr(engine.problem, "stuck", ""):
+            raise ValueError(f"from the start at {name} = {p:.10g} no step can be made: {stuck}")
         why = f"does not converge (its residual is {residual:.3g})"
         if residual < SOLVED:
             why = "is a solution, but where the derivatives of the equations vanish or are singular, in the parameter, too"
@@ -132,7 +134,7 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
         If it is further away than a branch may get (`escape`).
     """
     problem = engine.problem
-    if not isinstance(problem, Rough) or engine.problem.kernels.compiled:
+    if engine.problem.kernels.compiled or not isinstance(problem, Rough):
         return ""
     return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem.scales)) if part)
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..continuation.aims import NO_COLUMNS, SIGN, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
-from ..problems.abilities import Nearing
 from .blur import blurred
 from .borders import find_border
 from .determinant import DeterminantTest, passes, turned
@@ -63,7 +62,8 @@ class Examiner:
         self.scaled = problem.scales is not None
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
-        self.many = isinstance(problem, Nearing) and problem.many
+        self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
+        self.signed = bool(getattr(problem, "signed", True))
         self.symmetries = [
             SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
         ]
@@ -97,7 +97,7 @@ class Examiner:
         before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
         # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
         odd, side = int(after[0] - before[0]) % 2, turned(a, b)
-        rounded = self.scaled and odd != side
+        rounded = self.scaled and self.signed and odd != side
         # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes: the ends do not tell
         infinite = not self.scaled and self.kind == "map" and side is not None and odd != side
         if abs(int(after[0] - before[0])) == 1 and self.scaled:

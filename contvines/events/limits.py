@@ -79,23 +79,26 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     """
     best: list[np.ndarray] | None = None
     error = np.inf
-    wider: list[np.ndarray] | None = None  # from the spacing before
-    for spacing in DISTANCES:
-        values = _polynomials(segment, position, spacing)
-        if values is None:
-            continue
-        here = [spacing**k * limit for k, limit in enumerate(EXTRAPOLATION @ values)]
-        if _apart(here[0], computed) < AGREEING:
+    spacings, rows = _rows(segment, position, DISTANCES)
+    if not len(spacings):
+        return None
+    values = _characteristic(segment.engine.spectrum(rows))
+    sure = np.isfinite(values).all(axis=(1, 2))
+    spacings = spacings[sure]
+    limits = np.power.outer(spacings, np.arange(POLES + 1))[:, :, None] * (EXTRAPOLATION @ values[sure])
+    agree = _apart(limits[:, 0], computed)
+    changes = _apart(limits[1:], limits[:-1]).tolist()
+    for i, agreed in enumerate(agree.tolist()):
+        if agreed < AGREEING:
             return None
-        if wider is not None:
-            changes = [_apart(*pair) for pair in zip(here, wider)]
-            poles = next((k for k, change in enumerate(changes) if change < CONVERGED[k]), POLES)
+        if i > 0:  # compared with the spacing before
+            changed = changes[i - 1]
+            poles = next((k for k, change in enumerate(changed) if change < CONVERGED[k]), POLES)
             fewer = best is not None and poles < len(best) - 1
-            if changes[poles] < CONVERGED[poles] and (changes[poles] < error or fewer):
-                best, error = here[: poles + 1], changes[poles]
+            if changed[poles] < CONVERGED[poles] and (changed[poles] < error or fewer):
+                best, error = list(limits[i, : poles + 1]), changed[poles]
         if best is not None and len(best) == 1 and error < SURELY:
             break
-        wider = here
     if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
         return None
     return None if best is not None and len(best) > 1 and _bounded(segment, position, computed) else best
@@ -108,14 +111,13 @@ def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
     come to zero nothing grows any more, and nothing can be told.
     """
     largest = float(np.abs(computed).max())
-    for spacing in NEAREST:
-        rows = _rows(segment, position, spacing)
-        if rows is None:
-            continue
-        margins = np.array([segment.engine.smallest_margin(row) for row in rows])
+    _, rows = _rows(segment, position, NEAREST)
+    if not len(rows):
+        return False
+    polynomials = _characteristic(segment.engine.spectrum(rows))
+    for margins, values in zip(segment.engine.smallest_margin(rows), polynomials):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
-        values = _characteristic(segment.engine.spectrum(rows))
         if not np.isfinite(values).all():
             continue
         if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
@@ -125,38 +127,31 @@ def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
     return False
 
 
-def _apart(one: np.ndarray, other: np.ndarray) -> float:
-    """Largest difference of two polynomials, as a part of their largest coefficient."""
-    gap = largest = 0.0
-    for a, b in zip(one.tolist(), other.tolist()):
-        change = abs(a - b)
-        if not change < math.inf:
-            return math.inf
-        gap = change if change > gap else gap
-        size = abs(a) if abs(a) > abs(b) else abs(b)
-        largest = size if size > largest else largest
-    return gap / largest if gap > 0.0 else 0.0
+def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Largest differences of polynomials (..., m + 1), as parts of their largest coefficients."""
+    with np.errstate(all="ignore"):
+        gap = np.abs(one - other).max(axis=-1)
+        largest = np.maximum(np.abs(one).max(axis=-1), np.abs(other).max(axis=-1))
+        part = np.where(gap > 0.0, gap / largest, 0.0)
+    return np.where(gap < np.inf, part, np.inf)
 
 
-def _polynomials(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
-    """Characteristic polynomials of the multipliers at four points before the border, shape (4, m + 1)."""
-    rows = _rows(segment, position, spacing)
-    values = None if rows is None else _characteristic(segment.engine.spectrum(rows))
-    return values if values is not None and np.isfinite(values).all() else None
-
-
-def _rows(segment: Segment, position: float, spacing: float) -> np.ndarray | None:
-    """Rows of multipliers and margins at four points before the border, shape (4, columns)."""
-    places = [position - place * spacing / segment.length for place in PLACES]
-    points = segment.several(places) if places[-1] >= -1.0 else [_before(segment, s) for s in places]
-    rows = [point.row for point in points if point is not None]
-    return np.array(rows) if len(rows) == len(places) else None
+def _rows(segment: Segment, position: float, spacings: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of multipliers and margins at four points before the border, and the spacings (k,) for which all are found, (k, 4, columns)."""
+    wanted = np.array(spacings)
+    places = position - np.outer(wanted / segment.length, PLACES)
+    rows, found = segment.rows(places.ravel())
+    rows, found = rows.reshape(*places.shape, -1), found.reshape(places.shape)
+    for i, j in np.argwhere(places < -1.0).tolist():
+        point = _before(segment, float(places[i, j]))
+        found[i, j] = point is not None
+        rows[i, j] = 0.0 if point is None else point.row
+    known = found.all(axis=1)
+    return wanted[known], rows[known]
 
 
 def _before(segment: Segment, s: float) -> Solved | None:
-    """The point at s, which may lie before the segment: a branch that begins beside its border has no points further away."""
-    if s >= -1.0:
-        return segment.at(s)
+    """The point at s, before the segment: a branch that begins beside its border has no points further away."""
     engine, a, distance = segment.engine, segment.a, -s * segment.length
     if distance > STRAIGHT:
         return None
@@ -171,8 +166,6 @@ def _before(segment: Segment, s: float) -> Solved | None:
 def _characteristic(spectrum: np.ndarray) -> np.ndarray:
     """Coefficients of the polynomials with these zeros (..., m), highest power first, shape (..., m + 1)."""
     m = spectrum.shape[-1]
-    if m == 2 and spectrum.ndim == 2:
-        return np.array([(1.0, -(a + b).real, (a * b).real) for a, b in spectrum.tolist()])
     coefficients = np.zeros((*spectrum.shape[:-1], m + 1), dtype=complex)
     coefficients[..., 0] = 1.0
     for k in range(m):
@@ -183,11 +176,27 @@ def _characteristic(spectrum: np.ndarray) -> np.ndarray:
 def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:
     """The multipliers, largest modulus first; those that grow without bound have a size of `UNBOUNDED`."""
     poles = len(limits) - 1
-    finite: NDArray[np.complex128] = np.roots(limits[poles][poles:]).astype(np.complex128)
+    finite: NDArray[np.complex128] = _zeros(limits[poles][poles:])
     # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
     lead = [limits[k][k] for k in range(poles + 1)]
-    growing = np.asarray(np.roots(lead) if poles else [], dtype=complex)
+    growing = _zeros(np.array(lead))
     growing = UNBOUNDED * growing / np.maximum(np.abs(growing), 1e-300)
     finite = finite[np.lexsort((-finite.imag, -finite.real, -np.abs(finite)))]
     missing = len(limits[0]) - 1 - len(growing) - len(finite)
     return np.concatenate([growing, finite, np.zeros(missing, dtype=complex)])
+
+
+def _zeros(polynomial: np.ndarray) -> NDArray[np.complex128]:
+    """Zeros of a polynomial; of one or two in closed form."""
+    degree = len(polynomial) - 1
+    if degree > 2 or polynomial[0] == 0.0:
+        return np.roots(polynomial).astype(np.complex128)
+    if degree < 2:
+        return -polynomial[1:].astype(np.complex128) / polynomial[0]
+    b, c = (polynomial[1:] / polynomial[0]).tolist()
+    square = 0.25 * b * b - c
+    if square < 0.0:
+        whole = complex(-0.5 * b, math.sqrt(-square))
+        return np.array([whole, whole.conjugate()])
+    larger = -0.5 * b - math.copysign(math.sqrt(square), b)
+    return np.array([larger, c / larger if larger else 0.0], dtype=complex)

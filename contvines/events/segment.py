@@ -44,6 +44,12 @@ class Segment:
             self.chord, np.array(places, dtype=float), self.start, self.length, self.border, self.direction
         )
 
+    def rows(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of multipliers and margins at some places, (k, columns), and which of them are of points of the branch, (k,)."""
+        return self.engine.rows_on_chord(
+            self.chord, places, self.start, self.length, self.border, self.direction
+        )
+
     def search(self, aim: Aim, tolerance: float, jump: float) -> Hit | None:
         """Where a number passes zero; see :meth:`contvines.continuation.engine.Engine.search`."""
         return self.engine.search(

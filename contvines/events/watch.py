@@ -204,7 +204,7 @@ class Watch(Examiner):
 
         the same, but the distances to a singular matrix, continued from before and from behind, reach zero.
         """
-        distance, signs = chunk.rows[:, 0], without_zeros(chunk.signs)
+        distance, signs = -chunk.rows[:, 0], without_zeros(chunk.signs)  # negative: none is past zero
         steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
         lengths = np.sqrt((steps**2) @ self.engine.weights)
         falls, rises = distance[:-1] - distance[1:], distance[1:] - distance[:-1]

@@ -42,6 +42,13 @@ class Sectioned(Protocol):
 
 
 @runtime_checkable
+class Gauged(Protocol):
+    """Its states may have units: what one of a coordinate of its section is in the unit in which people are told it, and that unit; none for plain numbers."""
+
+    def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]: ...
+
+
+@runtime_checkable
 class Populated(Protocol):
     """Many starts can be simulated; see :mod:`contvines.coexistence.population`."""
 
@@ -117,10 +124,14 @@ class Blurred(Protocol):
 
 @runtime_checkable
 class Nearing(Protocol):
-    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`."""
+    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`.
+
+    `signed`: whether the sign of the determinant is known.
+    """
 
     many: bool
     closely: bool
+    signed: bool
 
 
 @runtime_checkable

@@ -150,7 +150,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
                 self.n_multipliers = self.node - self.conditions.count
         elif dense and self.dimension <= WATCHED:
             self.n_multipliers, self.detection = self.dimension, "real"
-        elif self.functions.structure != "operator":
+        else:
             self.n_multipliers, self.detection, self.many = NEAREST, "real", True
         if not dense and self.conditions is not None:
             raise ValueError(
@@ -213,7 +213,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             if self.many:
                 if self.closely:
                     return self.algebra.nearest_eigenvalues(self, work)
-                return self.algebra.distance_to_singular(self, work) + ALL_ZERO
+                return ALL_ZERO - self.algebra.distance_to_singular(self, work)
             if self.reference is None:
                 self.reference = reference_of(work.jacobian, *self.sizes())
             return watched(work.jacobian, self.reference)

@@ -49,8 +49,12 @@ class CallableProblem(ProblemDefaults):
         Whether they are watched only where a cheaper number asks for it; see :mod:`.nearness`.
     closely : bool
         Whether they are just now.
+    signed : bool
+        Whether the sign of the determinant is known: not of a Jacobian without a matrix.
     trouble : str
         Why the equations could not be evaluated the last time that happened.
+    unsolved : bool
+        Whether the last linear system, of a Jacobian without a matrix, was not solved.
     """
 
     values: ParameterSet
@@ -62,6 +66,7 @@ class CallableProblem(ProblemDefaults):
     many = False
     closely = False
     trouble = ""
+    unsolved = False
     _side: tuple[Any, np.ndarray] | None = None
 
     given: dict[str, Any]
@@ -227,6 +232,19 @@ class CallableProblem(ProblemDefaults):
         return self.algebra.workspace(self)
 
     # ------------------------------------------------------------------ what is wrong
+    @property
+    def stuck(self) -> str:
+        """A sentence on linear systems that are not solved; empty where they are."""
+        if not self.unsolved:
+            return ""
+        better = "a preconditioner=" if self.given["preconditioner"] is None else "a better preconditioner="
+        return f"GMRES does not solve the linear systems of the matrix-free Jacobian; {better} would help"
+
+    @property
+    def signed(self) -> bool:
+        """Whether the sign of the determinant is known."""
+        return self.functions.structure != "operator"
+
     def uncertainty(self) -> float:
         """Relative accuracy of what was evaluated last: of derivatives by differences, of noisy equations, and of rounding."""
         errors, least = self.functions.errors, max(self.noise, ROUNDING * (2 + min(self.dimension, TERMS)))
@@ -251,6 +269,8 @@ class CallableProblem(ProblemDefaults):
             wrong = self.check(u + beyond * tangent[:-1], p + beyond * float(tangent[-1]))
             if wrong is not None:
                 return wrong
+        if self.unsolved:
+            return self.stuck
         rows = np.ones(self.dimension) if self.scales is None else self.scales.rows
 
         def line(t: float) -> np.ndarray:

@@ -1,39 +1,256 @@
-"""The bordered system of a Jacobian that is a LinearOperator, by GMRES."""
+"""The bordered system of a Jacobian that is a LinearOperator, by GMRES.
+
+The unknowns are counted in units of their scales and the rows in units of theirs. With a preconditioner P of F_u the bordered matrix
+has the preconditioner [[P^-1, F_p], [border]], applied by block elimination: the border adds no iterations, and next to a fold, where
+F_u is nearly singular, it is as good as elsewhere.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, gmres
+from scipy.sparse import diags_array
 
-KRYLOV = 1e-11  # relative residual of GMRES
+from .nearness import nearest_sparse
+
+ACCURATE = 1e-11  # relative residual
+ENOUGH = 1e-4  # ... that will do where rounding or the patience below allows no more
+SINGULAR = 1e-12  # ... for each unit by which the solution is larger than the side
+RESTART, ALL = 80, 300  # vectors kept; as many as there are unknowns where these are few
+CYCLES = 40  # restarts at most
+ROUGH = 1e-6  # ... of a number that says only how near a singular matrix is
+GAIN = 0.5  # a cycle has to shrink the residual at least that much ...
+IDLE = 4  # ... or it is over after so many that do not
+ASIDE = 1e-9  # shift of a matrix that is singular to the last bit
+CORNER = 1e-8  # part of its terms below which the preconditioner's Schur complement is rounding
+
+Linear = Callable[[np.ndarray], np.ndarray]
+
+
+def gmres(
+    apply: Linear, side: np.ndarray, guess: np.ndarray | None, accuracy: float
+) -> tuple[np.ndarray, float]:
+    """Solution of a linear system, and its residual relative to the side.
+
+    Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856, restarted, every vector made orthogonal twice. It ends where a cycle
+    gains nothing any more: rounding may allow no more than that.
+
+    Parameters
+    ----------
+    apply : callable
+        The (preconditioned) matrix times a vector.
+    side : ndarray, shape (n,)
+    guess : ndarray or None
+    accuracy : float
+        Relative residual at which it ends.
+    """
+    n, size = len(side), float(np.linalg.norm(side))
+    if size == 0.0:
+        return np.zeros(n), 0.0
+    x = np.zeros(n) if guess is None else guess.copy()
+    rest = side if guess is None else side - apply(x)
+    gap = float(np.linalg.norm(rest)) / size
+    if not gap < 1.0:
+        x, rest, gap = np.zeros(n), side, 1.0
+    idle, reached = 0, False
+    for _ in range(CYCLES):
+        if gap <= accuracy:
+            break
+        step, reached = _cycle(apply, rest, accuracy / gap)
+        trial = x + step
+        rest_of_it = side - apply(trial)
+        found = float(np.linalg.norm(rest_of_it)) / size
+        idle = 0 if found <= GAIN * gap else idle + 1
+        if not found < gap:
+            break
+        x, rest, gap = trial, rest_of_it, found
+        if idle and (reached or idle >= IDLE):
+            break
+    return x, gap
+
+
+def _cycle(apply: Linear, rest: np.ndarray, accuracy: float) -> tuple[np.ndarray, bool]:
+    """The best correction in one Krylov space, and whether it is accurate as far as recursion tells."""
+    n = len(rest)
+    most = n if n <= ALL else RESTART
+    size = float(np.linalg.norm(rest))
+    basis = np.empty((most + 1, n))
+    basis[0] = rest / size
+    triangle, turns = np.zeros((most, most)), np.zeros((most, 2))
+    right = np.zeros(most + 1)
+    right[0] = size
+    k, reached = 0, False
+    while k < most and not reached:
+        vector = apply(basis[k])
+        before = float(np.linalg.norm(vector))
+        column = basis[: k + 1] @ vector
+        vector = vector - column @ basis[: k + 1]
+        more = basis[: k + 1] @ vector
+        vector -= more @ basis[: k + 1]
+        column += more
+        length = float(np.linalg.norm(vector))
+        if not np.isfinite(length):
+            break
+        broken = length <= 1e-15 * before
+        basis[k + 1] = 0.0 if broken else vector / length
+        for j in range(k):
+            c, s = turns[j]
+            column[j], column[j + 1] = c * column[j] + s * column[j + 1], c * column[j + 1] - s * column[j]
+        radius = float(np.hypot(column[k], length))
+        if radius == 0.0:
+            break
+        turns[k] = column[k] / radius, length / radius
+        triangle[: k + 1, k] = column
+        triangle[k, k] = radius
+        right[k + 1] = -turns[k, 1] * right[k]
+        right[k] *= turns[k, 0]
+        k += 1
+        reached = broken or abs(right[k]) <= accuracy * size
+    if k == 0:
+        return np.zeros(n), False
+    return np.linalg.solve(triangle[:k, :k], right[:k]) @ basis[:k], reached
+
+
+class Bordered:
+    """[[F_u, F_p], [border]] in units of the scales, with its preconditioner.
+
+    Parameters
+    ----------
+    data : AlgebraicProblem
+    work
+        Has F_u and F_p.
+    border : ndarray, shape (N + 1,)
+    """
+
+    def __init__(self, data: Any, work: Any, border: np.ndarray) -> None:
+        rows, units = data.sizes()
+        width = 1.0 if data.scales is None else data.scales.parameter
+        self.work, self.inverse = work, data.preconditioner_at()
+        self.columns = np.append(units, width)
+        self.border = border * self.columns
+        self.length = float(np.linalg.norm(self.border)) or 1.0
+        self.border /= self.length
+        self.rows = np.append(rows, self.length)
+        self.column, self.corner = self._eliminated()
+        self.shift = 0.0  # of F_u, in units of rows and unknowns
+        self.growth = 0.0  # of the last solution: its size relative to that of the side
+
+    def _eliminated(self) -> tuple[np.ndarray | None, float]:
+        """The preconditioner times F_p and its Schur complement; None where that would be rounding."""
+        if self.inverse is None:
+            return None, 1.0
+        column = np.ravel(self.inverse @ self.work.derivative) / self.columns[:-1] * self.columns[-1]
+        part = float(self.border[:-1] @ column)
+        corner = float(self.border[-1]) - part
+        fine = np.isfinite(corner) and abs(corner) > CORNER * (abs(part) + abs(float(self.border[-1])))
+        return (column, corner) if fine else (None, 1.0)
+
+    def product(self, x: np.ndarray) -> np.ndarray:
+        """The matrix, in units of unknowns and rows, times a vector."""
+        inner = x[:-1] * self.columns[:-1]
+        top = np.ravel(self.work.jacobian @ inner) + self.work.derivative * (x[-1] * self.columns[-1])
+        return np.append(top / self.rows[:-1] - self.shift * x[:-1], self.border @ x)
+
+    def precondition(self, side: np.ndarray) -> np.ndarray:
+        """The preconditioner, from units of rows to those of unknowns, times a vector."""
+        if self.inverse is None:
+            return side
+        top = np.ravel(self.inverse @ (side[:-1] * self.rows[:-1])) / self.columns[:-1]
+        if self.column is None:
+            return np.append(top, side[-1])
+        last = (side[-1] - float(self.border[:-1] @ top)) / self.corner
+        return np.append(top - self.column * last, last)
+
+    def solve(self, side: np.ndarray, guess: np.ndarray | None, accuracy: float) -> tuple[np.ndarray, float]:
+        """The solution in the units of the problem, and how accurate it is."""
+        start = None if guess is None else guess / self.columns
+        right = self.precondition(side / self.rows)
+        found, gap = gmres(lambda x: self.precondition(self.product(x)), right, start, accuracy)
+        size = float(np.linalg.norm(right))
+        self.growth = float(np.linalg.norm(found)) / size if size > 0.0 else 0.0
+        return found * self.columns, gap
 
 
 def iterate(data: Any, work: Any, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
     """Solutions of the bordered system; the sign of the determinant is not known.
 
-    NaN where GMRES does not converge. `work` has F_u and F_p.
+    NaN where GMRES does not converge, which the problem is told. `work` has F_u and F_p.
     """
-    n = len(border)
-    inverse = data.preconditioner_at()
-
-    def applied(x: np.ndarray) -> np.ndarray:
-        x = x.reshape(-1)
-        return np.append(work.jacobian @ x[:-1] + work.derivative * x[-1], border @ x)
-
-    def precondition(x: np.ndarray) -> np.ndarray:
-        x = x.reshape(-1)
-        return np.append(inverse @ x[:-1], x[-1] / max(float(np.abs(border).max()), 1e-300))
-
-    operator = LinearOperator((n, n), matvec=applied, dtype=float)  # type: ignore[call-arg]
-    near = None if inverse is None else LinearOperator((n, n), matvec=precondition, dtype=float)  # type: ignore[call-arg]
+    matrix = Bordered(data, work, border)
+    data.unsolved = False
     result = np.zeros_like(sides)
     for k in range(2):
-        if np.any(sides[:, k]):
-            found, _ = gmres(
-                operator, sides[:, k], M=near, rtol=KRYLOV, atol=0.0, restart=min(n, 80), maxiter=40
-            )
-            gap = np.linalg.norm(applied(found) - sides[:, k]) / np.linalg.norm(sides[:, k])
-            result[:, k] = found if gap < 1e-4 else np.nan
+        if not np.any(sides[:, k]):
+            continue
+        guess = _like_before(work.tangent, border, sides) if k == 1 else None
+        for matrix.shift in (0.0, ASIDE):
+            found, gap = matrix.solve(sides[:, k], guess, ACCURATE)
+            if gap < ENOUGH + SINGULAR * matrix.growth:
+                break
+        else:
+            data.unsolved = True
+            found = np.full(len(found), np.nan)
+        result[:, k] = found
+    work.tangent = result[:, 1] if np.isfinite(result[:, 1]).all() else None
+    work.eliminated = matrix
     return result, 1.0
+
+
+def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarray) -> np.ndarray | None:
+    """The last tangent with the length asked for now."""
+    if tangent is None or not (sides[:-1, 1] == 0.0).all():
+        return None
+    along = float(border @ tangent)
+    return tangent * (sides[-1, 1] / along) if along != 0.0 else None
+
+
+def distance_to_singular(data: Any, work: Any) -> float | None:
+    """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`.nearness`.
+
+    Without a sign of the determinant this is all that tells a branch point, so that one application of the inverse, in which a null
+    vector may have a small share by chance, is not enough. None where GMRES does not converge.
+    """
+    matrix, side, sizes = work.eliminated, data.side, []
+    for _ in range(2):
+        found, gap = matrix.solve(side, None, ROUGH)
+        if not gap < ENOUGH + SINGULAR * matrix.growth:
+            return None
+        found = found / matrix.columns
+        sizes.append(float(np.linalg.norm(found)))
+        side = np.append(found[:-1] * matrix.rows[:-1], 0.0)
+    return sizes[0] / sizes[1] if sizes[1] > 0.0 else 0.0
+
+
+class Inverse:
+    """(F_u - shift)^-1, the shift in units of rows and unknowns, by GMRES, in the place of factors."""
+
+    def __init__(self, data: Any, work: Any, shift: float) -> None:
+        self.rows, self.columns = data.sizes()
+        self.jacobian, self.inverse, self.shift = work.jacobian, data.preconditioner_at(), shift
+
+    def _precondition(self, side: np.ndarray) -> np.ndarray:
+        if self.inverse is None:
+            return side / self.rows
+        return np.ravel(self.inverse @ side) / self.columns
+
+    def _product(self, x: np.ndarray) -> np.ndarray:
+        return np.ravel(self.jacobian @ (x * self.columns)) - self.shift * self.rows * x
+
+    def solve(self, side: np.ndarray) -> np.ndarray:
+        """The inverse applied to a vector."""
+        right = self._precondition(np.ravel(side))
+        found, _ = gmres(lambda x: self._precondition(self._product(x)), right, None, ACCURATE)
+        return found * self.columns
+
+
+def nearest_eigenvalues(data: Any, work: Any) -> np.ndarray:
+    """The eigenvalues of F_u next to zero, relative to the sizes of rows and unknowns; shifted where it is singular."""
+    rows, units = data.sizes()
+    values = np.zeros(0)
+    for shift in (0.0, ASIDE):
+        values = nearest_sparse(Inverse(data, work, shift), diags_array(rows / units)) + shift
+        if np.isfinite(values).all():
+            break
+    return values

@@ -18,11 +18,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, splu
 
+from . import matrix_free
 from .factors import Method, SuperLUFactors
 from .functions import NotEvaluable
 from .interpreted import assign, inspect
 from .kernels import Kernels
-from .matrix_free import iterate
 from .nearness import distance, nearest_sparse
 from .sparse_loci import flip, matrix, transpose
 
@@ -48,6 +48,7 @@ class SparseWork:
     method: Method = field(default_factory=Method)
     eliminated: Any = None  # factors, border, F_u^-1 F_p and Schur complement of the last block elimination
     distance: float = 1.0
+    tangent: Any = None  # the last one of a matrix-free Jacobian, a guess of the next one
 
     def __getitem__(self, i: int) -> np.ndarray:
         return (self.residual, self.derivative)[i]
@@ -214,7 +215,7 @@ def bordered(
     sides[:-1, 0] = -work.residual
     sides[-1] = n, 1.0
     if not sp.issparse(work.jacobian):
-        solution, sign = iterate(data, work, border, sides)
+        solution, sign = matrix_free.iterate(data, work, border, sides)
     else:
         work.eliminated = None
         found = _eliminate(work, border, sides)
@@ -228,6 +229,10 @@ def distance_to_singular(data: Any, work: SparseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.nearness`. Without refinement: it is a rough number."""
     if work.eliminated is None:
         return work.distance
+    if not sp.issparse(work.jacobian):
+        found = matrix_free.distance_to_singular(data, work)
+        work.distance = work.distance if found is None else found
+        return work.distance
     factors, border, column, corner = work.eliminated
     with np.errstate(all="ignore"):
         image = factors.solve(data.side[:-1])
@@ -239,6 +244,8 @@ def distance_to_singular(data: Any, work: SparseWork) -> float:
 
 def nearest_eigenvalues(data: Any, work: SparseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
+    if not sp.issparse(work.jacobian):
+        return matrix_free.nearest_eigenvalues(data, work)
     if data.reference is None:
         rows, units = data.sizes()
         data.reference = sp.diags_array(rows / units) if _factorise(work) is None else work.jacobian

@@ -9,6 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from contvines_ground.near_names import did_you_mean
+
+from ..events.kinds import KINDS
 from ..hints import hinting
 from . import pools
 from .journal import Rows
@@ -30,6 +33,10 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
     if said in known:
         return known[said]
     kind, _, argument = said.partition(":")
+    if kind == "first" and argument and argument not in KINDS:
+        raise PlanError(
+            f"[survey] outcomes: {said!r}: there are no points of this kind{did_you_mean(argument, KINDS)}; known are {', '.join(KINDS)}"
+        )
     if kind in MADE and argument:
         return partial(MADE[kind], **{ARGUMENTS[kind]: argument})
     forms = [f"{name}:..." for name in MADE]

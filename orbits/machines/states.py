@@ -34,14 +34,14 @@ def states_of(
     left, right = engine.walls(params)
     states, speeds = np.zeros((len(nodes), engine.state)), np.zeros((len(nodes), 4))
     nodes = np.ascontiguousarray(nodes, dtype=float)
-    if _placed(codes, modes, nodes, float(left), float(right), states):
+    if placed(codes, modes, nodes, float(left), float(right), states):
         engine.sample(states, params, speeds[:, 0].copy(), speeds)
         states[:, RATE] = np.where(codes < 2, speeds[:, 3] - nodes[:, 1], 0.0)
     return states
 
 
 @stored_kernel
-def _placed(codes, modes, nodes, left, right, states):
+def placed(codes, modes, nodes, left, right, states):
     """Fill states (n, S) with all that nodes tell without the cavity's speed; whether there is an impact."""
     hits = False
     for i in range(nodes.shape[0]):

@@ -6,7 +6,7 @@ A machine whose numbers are all its own varies one of them at a time; a machine 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,6 +70,10 @@ class Varying:
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""
         return 1.0
+
+    def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
+        """What one of these coordinates (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; none here."""
+        return {}
 
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
         """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.

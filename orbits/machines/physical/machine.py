@@ -8,7 +8,7 @@ multiplied by what one dimensionless unit is.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from types import ModuleType
@@ -22,7 +22,8 @@ from orbits.machines.path import along
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
 
-HEAVY = 0.5  # share of the oscillator's mass from which on an absorber is none
+HEAVY, LIGHT = 0.5, 1e-5  # shares of the oscillator's mass beyond which an absorber is none
+FAST = 50.0  # ratio of the excitation's frequency to the natural one, or of that to it, beyond which one of them is a slip of the unit
 
 
 def tables(model: type[Model]) -> ModuleType:
@@ -116,13 +117,31 @@ def _assembled(
     amounts = np.array([counted[q.name][0] for q in chosen])
     numbers = dict(zip(basis.numbers, (float(v) for v in basis.numbers_of(amounts))))
     machine = _made(base, numbers, basis, amounts, said, unusual)
-    ratio = numbers.get("mass_ratio", 0.0)
-    if ratio > HEAVY and not unusual:
-        raise QuantityError(
-            f"absorber_mass is {ratio:.3g} times oscillator_mass, which is implausible for an absorber: at most {HEAVY} times "
-            "would do; if it is meant, say unusual = true in [model]"
-        )
+    if not unusual:
+        told = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
+        _check_ratios(numbers, told)
     return machine
+
+
+def _check_ratios(numbers: Mapping[str, float], told: Mapping[str, str]) -> None:
+    """Refuse quantities that do not go together, as where one of them has a slip in its unit; `told` is how they were given."""
+    ratio = numbers.get("mass_ratio", 0.0)
+    if ratio > HEAVY or (0.0 < ratio < LIGHT and "absorber_mass" in told):
+        rule = f"at most {HEAVY}" if ratio > HEAVY else f"at least {LIGHT:g}"
+        raise QuantityError(
+            f"absorber_mass{_given(told, 'absorber_mass')} is {ratio:.3g} times oscillator_mass{_given(told, 'oscillator_mass')}, "
+            f"which is implausible for an absorber: {rule} times would do; if it is meant, say unusual = true in [model]"
+        )
+    pace = numbers.get("frequency", 1.0)
+    if "natural_frequency" in told and not 1.0 / FAST <= pace <= FAST:
+        raise QuantityError(
+            f"frequency{_given(told, 'frequency')} is {pace:.3g} times natural_frequency{_given(told, 'natural_frequency')}, which is "
+            f"implausible: {1.0 / FAST:g} to {FAST:g} times would do; if it is meant, say unusual = true in [model]"
+        )
+
+
+def _given(told: Mapping[str, str], name: str) -> str:
+    return f" = {told[name]}" if name in told else ""
 
 
 def _made(
@@ -220,6 +239,15 @@ class Physical(Model):
         size = units.size(units.unit_of(quantity), quantity.unit)
         assert size
         return np.prod(np.asarray(params, dtype=float) ** powers, axis=-1) / size
+
+    def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
+        """What one of these coordinates is in the unit that is shown, and that unit."""
+        kinds = {name: "velocity" if name.endswith("_rate") else "length" for name in names}
+        table: dict[str, Quantity] = self.tables.GAUGES
+        return {
+            name: (float(self.gauge(kind, params)), units.unit_of(table[kind]))
+            for name, kind in kinds.items()
+        }
 
     # ------------------------------------------------------------------ parameters
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:

@@ -35,6 +35,8 @@ _USUAL = {
 }
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:[^\W\d]|%).*?|)\s*")
 
+_COMMA = re.compile(r"\s*[-+]?\d*,\d")
+
 
 @cache
 def registry() -> Any:
@@ -101,7 +103,8 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
         return _finite(quantity, float(value), shown, would), unit_of(quantity)
     match = _NUMBER.fullmatch(value)
     if match is None:
-        raise QuantityError(f"{shown} is not a number with a unit; {would}")
+        comma = " (decimals stand behind a point)" if _COMMA.match(value) else ""
+        raise QuantityError(f"{shown} is not a number with a unit{comma}; {would}")
     number, unit = float(match[1]), match[2]
     if not quantity.unit:
         factor = size(unit, "") if unit else 1.0

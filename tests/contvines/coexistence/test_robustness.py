@@ -141,3 +141,15 @@ def test_a_kick_of_a_machine_in_kilograms_leads_to_the_sliding_motion():
     for part, impacts in ((0.98, 2), (1.0, 0)):  # the boundary is folded: further out may be inside again
         start = dict(zip(found.names, found.place + part * found.kick, strict=True))
         assert machine.attractor(start, frequency="8 Hz").impacts == impacts
+    # told in millimetres and millimetres a second: 30 mm and 30 mm 2 pi 8 Hz are one
+    told, speed = found.to_dict(), 30.0 * 2.0 * np.pi * 8.0
+    assert told["kick"] == pytest.approx(found.kick * [30.0, speed, 30.0, speed], rel=1e-12)
+    assert told["units"] == {"frequency": "Hz", "w": "mm", "w_rate": "mm/s", "v": "mm", "v_rate": "mm/s"}
+    assert "frequency = 8 Hz" in str(found) and f"w {told['kick'][0]:+.4g} mm, w_rate" in " ".join(
+        str(found).split()
+    )
+    assert (
+        str(cv.erosion(graph["B1"], [8.0], starts=64, directions=16))
+        .splitlines()[2]
+        .startswith("frequency [Hz]")
+    )

@@ -8,6 +8,7 @@ import pytest
 from contvines.command.cli import main
 from contvines.command.compose import machine
 from contvines.command.study import StudyError, check_study
+from contvines.command.survey_study import outcomes_of, plan_and_machine
 
 STUDY = """
 units = "si"
@@ -47,6 +48,42 @@ def nested(**changes):
         else:
             place[name] = value
     return data
+
+
+def test_blanks_around_a_quantity_say_nothing():
+    assert check_study(nested(model__natural_frequency=" 8Hz  ")).parameters["natural_frequency"] == 8.0
+
+
+@pytest.mark.parametrize(
+    ("survey", "says"),
+    [
+        ({"vary": {"half_width": ["15mm..25mm"]}}, "[survey] vary.half_width[0] = '15mm..25mm': 'mm..25mm' is no unit of a length"),
+        ({"vary": {"half_width": {"within": [8, 20], "count": 2}}}, "[survey] vary.half_width.within[0] = 8 has no unit"),
+        ({"vary": {"restitution": {"uniform": [0.5, 1.7]}}}, "[survey] vary.restitution.uniform[1] = 1.7 is implausible"),
+        ({"vary": {"restitution": {"normal": [0.6, -0.1]}}}, "[survey] vary.restitution.normal[1] = -0.1 is out of range"),
+        ({"outcomes": ["stable:LQ"]}, "[survey] outcomes: 'stable:LQ': word 'LQ' has the letter 'Q'"),
+        ({"outcomes": ["first:fould"]}, "'first:fould': there are no points of this kind (did you mean 'fold'?)"),
+    ],
+)  # fmt: skip
+def test_bad_surveys_get_a_sentence(survey, says):
+    study = check_study({**nested(), "survey": {"vary": {"restitution": [0.5, 0.6]}, **survey}})
+    with pytest.raises(ValueError) as caught:
+        plan_and_machine(study)
+        outcomes_of(study)
+    assert says in str(caught.value)
+
+
+def test_a_deviation_may_be_as_small_as_it_likes():
+    """A restitution of 0.005 is implausible, a deviation of 0.005 is not."""
+    vary = {"restitution": {"normal": [0.6, 0.005]}, "half_width": {"normal": ["15 mm", "1 um"]}}
+    plan, _ = plan_and_machine(check_study({**nested(), "survey": {"vary": vary, "samples": 64}}))
+    assert np.std(plan.samples["restitution"]) == pytest.approx(0.005, rel=0.1)
+    assert np.std(plan.samples["half_width"]) == pytest.approx(0.001, rel=0.1)
+
+
+def test_the_word_of_an_outcome_may_begin_with_any_event():
+    study = check_study({**nested(), "survey": {"vary": {"restitution": [0.6]}, "outcomes": ["stable:RL"]}})
+    assert outcomes_of(study)[0].keywords == {"word": "LR"}
 
 
 def test_a_study_is_read():
@@ -89,6 +126,13 @@ def test_start_replaces_what_the_model_says_of_the_same_thing():
         ({"model__stiffness": "9 kN/m"}, "natural_frequency and stiffness say the same thing twice"),
         ({"model__name": "pendulum"}, "'pendulum'"),
         ({"start__guess": [[0.1, 0.2]]}, "guess[0]"),
+        ({"model__oscillator_mass": "3,8 kg"}, "[model] oscillator_mass = '3,8 kg' is not a number with a unit (decimals stand behind a point)"),
+        ({"model__oscillator_mass": "-3.8 kg"}, "[model] oscillator_mass = '-3.8 kg' is out of range; give a value above 0: \"3.8 kg\" would do"),
+        ({"model__natural_frequency": "8 kHz"}, "frequency = 7.9 Hz is 0.000988 times natural_frequency = 8 kHz, which is implausible"),
+        ({"model__absorber_mass": "32 mg"}, "absorber_mass = 32 mg is 8.42e-06 times oscillator_mass = 3.8 kg, which is implausible"),
+        ({"model__absorber_mass": "32 kg"}, "absorber_mass = 32 kg is 8.42 times oscillator_mass = 3.8 kg, which is implausible"),
+        ({"continue__within": [7.5, 8.2]}, "[continue] within[0] = 7.5 has no unit; \"8 Hz\" would do"),
+        ({"continue__parameter": "restitution", "continue__within": [0.5, 1.5]}, "[continue] within[1] = 1.5 is implausible for a coefficient of restitution"),
     ],
 )  # fmt: skip
 def test_bad_studies_get_a_sentence(change, says):

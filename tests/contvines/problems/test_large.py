@@ -206,3 +206,79 @@ def test_without_a_matrix_from_the_start_through_the_fold():
     assert np.array_equal(branches[0].stable, branches[1].stable)
     assert branches[0].stable.any() and not branches[0].stable.all()
     assert not graphs[1].of_kind("branch-point")
+
+
+def matrix_free(matrix_at, n):
+    def operator(u, p):
+        matrix = matrix_at(u, p)
+        return LinearOperator((n, n), matvec=lambda x: matrix @ np.ravel(x), dtype=float)
+
+    return operator
+
+
+def test_branch_points_without_a_matrix():
+    """L u + p u - u^3 = 0 with L a second difference of no values at the walls: p = 4 (n + 1)^2 sin(k pi / 2 (n + 1))^2 / pi^2."""
+    n = 30
+    line = (second_difference(n) * (n + 1) ** 2 / np.pi**2).tocsc()
+    nearly = splu(line)
+    problem = cv.AlgebraicProblem(
+        lambda u, p: line @ u + p * u - u**3,
+        np.zeros(n),
+        0.5,
+        jacobian=matrix_free(lambda u, p: line + sp.diags_array(p - 3.0 * u**2), n),
+        derivative=lambda u, p: np.array(u),
+        preconditioner=lambda u, p: LinearOperator((n, n), matvec=nearly.solve, dtype=float),
+    )
+    graph = cv.diagram(problem, within=(0.5, 5.0))
+    exact = [4.0 * (n + 1) ** 2 * np.sin(0.5 * k * np.pi / (n + 1)) ** 2 / np.pi**2 for k in (1, 2)]
+    assert [point.value for point in graph.of_kind("branch-point")] == pytest.approx(exact, rel=1e-10)
+    assert len(graph) == 3
+
+
+def test_a_preconditioner_is_worth_it_whatever_the_size():
+    """Bratu on a square: the products a point takes do not grow with the number of unknowns, and the border adds none."""
+    taken = []
+    for n in (6, 12):
+        F, jacobian, derivative = bratu_2d(n)
+        N, count = n * n, [0]
+        laplace = jacobian(np.zeros(N), 0.0)
+        nearly = splu(laplace)
+
+        def counted(u, p, jacobian=jacobian, count=count, N=N):
+            matrix = jacobian(u, p)
+
+            def product(x):
+                count[0] += 1
+                return matrix @ np.ravel(x)
+
+            return LinearOperator((N, N), matvec=product, dtype=float)
+
+        problem = cv.AlgebraicProblem(
+            F,
+            np.zeros(N),
+            0.0,
+            jacobian=counted,
+            derivative=derivative,
+            preconditioner=lambda u, p, nearly=nearly, N=N: LinearOperator(
+                (N, N), matvec=nearly.solve, dtype=float
+            ),
+        )
+        points = sum(1 for _ in cv.trace(problem, within=(0.0, 5.0)))
+        taken.append(count[0] / points)
+    assert max(taken) < 100.0
+    assert taken[1] < 1.2 * taken[0]
+
+
+def test_a_matrix_free_problem_that_gmres_cannot_solve_says_so():
+    """A cyclic shift of 400 unknowns: nothing is gained before the 400th product, and 80 vectors are kept."""
+    n = 400
+    before, push = np.roll(np.arange(n), 1), np.random.default_rng(0).standard_normal(n)
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u[before] - p * push,
+        np.zeros(n),
+        0.0,
+        jacobian=lambda u, p: LinearOperator((n, n), matvec=lambda x: np.ravel(x)[before], dtype=float),
+        derivative=lambda u, p: -push,
+    )
+    with pytest.raises(ValueError, match="GMRES does not solve .* a preconditioner= would help"):
+        cv.diagram(problem, within=(0.0, 1.0))

@@ -101,6 +101,6 @@ def test_the_distance_is_that_of_the_bordered_matrix():
         assert point is not None and problem.scales is not None
         inner = np.column_stack([make(point.u, point.p) @ np.eye(30), np.zeros(30)])
         image = np.linalg.solve(np.vstack([inner, border]), problem.side) / problem.scales.vector
-        assert point.row[0] == pytest.approx(np.sqrt(31.0) / np.linalg.norm(image), rel=1e-9)
+        assert -point.row[0] == pytest.approx(np.sqrt(31.0) / np.linalg.norm(image), rel=1e-9)
         found.append(point.row[0])
     assert found[0] == pytest.approx(found[1], rel=1e-9)

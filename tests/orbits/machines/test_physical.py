@@ -180,7 +180,7 @@ def test_the_shaken_cavity_has_units_too():
         ({"half_width": "1e999 mm"}, "is not finite"),
         ({"half_width": [1]}, "is no quantity"),
         ({"half_width": "20 m"}, "half_width = '20 m' is implausible for the clearance to either side: 0.01 to 2000 mm would do"),
-        ({"absorber_mass": "32 kg"}, "absorber_mass is 8.42 times oscillator_mass"),
+        ({"absorber_mass": "32 kg"}, "absorber_mass = 32 kg is 8.42 times oscillator_mass = "),
         ({"natural_frequency": "8 kg"}, "natural_frequency is a frequency"),
         ({"stiffness": "9600 N/m"}, "natural_frequency and stiffness say the same thing twice"),
         ({"friction": "0.1 mm"}, "friction is a plain number"),
