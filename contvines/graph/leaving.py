@@ -286,7 +286,7 @@ def _cost(seed: dict[str, Any]) -> int:
     return 0 if seed["persistence"] else 1
 
 
-def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[dict[str, Any]]:
+def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, Any]]:
     """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
     problem = point.problem
     brief = None if every or not isinstance(problem, Onward) else problem.onward
