@@ -13,7 +13,8 @@ from .ending import Ending
 from .half_branch import HalfBranch
 
 APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
-RESOLVED = 1e-8  # but between a fold and a flip, where a sliver of stable solutions may lie, down to this
+RESOLVED = 1e-8  # but between two unlike ones of those at which stability is lost, where a stable sliver may lie, down to this
+LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
 BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
 MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
 
@@ -46,9 +47,7 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
 
 def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
     """Whether solutions between neighbouring points of these kinds may be stable although those on both sides are not."""
-    return any(
-        a != b and {a, b} <= {"fold", "period-doubling", "symmetry-breaking"} for a in one for b in other
-    )
+    return any(a != b and {a, b} <= LOST for a in one for b in other)
 
 
 def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.ndarray:

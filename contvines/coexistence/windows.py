@@ -95,8 +95,11 @@ class Windows:
         if known is not None and at_hand:
             return [(problem, known[f"u{k}"], float(known["at"][k])) for k, problem in enumerate(parts)]
         points = []
-        for problem, u in cycles():
+        found = cycles()
+        for k, (problem, u) in enumerate(found):
             if self.run.register.find(problem, u, p) is None:
+                where = f"{self.population.parameter} = {p:.6g}"
+                self.run.tell(f"cycle {k + 1} of {len(found)} at {where}: followed to where it is stable", p)
                 points += self._traced(problem, u, p)
         record: dict[str, Any] = {
             "problems": [problem.describe() for problem, _, _ in points],

@@ -16,6 +16,7 @@ from ..events.located import Role
 from ..forms.criticality import cubic_form
 from ..interrupts import OPEN
 from ..journal import NullJournal
+from ..problems.abilities import Onward
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
@@ -33,6 +34,7 @@ FAMILY = (
     "give the problem conditions= that pick one of them"
 )
 VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
+SEED = ("problem", "u", "p", "tangent", "note", "persistence")
 DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
@@ -227,14 +229,14 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
     leaving.tangent = outward
     if branch.real:
-        seeds = _seeds(run, leaving)
+        seeds = _seeds(run, leaving, depth < run.depth)
         if not seeds:
             run.remark(point.label, point.problem.dead_end(leaving))
         elif all(_cost(seed) + depth > run.depth for seed in seeds):
             run.remark(point.label, DEEPER.format(depth=run.depth))
         for seed in seeds:
             persistence = bool(seed["persistence"])
-            note = seed["note"] or ("persistence" if persistence else "nonsmooth fold")
+            note = str(seed["note"]) or ("persistence" if persistence else "nonsmooth fold")
             cost = _cost(seed)
             if depth + cost > run.depth:
                 continue
@@ -284,8 +286,11 @@ def _cost(seed: dict[str, Any]) -> int:
     return 0 if seed["persistence"] else 1
 
 
-def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
-    key = f"{run.serial}/beyond/{point.label}"
+def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, Any]]:
+    """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
+    problem = point.problem
+    brief = None if every or not isinstance(problem, Onward) else problem.onward
+    key = f"{run.serial}/{'beyond' if brief is None else 'onward'}/{point.label}"
     known = run.journal.recall(key)
     problems = _rebuilt(known)
     if known is not None and problems is not None:
@@ -301,20 +306,10 @@ def _seeds(run: Run, point: SpecialPoint) -> list[dict[str, Any]]:
             for i in range(len(problems))
         ]
     with OPEN:
-        seeds = list(point.problem.beyond(point))
+        seeds = list(point.problem.beyond(point) if brief is None else brief(point))
     if known is None and not isinstance(run.journal, NullJournal):
         run.journal.record(key, _recorded(seeds))
-    return [
-        {
-            "problem": seed.problem,
-            "u": seed.u,
-            "p": seed.p,
-            "tangent": seed.tangent,
-            "note": str(seed.note),
-            "persistence": bool(seed.persistence),
-        }
-        for seed in seeds
-    ]
+    return [{name: getattr(seed, name) for name in SEED} for seed in seeds]
 
 
 def _recorded(seeds: list[Any]) -> dict[str, Any]:

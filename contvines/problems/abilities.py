@@ -63,6 +63,13 @@ class Attracting(Protocol):
 
 
 @runtime_checkable
+class Onward(Protocol):
+    """Tells of ``beyond`` what needs no switch alone: what leaves at the border with another period or symmetry only where nothing else is found."""
+
+    def onward(self, point: Any) -> Sequence[Any]: ...
+
+
+@runtime_checkable
 class Resolved(Protocol):
     """Tells the eigenvectors that belong to multipliers, as columns."""
 

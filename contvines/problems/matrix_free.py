@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import diags_array
+from scipy.sparse.linalg import LinearOperator, gmres
 
 from .nearness import nearest_sparse
 
@@ -29,13 +30,12 @@ CORNER = 1e-8  # part of its terms below which the preconditioner's Schur comple
 Linear = Callable[[np.ndarray], np.ndarray]
 
 
-def gmres(
+def restarted(
     apply: Linear, side: np.ndarray, guess: np.ndarray | None, accuracy: float
 ) -> tuple[np.ndarray, float]:
-    """Solution of a linear system, and its residual relative to the side.
+    """Solution of a linear system by restarted GMRES, and its residual relative to the side.
 
-    Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856, restarted, every vector made orthogonal twice. It ends where a cycle
-    gains nothing any more: rounding may allow no more than that.
+    It ends where a cycle gains nothing any more: rounding may allow no more than that.
 
     Parameters
     ----------
@@ -49,16 +49,18 @@ def gmres(
     n, size = len(side), float(np.linalg.norm(side))
     if size == 0.0:
         return np.zeros(n), 0.0
+    matrix = LinearOperator((n, n), matvec=apply, dtype=float)  # type: ignore[call-arg]
+    kept = n if n <= ALL else RESTART
     x = np.zeros(n) if guess is None else guess.copy()
     rest = side if guess is None else side - apply(x)
     gap = float(np.linalg.norm(rest)) / size
     if not gap < 1.0:
         x, rest, gap = np.zeros(n), side, 1.0
-    idle, reached = 0, False
+    idle = 0
     for _ in range(CYCLES):
         if gap <= accuracy:
             break
-        step, reached = _cycle(apply, rest, accuracy / gap)
+        step, missed = gmres(matrix, rest, rtol=accuracy / gap, atol=0.0, restart=kept, maxiter=1)
         trial = x + step
         rest_of_it = side - apply(trial)
         found = float(np.linalg.norm(rest_of_it)) / size
@@ -66,51 +68,9 @@ def gmres(
         if not found < gap:
             break
         x, rest, gap = trial, rest_of_it, found
-        if idle and (reached or idle >= IDLE):
+        if idle and (not missed or idle >= IDLE):
             break
     return x, gap
-
-
-def _cycle(apply: Linear, rest: np.ndarray, accuracy: float) -> tuple[np.ndarray, bool]:
-    """The best correction in one Krylov space, and whether it is accurate as far as recursion tells."""
-    n = len(rest)
-    most = n if n <= ALL else RESTART
-    size = float(np.linalg.norm(rest))
-    basis = np.empty((most + 1, n))
-    basis[0] = rest / size
-    triangle, turns = np.zeros((most, most)), np.zeros((most, 2))
-    right = np.zeros(most + 1)
-    right[0] = size
-    k, reached = 0, False
-    while k < most and not reached:
-        vector = apply(basis[k])
-        before = float(np.linalg.norm(vector))
-        column = basis[: k + 1] @ vector
-        vector = vector - column @ basis[: k + 1]
-        more = basis[: k + 1] @ vector
-        vector -= more @ basis[: k + 1]
-        column += more
-        length = float(np.linalg.norm(vector))
-        if not np.isfinite(length):
-            break
-        broken = length <= 1e-15 * before
-        basis[k + 1] = 0.0 if broken else vector / length
-        for j in range(k):
-            c, s = turns[j]
-            column[j], column[j + 1] = c * column[j] + s * column[j + 1], c * column[j + 1] - s * column[j]
-        radius = float(np.hypot(column[k], length))
-        if radius == 0.0:
-            break
-        turns[k] = column[k] / radius, length / radius
-        triangle[: k + 1, k] = column
-        triangle[k, k] = radius
-        right[k + 1] = -turns[k, 1] * right[k]
-        right[k] *= turns[k, 0]
-        k += 1
-        reached = broken or abs(right[k]) <= accuracy * size
-    if k == 0:
-        return np.zeros(n), False
-    return np.linalg.solve(triangle[:k, :k], right[:k]) @ basis[:k], reached
 
 
 class Bordered:
@@ -167,7 +127,7 @@ class Bordered:
         """The solution in the units of the problem, and how accurate it is."""
         start = None if guess is None else guess / self.columns
         right = self.precondition(side / self.rows)
-        found, gap = gmres(lambda x: self.precondition(self.product(x)), right, start, accuracy)
+        found, gap = restarted(lambda x: self.precondition(self.product(x)), right, start, accuracy)
         size = float(np.linalg.norm(right))
         self.growth = float(np.linalg.norm(found)) / size if size > 0.0 else 0.0
         return found * self.columns, gap
@@ -241,7 +201,7 @@ class Inverse:
     def solve(self, side: np.ndarray) -> np.ndarray:
         """The inverse applied to a vector."""
         right = self._precondition(np.ravel(side))
-        found, _ = gmres(lambda x: self._precondition(self._product(x)), right, None, ACCURATE)
+        found, _ = restarted(lambda x: self._precondition(self._product(x)), right, None, ACCURATE)
         return found * self.columns
 
 

@@ -57,7 +57,7 @@ NEARER = (
 )  # parts of the way from the border at which a simulated orbit is solved for again
 
 
-def cross(problem: CycleProblem, point: Any) -> list[Seed]:
+def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
     """Seeds of the branches on the other side of a border.
 
     Parameters
@@ -65,6 +65,8 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
     problem : CycleProblem
     point : special point
         With `u`, `value`, `tangent` and `margin_index`.
+    every : bool
+        Also the orbits of less symmetry or longer period that leave at the border itself, where there are others.
 
     Returns
     -------
@@ -97,8 +99,9 @@ def cross(problem: CycleProblem, point: Any) -> list[Seed]:
         if smallest is not other:
             seeds.extend(_onwards(smallest, v, p))
         break
-    beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
-    seeds += _escapes(border, beside)
+    if every or not seeds:
+        beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
+        seeds += _escapes(border, beside)
     return [read_alike(seed, before) for seed in seeds]
 
 

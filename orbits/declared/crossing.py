@@ -33,7 +33,7 @@ BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends t
 ROOM = 4  # events that may stand before that of the margin
 
 
-def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
+def cross(problem: DeclaredSystem, point: Any, every: bool = True) -> list[Seed]:
     """Seeds of the branches on the other side of a border (as `orbits.borders.crossing.cross`)."""
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     index = int(point.margin_index)
@@ -51,6 +51,8 @@ def cross(problem: DeclaredSystem, point: Any) -> list[Seed]:
         text = f"{note}: {kind}, the word becomes {smallest.word.text or 'free of events'}"
         seeds.append(Seed(smallest, v, q, tangent, "border", text, persistence))  # type: ignore[arg-type]
         break
+    if seeds and not every:
+        return seeds
     return seeds + list(_escapes(problem, u, p, index, nearby))
 
 

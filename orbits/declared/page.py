@@ -7,6 +7,7 @@ import inspect
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -54,11 +55,15 @@ def page_of(function: Callable) -> Page:
 def object_name(machine: Any) -> str:
     """The name under which the page's module holds the machine; empty where it does not."""
     for module in list(sys.modules.values()):
-        if (
-            getattr(module, "__file__", None)
-            and str(Path(str(module.__file__)).resolve()) == machine.page.path
-        ):
+        file = getattr(module, "__file__", None)
+        if file and _resolved(str(file)) == machine.page.path:
             for name, value in vars(module).items():
                 if value is machine:
                     return name
     return ""
+
+
+@cache
+def _resolved(path: str) -> str:
+    """Without links and relative parts; asked of some thousand modules for every problem that is kept."""
+    return str(Path(path).resolve())

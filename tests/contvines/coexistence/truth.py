@@ -209,9 +209,9 @@ def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: 
                     and not set(m.word) & set("LR")
                 )
             one, other = number / total, ours / starts
-            error = math.sqrt(
-                max(one, 1 / total) * (1 - one) / total + max(other, 1 / starts) * (1 - other) / starts
-            )
+            least = 1.0 / min(total, starts)  # of a few starts none may be there, or all
+            both = float(np.clip((number + ours) / (total + starts), least, 1.0 - least))
+            error = math.sqrt(both * (1.0 - both) * (1.0 / total + 1.0 / starts))
             beyond = abs(one - other) > SIGMAS * max(error, 1e-12)
             tally += Tally(compared=1, apart=beyond)
             if beyond:

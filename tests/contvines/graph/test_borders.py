@@ -105,6 +105,26 @@ def test_nonsmooth_fold_is_a_switch():
     assert "depth" not in graph["VG1"].note
 
 
+class Brief(Line):
+    """Tells what goes on behind its border apart from what leaves there."""
+
+    def onward(self, point):
+        self.asked = [*getattr(self, "asked", []), "onward"]
+        return [f(self, point) for f in self.others[:1]]
+
+    def beyond(self, point):
+        self.asked = [*getattr(self, "asked", []), "beyond"]
+        return super().beyond(point)
+
+
+def test_what_would_not_be_followed_is_not_looked_for():
+    for depth, asked in ((0, ["onward"]), (1, ["beyond"])):
+        start = Brief("a", 0.0, 1.0, [-1.0], [0.5], [persistent, folding])
+        graph = cv.diagram(start, within=(0.0, 1.0), depth=depth)
+        assert start.asked == asked
+        assert len(graph) == 2 + depth and graph["VG1"].note == ""
+
+
 def test_virtual_part_is_a_branch_of_its_own():
     graph = cv.diagram(Line("a", 0.0, 1.0, [-1.0], [0.5], [persistent]), within=(0.0, 1.0), virtual=True)
     assert [b.real for b in graph] == [True, True, False]

@@ -83,6 +83,29 @@ def test_a_sliver_between_a_fold_and_a_doubling_is_marked(width):
     assert len(branch.stable_intervals()) == 1
 
 
+@pytest.mark.parametrize("width", [1e-2, 1e-5, 1e-7])
+def test_a_sliver_between_a_neimark_sacker_point_and_a_doubling_is_marked(width):
+    """A spiral of modulus 1 - p, and y' = -(1 + p - d) y: stable for 0 < p < d only, exactly."""
+    c, s = np.cos(1.1), np.sin(1.1)
+    problem = cv.MapProblem(
+        lambda z, p: np.array(
+            [
+                (1.0 - p) * (c * z[0] - s * z[1]),
+                (1.0 - p) * (s * z[0] + c * z[1]),
+                -(1.0 + p - width) * z[2],
+            ]
+        ),
+        [0.0, 0.0, 0.0],
+        -0.09,
+        parameter="p",
+    )
+    graph = cv.diagram(problem, within=(-0.1, 0.2), depth=0)
+    (circle,), (flip,) = graph.of_kind("neimark-sacker"), graph.of_kind("period-doubling")
+    assert (circle.value, flip.value) == pytest.approx((0.0, width), abs=1e-13)
+    assert graph["B1"].stable.sum() >= 3  # both ends, and something between
+    assert graph["B1"].stable_intervals() == [(circle.value, flip.value)]
+
+
 def test_a_sliver_too_narrow_to_be_seen_is_told_of():
     problem = cv.MapProblem(
         lambda z, p: np.array([z[0] + p - z[0] ** 2, -(1.0 + z[0] - 3e-9) * z[1]]),
