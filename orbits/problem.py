@@ -56,6 +56,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     spectrum = "map"
     forced = True
+    every = True
 
     def __init__(
         self,
@@ -160,11 +161,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
-        return cross(self, point)
-
-    def onward(self, point: Any) -> Sequence[Any]:
-        """The same without the orbits of less symmetry or longer period that leave at the border itself, unless there are no others."""
-        return cross(self, point, False)
+        return cross(self, point, self.every)
 
     def dead_end(self, point: Any) -> str:
         """Why no motion was found on the other side of a border; empty where the reason is not known."""

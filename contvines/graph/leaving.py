@@ -16,7 +16,7 @@ from ..events.located import Role
 from ..forms.criticality import cubic_form
 from ..interrupts import OPEN
 from ..journal import NullJournal
-from ..problems.abilities import Onward
+from ..problems.abilities import Onward, everything
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
@@ -288,9 +288,8 @@ def _cost(seed: dict[str, Any]) -> int:
 
 def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, Any]]:
     """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
-    problem = point.problem
-    brief = None if every or not isinstance(problem, Onward) else problem.onward
-    key = f"{run.serial}/{'beyond' if brief is None else 'onward'}/{point.label}"
+    problem, brief = point.problem, not every and isinstance(point.problem, Onward)
+    key = f"{run.serial}/{'onward' if brief else 'beyond'}/{point.label}"
     known = run.journal.recall(key)
     problems = _rebuilt(known)
     if known is not None and problems is not None:
@@ -305,8 +304,8 @@ def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, 
             }
             for i in range(len(problems))
         ]
-    with OPEN:
-        seeds = list(point.problem.beyond(point) if brief is None else brief(point))
+    with OPEN, everything(problem, not brief):
+        seeds = list(problem.beyond(point))
     if known is None and not isinstance(run.journal, NullJournal):
         run.journal.record(key, _recorded(seeds))
     return [{name: getattr(seed, name) for name in SEED} for seed in seeds]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -64,9 +65,22 @@ class Attracting(Protocol):
 
 @runtime_checkable
 class Onward(Protocol):
-    """Tells of ``beyond`` what needs no switch alone: what leaves at the border with another period or symmetry only where nothing else is found."""
+    """Where ``every`` is set to False, ``beyond`` tells what needs no switch alone: what leaves with another period or symmetry only where nothing else is found."""
 
-    def onward(self, point: Any) -> Sequence[Any]: ...
+    every: bool
+
+
+@contextmanager
+def everything(problem: Any, every: bool) -> Iterator[None]:
+    """Whether ``beyond`` tells everything, for as long as this lasts; problems without `Onward` always do."""
+    if every or not isinstance(problem, Onward):
+        yield
+        return
+    problem.every = False
+    try:
+        yield
+    finally:
+        problem.every = True
 
 
 @runtime_checkable

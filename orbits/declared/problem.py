@@ -27,6 +27,8 @@ from orbits.relatives import Relatives
 class DeclaredProblem(DeclaredSystem, Relatives, Answers):
     """Periodic orbits with a given word, against one parameter of a declared machine; the parameters are `DeclaredSystem`'s."""
 
+    every = True
+
     # ------------------------------------------------------------------ facts
     @property
     def units(self) -> dict[str, str]:
@@ -67,11 +69,7 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
-        return cross(self, point)
-
-    def onward(self, point: Any) -> Sequence[Any]:
-        """The same without the orbits of less symmetry or longer period that leave at the border itself, unless there are no others."""
-        return cross(self, point, False)
+        return cross(self, point, self.every)
 
     def dead_end(self, point: Any) -> str:
         """Why no motion was found on the other side of a border."""

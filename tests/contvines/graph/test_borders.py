@@ -108,17 +108,15 @@ def test_nonsmooth_fold_is_a_switch():
 class Brief(Line):
     """Tells what goes on behind its border apart from what leaves there."""
 
-    def onward(self, point):
-        self.asked = [*getattr(self, "asked", []), "onward"]
-        return [f(self, point) for f in self.others[:1]]
+    every = True
 
     def beyond(self, point):
-        self.asked = [*getattr(self, "asked", []), "beyond"]
-        return super().beyond(point)
+        self.asked = [*getattr(self, "asked", []), self.every]
+        return super().beyond(point)[: None if self.every else 1]
 
 
 def test_what_would_not_be_followed_is_not_looked_for():
-    for depth, asked in ((0, ["onward"]), (1, ["beyond"])):
+    for depth, asked in ((0, [False]), (1, [True])):
         start = Brief("a", 0.0, 1.0, [-1.0], [0.5], [persistent, folding])
         graph = cv.diagram(start, within=(0.0, 1.0), depth=depth)
         assert start.asked == asked

@@ -118,7 +118,7 @@ def test_a_sliver_too_narrow_to_be_seen_is_told_of():
         assert "would not be resolved" in point.note
 
 
-@pytest.mark.parametrize("rate, stable", [(-1e-4, True), (5e-4, False), (0.0, False)])
+@pytest.mark.parametrize("rate, stable", [(-1e-4, True), (5e-4, False)])
 def test_a_flow_is_stable_left_of_the_axis_only(rate, stable):
     """u' = rate u at rest, and a conservative pair, whose eigenvalues are imaginary all along: nothing is attracted."""
     problem = cv.AlgebraicProblem(lambda u, p: rate * (u - p), [0.0], 0.0, spectrum="flow")
