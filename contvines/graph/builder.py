@@ -83,6 +83,7 @@ def work(run: Run) -> None:
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
+            tell_dead_ends(run)
         except KeyboardInterrupt:
             take()
             graph.message = "interrupted; run the same command again to go on"
@@ -100,6 +101,15 @@ def tell_waiting(run: Run) -> None:
     for pending in run.queue if most > 1 else ():
         if pending.point is not None:
             run.remark(pending.point, f"a branch that leaves here is not followed: max_branches = {most}")
+
+
+def tell_dead_ends(run: Run) -> None:
+    """Say why nothing goes on at a border whose solutions beyond were looked for, and came to nothing one by one."""
+    crossed = {switch.point for switch in run.graph.switches}
+    for point in run.graph.special.values():
+        untold = point.kind in BORDERS and point.real and not point.remarks and point.label not in crossed
+        if untold and point.problem is not None:
+            run.remark(point.label, point.problem.dead_end(point))
 
 
 def trace_pending(run: Run, pending: Pending) -> None:

@@ -19,6 +19,7 @@ from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
 UNSTABLE = 1e-5
+PASSING, CLOSED = 0.99, 1e-9  # a slower recurrence, open by more, passes beside a fold
 NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
 LONGEST = 200_000  # forcing periods for which a slow or undamped transient is waited for
 TO_WALLS = 8  # times that a creeping motion is moved on to a wall
@@ -142,7 +143,9 @@ def settle(
         slow = patience > 0 and recurring is not None and recurring == before and state[TURNS] < LONGEST
         if found is not None:
             cycle = _cycle(model, engine, params, state, window, *found)
-            if not np.any(np.abs(cycle.multipliers) > 1.0 + UNSTABLE) or (last and not slow):
+            sizes = np.abs(cycle.multipliers)
+            passing = cycle.residual > CLOSED and np.any(sizes > PASSING)
+            if not passing and (not np.any(sizes > 1.0 + UNSTABLE) or (last and not slow)):
                 return cycle
             state[RATE] *= 1.0 + 1e-6  # a motion that only rounding keeps where it is: help it to leave
         if last and not slow:

@@ -22,7 +22,10 @@ BESIDE = 1e-6  # margins as small make events a matter of rounding
 WILD = 1e6  # multipliers as large are lost within a period
 DIFFERENCES = 1e-4  # of characteristic polynomials, relative
 EXACTLY = 1e-5  # of the same, in many digits
-ROUGHLY = 1e-3  # ... where floating point does not resolve the stretch: multipliers run from one end of the circle to the other within 1e-10
+ROUGHLY, STEEP = (
+    1e-3,
+    1e-8,
+)  # ... in stretches as narrow, relative: multipliers run through the circle within them, and rounding moves these
 PARAMETER = 1e-10  # by which the orbit in many digits may be another machine's: rounding of phases, times what an event's map amplifies
 UNRESOLVED = 1e-12  # stretches of the parameter, relative, that floating point does not resolve
 NARROW = 1e-10  # stretches of the parameter, relative, in which a basin may be narrower than the displacement of a simulation
@@ -163,7 +166,7 @@ def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally, width: floa
         if gap < DIFFERENCES:
             tally.count("multipliers against smaller differences")
             return orbit.multipliers
-    if in_many_digits(orbit, ROUGHLY if width < UNRESOLVED else EXACTLY):
+    if in_many_digits(orbit, ROUGHLY if width < STEEP else EXACTLY):
         tally.count("multipliers against many digits")
         return orbit.multipliers
     tally.find(
@@ -246,7 +249,7 @@ def settle(draw: Any, tally: Tally, rng: np.random.Generator) -> None:
         if not (solved.real and solved.stable):
             tally.find("attractor", f"{said}: margin {solved.margin:.1e}, multipliers {solved.multipliers}")
         gap = apart(solved, claimed, images=False)
-        if not gap < 1e-7:
+        if not gap < 1e-7 + claimed.residual / (1.0 - outermost):  # as far as it has still to settle
             tally.find("attractor", f"{said}: solved for it differs by {gap:.1e}")
         if np.isfinite(found.multipliers).all() and solved.margin > BESIDE:
             _compared(solved, _without_trivial(solved, found.multipliers), said, tally)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from orbits.attractors import find_attractor
 from orbits.simulation import replay
 from tests.orbits.fuzz import neighbours, structure
 from tests.orbits.fuzz.between import Between
@@ -193,3 +194,19 @@ def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back(
     tally = Tally("cavity", 412, 368)
     structure.judge(graph, tally)
     assert not tally.findings
+
+
+def test_a_slow_passage_beside_a_fold_is_no_attractor():
+    """What it seems to repeat is, in eighty digits, the motion of a machine whose amplitude is 1e-8 larger: there the branch turns."""
+    machine = draw("absorber", 414, 210).machine
+    start = {"phase": 0.3196701108947567, "w": 0.07180270629232677, "w_rate": 1.231050380579057}
+    found = find_attractor(machine, start, max_period=4, patience=1, amplitude=1.3923243664864222)
+    assert found.kind == "chaotic" or abs(exact(found.orbit).shift) < 1e-10
+
+
+def test_a_border_beyond_which_all_that_was_tried_came_to_nothing_says_why():
+    """Two solutions beyond are proposed, and neither is real: a stick of 6.6e-4 with 6.4e-4 of friction in reserve vanishes as well."""
+    graph = diagram("coupled", 178, 414)
+    (border,) = (p for p in graph.of_kind("wall-graze") if p.branch == "B1")
+    assert not any(switch.point == border.label for switch in graph.switches)
+    assert "about to vanish" in border.note
