@@ -173,22 +173,9 @@ class Engine(Rows):
         length: float,
         border: np.ndarray,
         along: np.ndarray,
-    ) -> list[Solved | None]:
+    ) -> corrector.Found:
         """The points of a branch at places along a chord; see :func:`contvines.continuation.corrector.points`."""
-        return solved_points(self._run(chord, (start, length), places, border, along, 40)[0])
-
-    def rows_on_chord(
-        self,
-        chord: np.ndarray,
-        places: np.ndarray,
-        start: float,
-        length: float,
-        border: np.ndarray,
-        along: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Rows of multipliers and margins of the same points, (k, columns), and which of them are solutions, (k,)."""
-        found, _ = self._run(chord, (start, length), places, border, along, 40, NO_AIM)
-        return found.rows, found.numbers[:, 1] >= 0.0
+        return self._run(chord, (start, length), places, border, along, 40)[0]
 
     def search(
         self,

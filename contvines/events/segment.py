@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..continuation.aims import Aim
+from ..continuation.corrector import Found
 from ..continuation.engine import Engine, Hit, Solved
+from ..continuation.solved import solved_points
 
 
 class Segment:
@@ -40,14 +42,16 @@ class Segment:
 
     def several(self, places: Sequence[float] | np.ndarray) -> list[Solved | None]:
         """The points of the branch at some places, each as by `at`."""
-        return self.engine.on_chord(
-            self.chord, np.array(places, dtype=float), self.start, self.length, self.border, self.direction
-        )
+        return solved_points(self._found(places))
 
     def rows(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Rows of multipliers and margins at some places, (k, columns), and which of them are of points of the branch, (k,)."""
-        return self.engine.rows_on_chord(
-            self.chord, places, self.start, self.length, self.border, self.direction
+        found = self._found(places)
+        return found.rows, found.numbers[:, 1] >= 0.0
+
+    def _found(self, places: Sequence[float] | np.ndarray) -> Found:
+        return self.engine.on_chord(
+            self.chord, np.array(places, dtype=float), self.start, self.length, self.border, self.direction
         )
 
     def search(self, aim: Aim, tolerance: float, jump: float) -> Hit | None:

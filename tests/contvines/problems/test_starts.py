@@ -20,8 +20,9 @@ def test_an_equation_that_is_zero_everywhere_is_none(F, start, row):
 
 
 def test_equations_that_start_flat_are_equations():
-    cv.AlgebraicProblem(lambda u, p: [u[0] - p, max(u[1] - 2.0, 0.0)], [0.0, 1.0], 0.0)
-    cv.AlgebraicProblem(lambda u, p: u**5, [0.0], 0.0)
+    flat = cv.AlgebraicProblem(lambda u, p: [u[0] - p, max(u[1] - 2.0, 0.0)], [0.0, 1.0], 0.0)
+    assert (flat.dimension, list(flat.u0)) == (2, [0.0, 1.0])
+    assert cv.AlgebraicProblem(lambda u, p: u**5, [0.0], 0.0).dimension == 1
 
 
 def test_a_root_at_the_start_is_no_noise():

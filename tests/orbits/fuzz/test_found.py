@@ -94,6 +94,15 @@ def test_a_doubled_branch_is_stable_however_soon_it_doubles_again():
         assert branch.stable[1]
 
 
+def simulated_at(graph, branch, value):
+    """The simulation follows a branch at this value if it is real, and only then."""
+    between = Between(branch, graph.within)
+    for i in np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) < 0.0):
+        share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
+        seen = replay(between.orbit(int(i), float(share)))
+        assert (seen.matches and seen.error < 1e-8) == branch.real
+
+
 @pytest.mark.parametrize(
     ("kind", "seed", "word", "value"),
     [("cavity", 97, "LRts", 1.020020423), ("coupled", 229, "LsRs", 0.947625)],
@@ -105,11 +114,7 @@ def test_a_virtual_branch_is_real_where_the_simulation_follows_it(kind, seed, wo
     followed = [b.label for b in there if b.real]
     assert len(followed) == 1
     for branch in there:
-        between = Between(branch, graph.within)
-        for i in np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) < 0.0):
-            share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
-            seen = replay(between.orbit(int(i), float(share)))
-            assert (seen.matches and seen.error < 1e-8) == branch.real
+        simulated_at(graph, branch, value)
 
 
 def test_right_beside_a_period_doubling_signs_are_not_those_of_rounding():
@@ -174,11 +179,7 @@ def test_a_virtual_branch_comes_home_to_the_virtual_part_of_its_root():
     value = 1.43725
     there = [b for b in graph if b.problem.word == root.problem.word and b.range[0] < value < b.range[1]]
     for branch in there:
-        between = Between(branch, graph.within)
-        for i in np.flatnonzero((branch.values[:-1] - value) * (branch.values[1:] - value) < 0.0):
-            share = (value - branch.values[i]) / (branch.values[i + 1] - branch.values[i])
-            seen = replay(between.orbit(int(i), float(share)))
-            assert (seen.matches and seen.error < 1e-8) == branch.real
+        simulated_at(graph, branch, value)
     assert [b.real for b in there].count(True) == 1
 
 
