@@ -10,6 +10,7 @@ The branch is then traced again from the point before the gap, with shorter step
 
 from __future__ import annotations
 
+from .certain import certain
 from .located import Located, Role
 from .segment import Segment
 
@@ -58,4 +59,6 @@ def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
     # an end may itself be singular (a stick of length zero): its sign is that of roundoff
     reach = 1.0 if stop == len(found) else found[stop].position
     beside = segment.several([share * reach for share in (BESIDE, 1.0 - BESIDE)])
-    return beside[0] is None or beside[1] is None or beside[0].sign * beside[1].sign < 0.0
+    if beside[0] is not None and beside[1] is not None and not beside[0].sign * beside[1].sign < 0.0:
+        return False
+    return certain(segment.engine, segment.a) and certain(segment.engine, last)

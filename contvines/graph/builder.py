@@ -148,10 +148,10 @@ def trace_pending(run: Run, pending: Pending) -> None:
         itself = run.engine(known.problem)[0]
         known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
-        if pending.kind is Origin.BORDER and pending.point is not None:
-            if known.label == pending.source:
-                run.remark(pending.point, "the solution found beyond lies on the same branch")
-                return
+        if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
+            run.remark(pending.point, "the solution found beyond lies on the same branch")
+            return
+        if pending.kind in (Origin.BORDER, Origin.REST) and pending.point is not None:
             pending.point = same_border(run, pending.point, known)
         run.connect(pending.point, pending.source, known.label, pending.note)
         return

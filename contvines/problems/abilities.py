@@ -137,6 +137,13 @@ class Blurred(Protocol):
 
 
 @runtime_checkable
+class Doubtful(Protocol):
+    """Tells by how much the entries of (F_u, F_p) of its last linearisation may be wrong, shape (N, N + 1); None where nobody knows."""
+
+    def doubts(self, work: Any) -> np.ndarray | None: ...
+
+
+@runtime_checkable
 class Nearing(Protocol):
     """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`.
 

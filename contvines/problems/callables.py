@@ -253,6 +253,15 @@ class CallableProblem(ProblemDefaults):
         scale = self.scales.unknowns[: len(errors)]
         return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
+    def doubts(self, work: Any) -> np.ndarray | None:
+        """Bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and what differences are known to; None of a sparse problem."""
+        if self.functions.structure != "dense":
+            return None
+        n, rows = self.dimension, self.sizes()[0]
+        found = ROUNDING * np.abs(np.column_stack([work.jacobian, work.derivative]))
+        found[:, :n] += rows[:, None] / rows.max() * np.resize(self.functions.errors, n)
+        return found
+
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
         """Why a branch ends where Newton's method fails, as far as that can be told; else an empty string.
 

@@ -301,11 +301,18 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int 
         here, there = f(0.0, 0.0), f(0.0, 1.0)
         direct = np.abs(there - here)
         plain = direct > 1e3 * EPS * np.maximum(np.abs(here), np.abs(there))
-        for t in guess * FACTOR ** np.arange(-enough, enough + 1.0):
+
+        def both(t: float) -> tuple[np.ndarray, np.ndarray]:
             low, high = f(t, 0.0), f(t, 1.0)
-            mixed = np.abs((high - low) - (there - here))
             floor = 1e6 * EPS * np.max([np.abs(low), np.abs(high), direct], axis=0)
+            return np.abs((high - low) - (there - here)), floor
+
+        for t in guess * FACTOR ** np.arange(-enough, enough + 1.0):
+            mixed, floor = both(t)
             seen = plain & (mixed > floor) & np.isfinite(mixed)
+            if seen.any():
+                # where terms of this unknown cancel in a row, their rounding takes what the other one does, and no more
+                seen &= np.abs(both(ASIDE * t)[0] / ASIDE - mixed) <= 0.05 * mixed
             if seen.any():
                 return float(t * (direct[seen] / mixed[seen]).min())
     return None

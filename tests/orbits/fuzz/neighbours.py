@@ -12,6 +12,7 @@ from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart
 from tests.orbits.fuzz.tally import Tally
+from tests.orbits.fuzz.unbounded import grow_without_bound
 
 PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
 CLOSER = (1e-4, 1e-5)  # the same, where times of virtual orbits further away run backwards
@@ -124,7 +125,11 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         tally.count("borders of orbits too unstable to tell")
         return
     if not np.all(np.abs(listed) < UNBOUNDED):
-        if not (sizes[-1] > 1.5 * sizes[-2] or sizes[-1] > UNBOUNDED):
+        if sizes[-1] > 1.5 * sizes[-2] or sizes[-1] > UNBOUNDED:
+            return
+        if grow_without_bound(beside[-3][1], beside[-2][1], point.location_error):
+            tally.count("multipliers at borders that grow in many digits, where doubles come no nearer")
+        else:
             tally.find("limit", f"{branch.label} at {point.label}: without bound, but {sizes[-3:]} beside it")
         return
     if _tend_to(listed, seen):

@@ -13,6 +13,7 @@ from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart, shortest
 from tests.orbits.fuzz.searching import search
 from tests.orbits.fuzz.tally import Tally
+from tests.orbits.fuzz.unbounded import grow_without_bound
 
 
 @pytest.mark.parametrize(("kind", "seed"), [("absorber", 0), ("absorber", 3), ("cavity", 8), ("coupled", 1)])
@@ -217,3 +218,11 @@ def test_multipliers_are_not_believed_for_want_of_digits(graph):
     orbit = branch.orbit(len(branch) // 2)
     assert simulated.in_many_digits(orbit)
     assert not simulated.in_many_digits(orbit.with_multipliers(orbit.multipliers * (1 + 1e-4)))
+
+
+def test_multipliers_that_do_not_grow_are_not_called_unbounded(graph):
+    """Beside the fold of LR they tend to 1, and where it is regular to those there."""
+    branch = word(graph, "LR")
+    orbits = [branch.orbit(i) for i in (2, 3)]
+    assert not grow_without_bound(*orbits, 0.0)
+    assert not grow_without_bound(*orbits[::-1], 0.0)
