@@ -79,13 +79,13 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     """
     best: list[np.ndarray] | None = None
     error = np.inf
-    spacings, rows = _rows(segment, position, DISTANCES)
-    if not len(spacings):
+    spacings, limits = _extrapolated(segment, position, DISTANCES[:1])
+    if len(spacings) and _apart(limits[0, 0], computed) < AGREEING:
+        return None  # as at most borders: those nearer are not asked for
+    nearer = _extrapolated(segment, position, DISTANCES[1:])
+    limits = np.concatenate([limits, nearer[1]])
+    if not len(limits):
         return None
-    values = _characteristic(segment.engine.spectrum(rows))
-    sure = np.isfinite(values).all(axis=(1, 2))
-    spacings = spacings[sure]
-    limits = np.power.outer(spacings, np.arange(POLES + 1))[:, :, None] * (EXTRAPOLATION @ values[sure])
     agree = _apart(limits[:, 0], computed)
     changes = _apart(limits[1:], limits[:-1]).tolist()
     for i, agreed in enumerate(agree.tolist()):
@@ -102,6 +102,17 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
         return None
     return None if best is not None and len(best) > 1 and _bounded(segment, position, computed) else best
+
+
+def _extrapolated(
+    segment: Segment, position: float, wanted: tuple[float, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Spacings (k,) that tell, and the polynomials times each power of the distance, extrapolated to the border, (k, powers, m + 1)."""
+    spacings, rows = _rows(segment, position, wanted)
+    values = _characteristic(segment.engine.spectrum(rows))
+    sure = np.isfinite(values).all(axis=(1, 2))
+    powers = np.power.outer(spacings[sure], np.arange(POLES + 1))
+    return spacings[sure], powers[:, :, None] * (EXTRAPOLATION @ values[sure])
 
 
 def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
