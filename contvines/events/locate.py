@@ -129,7 +129,7 @@ def locate_singular(
     if len(roots) > 1 and segment.engine.problem.scales is not None:
         # rounding rules in all windows, and the smallest of their estimates is small by chance
         apart = abs(roots[1][1].point.p - best.point.p)
-        return best._replace(error=max(best.error, roots[1][1].error, apart))
+        return best._replace(error=2.0 * max(best.error, roots[1][1].error, apart))
     return best
 
 
