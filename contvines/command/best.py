@@ -132,7 +132,7 @@ def choose(
     elif not quiet:
         typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)))))
         if alone:
-            typer.echo(told_compared(chosen, study.parameter, study.within, ALONE))
+            typer.echo(fitted(told_compared(chosen, study.parameter, study.within, ALONE)))
     if plot is not None:
         from contvines.plots.figures import save_figure
 

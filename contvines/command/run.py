@@ -207,8 +207,9 @@ def _run(
         typer.echo(str(graph))
     if compare and not quiet:
         from contvines.command.compare import told_compared
+        from contvines.text_table import fitted
 
-        typer.echo("\n" + told_compared(machine(study), study.parameter, study.within, compare))
+        typer.echo("\n" + fitted(told_compared(machine(study), study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import told
 
