@@ -10,11 +10,11 @@ import numpy as np
 
 from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
-from orbits.attractors.batches import AT_REST, LOST, SETTLED, lyapunov, settle_all
+from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
 from orbits.attractors.distinct import alike, distinct
 from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
-from orbits.attractors.motion import Motion
+from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.attractors.recurrence import settle
 from orbits.attractors.returning import returning_cycles
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
@@ -29,7 +29,6 @@ PATIENCE = 3  # times a motion that does not recur is looked at again
 LATE = 3000.0  # forcing periods between two such looks
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
-SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
 
 
@@ -239,12 +238,12 @@ class _Sorting:
                 return
             exponent, error = lyapunov(self.model.name, state, self.params)
             skip(self.engine, state, self.params, state[TURNS] + LATE, 10**9)
-        if exponent > SIGMAS * error:
-            kind = "chaotic"
-        elif exponent > -SIGMAS * error and self.model.moving_cavity:
-            kind = "quasi-periodic"  # two incommensurate frequencies need four dimensions of states
-        else:
-            kind = "slow"
+        kind = wandering(exponent, error, self.model.moving_cavity)  # two frequencies need four dimensions
+        if kind == "slow":  # neighbours come together: it may recur, but late
+            found = settle(self.model, self.engine, self.params, state, 0.0, RARE, 1e-7, 1)
+            if found.recurrent:
+                self._add(found, i)
+                return
         known = next((k for k, m in enumerate(self.motions) if m.kind == kind and not m.word), None)
         others = (self.index < 0) & (self.result["outcome"] == 0)
         others &= np.arange(len(others)) >= i
@@ -326,12 +325,10 @@ class _Sorting:
 
     def _members(self, own: np.ndarray, image: np.ndarray, free: bool, periods: int) -> np.ndarray:
         near = np.minimum(self._distances(own, free), self._distances(image, free)) < NEAR
-        return (
-            near
-            & (self.result["outcome"] == SETTLED)
-            & (self.result["periods"] == max(periods, 1))
-            & (self.index < 0)
-        )
+        recurs = (self.result["outcome"] == SETTLED) & (self.result["periods"] == max(periods, 1))
+        if periods > LONGEST:
+            recurs = self.result["outcome"] == WANDERING
+        return near & recurs & (self.index < 0)
 
     def _nearer_image(self, own: np.ndarray, image: np.ndarray, free: bool) -> np.ndarray:
         return self._distances(image, free) < self._distances(own, free)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,13 +15,15 @@ from ..graph.run import Progress, Run
 from ..hints import hinting
 from ..interrupts import listening
 from .census import Counted, census
-from .places import scattered, unasked
+from .handover import Handover
+from .places import scattered, unasked, unresolved
 from .population import Population, population_of
 from .roots import add_root
 from .windows import Windows
 
 FEW = 16  # starts at each of the further values
 SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
+FOLLOWED = 4  # starts that follow the motion past an end of stability
 LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
 
 
@@ -45,8 +48,9 @@ def atlas(
 
     At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
     exactly, or the root of a new one, which is traced with everything that leaves it. Where motion is chaotic, unstable cycles near it
-    are traced, and kept where they lead to a stable one. Then fewer starts are simulated at many more values: in every stretch between two changes of what is known to be stable, and scattered evenly over the interval until
-    `scan` values in a row have met nothing new.
+    are traced, and kept where they lead to a stable one. Past every end of a stable stretch the motion that is lost there is followed to what comes after it.
+    Then fewer starts are simulated at many more values: in every stretch between two changes of what is known to be stable, where a kind of motion without a branch begins or ends,
+    and scattered evenly over the interval until `scan` values in a row have met nothing new.
 
     Parameters
     ----------
@@ -109,9 +113,12 @@ def atlas(
         looking.at(p, starts)
     if scan:
         looking.for_cycles(where)
+        looking.past_ends(FEW * scan)
         looking.between(scan)
         looking.everywhere(scan)
+        looking.past_ends(FEW * scan)
         looking.between(scan)
+        looking.unbranched(scan)
     everything = looking.found
     everything.sort(key=lambda counted: counted.attractor.value)
     run.graph.attractors = [counted.attractor for counted in everything]
@@ -146,8 +153,10 @@ def check_values(values: int | Sequence[float], within: tuple[float, float]) -> 
     return numbers
 
 
-def join(run: Run, found: Sequence[Counted]) -> int:
+def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
     """Give each attractor the label of its branch; what lies on none is traced first, with all that leaves it.
+
+    Its branch counts as one that `depth` others lie before.
 
     Returns
     -------
@@ -162,7 +171,7 @@ def join(run: Run, found: Sequence[Counted]) -> int:
         label = locate(run, counted)
         if label is None:
             try:
-                add_root(run, counted.problem, counted.u, attractor.value)
+                add_root(run, counted.problem, counted.u, attractor.value, depth)
             except ValueError as refusal:
                 run.tell(f"a start at {attractor.value:.6g} is left: {refusal}", attractor.value)
                 continue
@@ -186,6 +195,7 @@ class _Looking:
         self.run, self.population, self.seed = run, population, seed
         self.asked: list[float] = []
         self.found: list[Counted] = []
+        self.handover = Handover(run, population)
 
     def at(self, p: float, starts: int, seed: int | None = None) -> int:
         """Simulate starts at a value; the number of branches that this has added."""
@@ -203,10 +213,34 @@ class _Looking:
 
     def between(self, most: int) -> None:
         """One value at least in each stretch between two changes, new changes included, up to `most` values."""
-        while most > 0 and (wanted := unasked(self.run.graph, self.asked, most)):
+        self._few(partial(unasked, self.run.graph), most)
+
+    def unbranched(self, most: int) -> None:
+        """Values where a kind of motion without a branch begins or ends, up to `most`."""
+        self._few(lambda asked, left: unresolved(self._met(), asked, self.run.graph.within, left), most)
+
+    def _few(self, places: Callable[[Sequence[float], int], list[float]], most: int) -> None:
+        while most > 0 and (wanted := places(self.asked, most)):
             most -= len(wanted)
             for p in wanted:
                 self.at(p, FEW, self.seed + len(self.asked))
+
+    def _met(self) -> dict[str, list[float]]:
+        met: dict[str, list[float]] = {}
+        for counted in self.found:
+            met.setdefault(counted.attractor.kind, []).append(counted.attractor.value)
+        return met
+
+    def past_ends(self, most: int) -> None:
+        """Follow what is lost at the ends of stable stretches, those of what it leads to included, until `most` starts have been in all."""
+        depth = max(self.run.depth - 1, 0)
+        while ends := self.handover.left()[: max(most // FOLLOWED - len(self.handover.done), 0)]:
+            for end in ends:
+                found = self.handover.follow(end)
+                self.found += found
+                join(self.run, found, depth)
+        left = len(self.handover.left())
+        self.run.graph.settings |= {"followed": len(self.handover.done), "unfollowed": left}
 
     def everywhere(self, scan: int) -> None:
         """Scattered values until `scan` of them in a row have added nothing."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,9 +23,7 @@ class Counted:
     state: np.ndarray | None = None
 
 
-def census(
-    population: Population, p: float, count: int, seed: int, journal: Any, extra: np.ndarray | None = None
-) -> list[Counted]:
+def census(population: Population, p: float, count: int, seed: int, journal: Any) -> list[Counted]:
     """Draw starts, let them settle, count; what the journal remembers is not simulated again.
 
     Parameters
@@ -34,17 +32,39 @@ def census(
     p : float
     count, seed : int
     journal : Journal
-    extra : float array (m, n), optional
-        Starts beside the drawn ones.
     """
-    key = f"census/{p!r}/{count}/{seed}"
+    return _settled(
+        population, p, lambda: population.starts(count, seed, p), f"census/{p!r}/{count}/{seed}", journal
+    )
+
+
+def followed(population: Population, p: float, starts: np.ndarray, key: str, journal: Any) -> list[Counted]:
+    """Let starts settle that were not drawn: what they reach has no share.
+
+    Parameters
+    ----------
+    population : Population
+    p : float
+    starts : float array (m, n)
+    key : str
+        Under which the journal remembers it.
+    journal : Journal
+    """
+    found = _settled(population, p, lambda: starts, key, journal)
+    for counted in found:
+        counted.attractor = replace(counted.attractor, share=0.0, mirror_share=0.0, starts=0)
+    return found
+
+
+def _settled(
+    population: Population, p: float, starts_of: Callable[[], np.ndarray], key: str, journal: Any
+) -> list[Counted]:
+    """What starts settle on, with shares of them; the starts are made where the journal does not know."""
     known = journal.recall(key)
     recalled = None if known is None else _recalled(known, p)
     if recalled is not None:
         return recalled
-    starts = population.starts(count, seed, p)
-    if extra is not None:
-        starts = np.concatenate([starts, extra])
+    starts = starts_of()
     motions, index, mirrored = population.settle(starts, p)
     found = []
     for k, motion in enumerate(motions):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +11,10 @@ from ..graph.graph import Graph
 
 BEYOND = 2e-3  # of the interval: so far outside a stable stretch it is asked what the motion becomes
 NARROWEST = 1e-6  # of the interval: narrower stretches between two changes are left out
+RESOLVED = (
+    0.01  # of the interval: a kind of motion that has no branch is told of up to so near to where it ends
+)
+UNBRANCHED = ("chaotic", "quasi-periodic", "chatter")  # kinds of motion that have none
 TURN = 0.5 * (np.sqrt(5.0) - 1.0)  # of the additive recurrence, see `scattered`
 
 
@@ -36,10 +40,9 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
 
     Between two neighbouring changes of what is stable something else may have taken over: there is one value at least in
     each such stretch, in its middle if none lies there, and one right beyond each change, where a motion that ceases to be stable
-    hands over to another. Wide stretches come first.
+    hands over to another, and beside each end of the interval. Wide stretches come first.
     """
-    low, high = graph.within
-    size = high - low
+    size = graph.within[1] - graph.within[0]
     known = np.sort(np.asarray(asked, dtype=float))
     marks = changes(graph)
     wanted: list[tuple[float, float]] = []
@@ -53,9 +56,31 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
         step = BEYOND * size
         if width <= 4.0 * step:
             continue
-        for edge, p in ((first, first + step), (last, last - step)):
-            # the ends of the interval are no changes
-            if low < edge < high and not np.any(np.abs(inside - edge) <= 2.0 * step):
+        for p in (first + step, last - step):
+            if not np.any(np.abs(inside - p) <= 2.0 * step):
                 wanted.append((0.25 * width, float(p)))
     wanted.sort(key=lambda entry: (-entry[0], entry[1]))
     return sorted({p for _, p in wanted[:most]})
+
+
+def unresolved(
+    met: Mapping[str, Sequence[float]], asked: Sequence[float], within: tuple[float, float], most: int
+) -> list[float]:
+    """Values between two neighbours of which one has met a kind of motion without a branch and the other has not, at most `most`.
+
+    Parameters
+    ----------
+    met : mapping
+        The values at which each kind has been met.
+    asked : sequence of float
+        The values at which it would have been met, had it been there.
+    within : (float, float)
+    most : int
+    """
+    wanted: dict[float, float] = {}
+    for kind in UNBRANCHED:
+        here = set(met.get(kind, ()))
+        for first, last in pairwise(sorted(here | set(asked)) if here else ()):
+            if (first in here) != (last in here) and last - first > RESOLVED * (within[1] - within[0]):
+                wanted[0.5 * (first + last)] = last - first
+    return sorted(sorted(wanted, key=lambda p: (-wanted[p], p))[:most])

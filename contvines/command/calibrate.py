@@ -74,7 +74,7 @@ def calibrate(
     (or, with --release, of a free decay).
     A sweep holds steady responses in the order in which they were measured. Heads of columns may name units: time [ms].
     """
-    from contvines.command.compose import checked_study, say
+    from contvines.command.compose import check_shaken, checked_study, say
 
     if (impacts is None) == (sweep is None):
         both = "both are" if impacts is not None else "neither is"
@@ -98,6 +98,8 @@ def calibrate(
             f"{study}: [model] name = {read.name!r}: the built-in machines can be calibrated, a page cannot."
         )
     names = list(dict.fromkeys(unknown or ["restitution"]))
+    if release is None:
+        check_shaken(read, names)
     model, guesses = _guesses(read, names)
     bounds = _limits(limits or [], names, model)
     path: Any = impacts or sweep
@@ -184,14 +186,14 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
 def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
     """The machine told by the unknown parameters, and their values in the study."""
     from contvines.command.compose import machine
-    from contvines_ground.near_names import did_you_mean
+    from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
     known = list(model.tables.QUANTITIES) if study.quantities else list(study.parameters)
     for name in names:
         if name not in known:
             raise ValueError(
-                f"--unknown {name}: the model {study.name!r} has no such parameter{did_you_mean(name, known)}; it has {', '.join(known)}."
+                f"--unknown {name}: the model {study.name!r} has no such parameter{near_quantity(name, known)}; it has {', '.join(known)}."
             )
         if study.quantities:
             model = model.told_by(name)
@@ -204,18 +206,35 @@ def _limits(said: list[str], names: list[str], model: Any) -> dict[str, tuple[fl
     for text in said:
         name, _, ends = text.partition("=")
         parts = ends.split(",")
-        try:
-            low, high = (float(part) for part in parts)
-        except ValueError:
-            raise ValueError(f"--limits {text}: write it as {names[0]}=LOW,HIGH, two numbers.") from None
         if name not in names:
             raise ValueError(
                 f"--limits {text}: {name or 'nothing'} is not estimated; --unknown has {', '.join(names)}."
             )
+        if len(parts) != 2:
+            raise ValueError(f"--limits {text}: write it as {name}=LOW,HIGH, two values.")
+        low, high = (_limit(text, name, part.strip(), model) for part in parts)
         if not low < high:
             raise ValueError(f"--limits {text}: low < high would do.")
         found[name] = (low, high)
     return found
+
+
+def _limit(text: str, name: str, said: str, model: Any) -> float:
+    """One end of an interval in which an estimate may lie, in the machine's unit."""
+    from contvines.command.amounts import amount
+    from contvines.command.physical_study import number_of
+
+    try:
+        value = amount("", said, name, model.units)
+        if model.units.get(name):
+            refusal = number_of(model, name, f"{value!r} {model.units[name]}", said)[1]
+            if refusal:
+                raise ValueError(refusal)
+        elif name in model.parameter_names:
+            model.parameter(name).number(value)
+    except ValueError as error:
+        raise ValueError(f"--limits {text}: {str(error).strip(' :.')}.") from None
+    return value
 
 
 def _from_impacts(
@@ -265,6 +284,7 @@ def _from_sweep(
 ) -> tuple[Calibration, tuple[Any, ...]]:
     from contvines.command.compose import loose
     from contvines.command.measured import Column, measured
+    from contvines.command.physical_study import number_of
     from contvines.plots.style import axis_label
     from orbits.attractors.sweep import measure_names
     from orbits.design.calibration import from_sweep
@@ -278,7 +298,15 @@ def _from_sweep(
             f"--unknown {over}: this is what was swept ([continue] parameter); estimate something else."
         )
     unit = model.units.get(name, "")
-    values, heights = measured(path, (Column(over, model.units.get(over, "")), Column("response", unit)))
+    own = model.units.get(over, "")
+    values, heights = measured(path, (Column(over, own), Column("response", unit)))
+    if own:
+        for row, value in enumerate(values, 1):
+            _, refusal = number_of(
+                model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}"
+            )
+            if refusal:
+                raise ValueError(refusal)
     found = from_sweep(
         model,
         over,
@@ -290,4 +318,4 @@ def _from_sweep(
         fixed=loose(study),
         confidence=confidence,
     )
-    return found, (over, model.units.get(over, ""), values, heights, axis_label(name, unit=unit or None))
+    return found, (over, own, values, heights, axis_label(name, unit=unit or None))

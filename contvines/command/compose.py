@@ -2,6 +2,7 @@
 
 import sys
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,30 @@ def checked_study(path: Path) -> "Study":
     except ValueError as error:
         raise ValueError(f"{path}: [start] {error}") from error
     return study
+
+
+def check_shaken(study: "Study", vary: Iterable[str] = ()) -> None:
+    """Refuse a study in which nothing shakes the machine, whatever varies.
+
+    Parameters
+    ----------
+    study : Study
+    vary : iterable of str
+        What varies beside the study's parameter.
+
+    Raises
+    ------
+    ValueError
+    """
+    if study.machine is not None:
+        return
+    model = machine(study)
+    unshaken = model.unshaken(model.vector(loose(study)))
+    if unshaken is not None and not any(map(model.shakes, (study.parameter, *vary))):
+        zero, would = unshaken
+        raise ValueError(
+            f"{study.path}: {zero}: nothing shakes the machine, whatever {study.parameter} is; {would} would do."
+        )
 
 
 def machine(study: "Study") -> Any:

@@ -86,8 +86,9 @@ def length_on_line(text: str, option: str, unit: str) -> float:
     what = {"s": "time", "": "number"}.get(unit, "length")
     example = {"s": "2 s", "": "5"}.get(unit, "5 mm")
     match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
-    if match is None:
-        raise ValueError(f'{option} {text!r}: this is no {what}; "{example}" would do.')
+    if match is None or match[2].startswith(","):
+        comma = " (decimals stand behind a point)" if match else ""
+        raise ValueError(f'{option} {text!r}: this is no {what}{comma}; "{example}" would do.')
     number, said = float(match[1]), match[2]
     if not unit:
         if said:

@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
-
 OWN = ("name", "units", "unusual")
 SAID = ("word", "periods", "guess")
 
@@ -163,14 +161,21 @@ def number_of(
             units.check_usual(quantity, units.si(quantity, number, unit), f"{name} = {value!r}")
     except QuantityError as error:
         return value, f"{place} = {str(error).partition(' = ')[2]}."
-    if unit == own:
-        return number, None
-    return number * units.si(quantity, 1.0, unit) / units.si(quantity, 1.0, own), None
+    if unit != own:
+        number = number * units.si(quantity, 1.0, unit) / units.si(quantity, 1.0, own)
+    if not spread:
+        try:
+            machine.told_by(name).check_at(name, number)
+        except QuantityError as error:
+            return value, f"{place} = {value!r}: {error}."
+    return number, None
 
 
 def _unknown(section: str, key: str, value: Any, known: Any, extra: tuple[str, ...]) -> str:
+    from orbits.machines.physical.quantities import near_quantity
+
     return (
-        f"[{section}] {key} = {value!r}: there is no such quantity{did_you_mean(key, [*known, *extra])}; "
+        f"[{section}] {key} = {value!r}: there is no such quantity{near_quantity(key, [*known, *extra])}; "
         f"known are {', '.join([*extra, *known])}."
     )
 

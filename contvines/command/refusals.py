@@ -87,4 +87,10 @@ def _bad_value(error: Any, message: str, words: list[str]) -> str:
         return f"{place}: there is no such choice; choose one of {', '.join(choices)}."
     if "valid number" in message or "valid integer" in message or "valid float" in message:
         return f"{place}: this is not a number; give one such as {'3' if 'integer' in message else '0.02'}."
+    end = re.search(r"(greater|less) than (or equal to )?(\S+?)\.?$", message) or re.search(
+        r"not in the range x?([<>])(=?)(\S+?)\.?$", message
+    )
+    if end:
+        side = "above" if end[1] in ("greater", ">") else "below"
+        return f"{place}: give a number {f'{end[3]} or {side}' if end[2] else f'{side} {end[3]}'}."
     return ""

@@ -161,6 +161,7 @@ def _run(
     from contvines.command.compose import (
         beside,
         check_place,
+        check_shaken,
         checked_study,
         first_orbit,
         machine,
@@ -174,6 +175,7 @@ def _run(
     study = checked_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
     check_bounds(study, command)
+    check_shaken(study)
     check_compared(compare, plot is not None)
     target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_place(target)
@@ -203,6 +205,11 @@ def _run(
         graph = _look(study, target)
     if not quiet:
         typer.echo(str(graph))
+    if compare and not quiet:
+        from contvines.command.compare import told_compared
+        from contvines.text_table import fitted
+
+        typer.echo("\n" + fitted(told_compared(machine(study), study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import told
 

@@ -48,9 +48,10 @@ def survey(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
     """Survey many machines; goes on with an unfinished survey."""
-    from contvines.command.compose import beside, checked_study, say
+    from contvines.command.compose import beside, check_shaken, checked_study, say
 
     read = checked_study(study)
+    check_shaken(read, read.survey.vary)
     target = output or beside(study, "-survey.nc")
     _check_places(study, target, plot)
     if over and best is None:

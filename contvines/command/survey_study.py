@@ -27,7 +27,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
     from contvines.command.compose import machine
     from contvines.command.schema import PARAMETERS
     from contvines.survey import planned
-    from contvines_ground.near_names import did_you_mean
+    from orbits.machines.physical.quantities import near_quantity
 
     said = dict(study.survey.vary if vary is None else vary)
     model = machine(study)
@@ -39,7 +39,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
         if name not in known:
             raise ValueError(
                 f"{study.path}: [survey] vary.{name}: the model {study.name!r} has no such parameter"
-                f"{did_you_mean(name, known)}; it has {', '.join(known)}."
+                f"{near_quantity(name, known)}; it has {', '.join(known)}."
             )
         if name == study.parameter:
             raise ValueError(

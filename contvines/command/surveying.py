@@ -88,14 +88,15 @@ class counted:
             from rich.console import Console
             from rich.progress import Progress
 
-            self.progress = Progress(console=Console(stderr=True), transient=True)
+            # no thread that draws by itself: beside one, workers could not be copies of this process
+            self.progress = Progress(console=Console(stderr=True), transient=True, auto_refresh=False)
             self.progress.start()
             self.task = self.progress.add_task("machines", total=self.total)
         return self
 
     def __call__(self, row: Any) -> None:
         if self.progress is not None:
-            self.progress.advance(self.task)
+            self.progress.update(self.task, advance=1, refresh=True)
 
     def __exit__(self, *_: object) -> None:
         if self.progress is not None:

@@ -35,11 +35,12 @@ def sweep(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
     """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
-    from contvines.command.compose import beside, say
+    from contvines.command.compose import beside, check_shaken, say
     from contvines.command.study import read_study
     from contvines.export import check_target
 
     read = read_study(study)
+    check_shaken(read)
     target = output or beside(study, "-sweep.csv")
     if target.resolve() == study.resolve():
         raise ValueError(f"{target}: this is the study itself; choose another name with -o.")

@@ -12,6 +12,10 @@ from contvines.command.options import JsonOption, SizeOption
 if TYPE_CHECKING:
     import numpy as np
 
+FARTHEST = 10.0  # metres that an oscillator is pulled aside
+HARDEST = 1e5  # m/s^2 that a base is accelerated by
+LONGEST = 1e5  # that a motion is followed after a record, in radians of the oscillator
+
 
 def transient(
     study: Annotated[
@@ -156,10 +160,17 @@ def _params(study: Any) -> tuple[Any, Any]:
 def _released(study: Any, text: str) -> Told:
     from contvines.command.measured import length_on_line, scales
     from orbits.design.transients import free_decay
+    from orbits.machines.physical import units
 
     model, params = _params(study)
     length, unit, seconds, second = scales(model, params)
     displacement = length_on_line(text, "--release", unit)
+    metres = displacement * (units.size(unit, "m") or 1.0) if unit else 0.0
+    if abs(metres) > FARTHEST and not model.unusual:
+        raise ValueError(
+            f"--release {text} is implausible for an oscillator: at most {FARTHEST:g} m would do; if it is meant, say unusual = true in "
+            "[model]."
+        )
     try:
         decay = free_decay(model, params, displacement / length)
     except ValueError as error:
@@ -197,6 +208,16 @@ def _recorded(study: Any, path: Path, tail: str | None) -> Told:
     after = 0.0 if tail is None else length_on_line(tail, "--tail", second) / seconds
     if after < 0.0:
         raise ValueError(f"--tail {tail}: give a time of 0 or above.")
+    if after > LONGEST:
+        raise ValueError(
+            f"--tail {tail}: give at most {LONGEST * seconds:.3g} {second}".rstrip()
+            + ", some ten thousand periods."
+        )
+    if unit and not model.unusual and np.abs(acceleration).max(initial=0.0) > HARDEST:
+        raise ValueError(
+            f"{path}: the largest acceleration is {np.abs(acceleration).max():.3g} m/s^2, which is implausible for a base: at most "
+            f"{HARDEST:g} m/s^2 would do; name the unit in the head of its column, or, if it is meant, say unusual = true in [model]."
+        )
     try:
         seen = recorded(model, params, times / seconds, acceleration / one, after)
     except ValueError as error:

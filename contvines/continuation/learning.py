@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..problems.extents import of_rounding
 from ..problems.scales import Scales, in_fields
 from .approach import approach
 
@@ -54,7 +55,12 @@ class Scout:
         # a bend over less than this share of the unknown itself is rounding
         self.first = np.maximum(problem.lengths, SMALLEST_BEND * np.abs(np.asarray(problem.u0, dtype=float)))
         start = np.abs(np.asarray(problem.u0, dtype=float))
-        self.first = np.where((start > 0.0) & (self.first > BEYOND * start), start, self.first)
+        far = (start > 0.0) & (self.first > BEYOND * start)
+        if far.any():
+            far &= ~of_rounding(
+                lambda u: problem.residuals(u, problem.p0), np.asarray(problem.u0, dtype=float)
+            )
+        self.first = np.where(far, start, self.first)
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)
         self.before = np.zeros(self.n + 1)  # ranges when one of them had doubled last

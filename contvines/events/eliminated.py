@@ -1,13 +1,24 @@
-"""Simple branch points once more, from eliminations with pivots where eigenvalues know their places badly."""
+"""Simple branch points from eliminations with pivots: where a determinant changes its sign, and where eigenvalues know their places badly."""
 
 from __future__ import annotations
 
+from ..continuation.aims import NO_COLUMNS, SIGN, Aim
+from .certain import passes_for_certain
 from .determinant import DeterminantTest
-from .locate import Root, locate_singular
+from .locate import Root, locate, locate_singular
 from .segment import Segment
 
-VAGUE = 1e-10  # error of a place, in units of the parameter, from which it is worth while
+VAGUE = 1e-12  # error of a place, in units of the parameter, from which it is worth while
 WIDTH = 0.02  # part of a segment, either side
+AT_SIGNS = Aim(SIGN, NO_COLUMNS)
+
+
+def by_sign(segment: Segment) -> Root | None:
+    """Where the determinant of the bordered matrix changes its sign on a segment; None where the change may be that of rounding."""
+    rough = locate(segment, AT_SIGNS, tolerance=1e-3)
+    if rough is None or not passes_for_certain(segment, rough.position):
+        return None
+    return locate_singular(segment, DeterminantTest(segment.engine, segment.border), rough.position) or rough
 
 
 def by_elimination(segment: Segment, root: Root | None) -> Root | None:

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..continuation.aims import NO_COLUMNS, SIGN, SLOPE, Aim, aim_at_multiplier
+from ..continuation.aims import NO_COLUMNS, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
 from .blur import blurred
 from .borders import find_border
-from .determinant import DeterminantTest, passes, turned
-from .eliminated import by_elimination
+from .certain import passes_for_certain
+from .determinant import passes, turned
+from .eliminated import by_elimination, by_sign
 from .leaps import SHORTEST
 from .limits import one_sided
 from .locate import Root, locate, locate_singular
@@ -25,7 +26,7 @@ from .symmetry import SymmetryTest
 from .users import user_function
 
 NAMES = ("plus", "minus", "pair")
-AT_FOLDS, AT_SIGNS = Aim(SLOPE, NO_COLUMNS), Aim(SIGN, NO_COLUMNS)
+AT_FOLDS = Aim(SLOPE, NO_COLUMNS)
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 # residual of a branch point where a side branch turns; halfway between two branches it is larger
 EXACT = 1e-13
@@ -121,6 +122,8 @@ class Examiner:
                 elif not _near(root.position, [e.position for e in folds] + met):
                     if self._turns_back(segment, root):
                         folds.append(self._located(root, "fold", 0))
+                    elif not passes_for_certain(segment, root.position):
+                        continue
                     elif self._regular(root.point):
                         folds.append(self._located(root, "astray", 0))
                     elif not rounded or passes(segment, root.position):
@@ -141,7 +144,7 @@ class Examiner:
         if not counted and (double := self._exchange(segment)) is not None:
             events.append(double)
         if a.sign * b.sign < 0.0 and (counted + len(met)) % 2 == 0:
-            root = self._determinant(segment)
+            root = by_sign(segment)
             if root is not None and not _near(root.position, met):
                 turning = [e for e in folds if _near(e.position, [root.position])]
                 # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
@@ -167,7 +170,7 @@ class Examiner:
         inner = abs(self._multiplier("plus", max(int(count), 1))(rough.point))
         if abs(test(rough.point)) > REACHED or (self.kind != "real" and inner > REACHED):
             return None
-        if self._complex(segment, rough.point):
+        if self._complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
             return None
         root = locate_singular(segment, test, rough.position) or rough
         return self._located(root, "branch-point", 0)
@@ -273,11 +276,6 @@ class Examiner:
                 found = event if root is None else self._located(root, event.kind, event.index)
                 result.append(blurred(segment, found, self._multiplier("plus", event.index)))
         return result
-
-    def _determinant(self, segment: Segment) -> Root | None:
-        test = DeterminantTest(self.engine, segment.border)
-        rough = locate(segment, AT_SIGNS, tolerance=1e-3)
-        return None if rough is None else locate_singular(segment, test, rough.position) or rough
 
     def _meetings(self, segment: Segment) -> list[Located]:
         events = []

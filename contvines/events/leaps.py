@@ -10,6 +10,8 @@ The branch is then traced again from the point before the gap, with shorter step
 
 from __future__ import annotations
 
+from .blur import singular_within
+from .certain import certain
 from .located import Located, Role
 from .segment import Segment
 
@@ -45,7 +47,12 @@ def inexact(segment: Segment, event: Located) -> bool:
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
     least = max(INEXACT, NOISY * noise)
     solved = EXACT if scaled and not noise and event.kind == "branch-point" else least
-    return event.kind == "astray" or event.error > 10.0 * least * unit or event.point.residual > solved * size
+    vague = event.error > 10.0 * least * unit
+    if vague and event.kind == "branch-point":
+        # no better than the rounding of its matrix allows
+        point = event.point
+        vague = event.error > singular_within(segment.engine, point.u, point.p, point.tangent)
+    return event.kind == "astray" or vague or event.point.residual > solved * size
 
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
@@ -58,4 +65,6 @@ def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
     # an end may itself be singular (a stick of length zero): its sign is that of roundoff
     reach = 1.0 if stop == len(found) else found[stop].position
     beside = segment.several([share * reach for share in (BESIDE, 1.0 - BESIDE)])
-    return beside[0] is None or beside[1] is None or beside[0].sign * beside[1].sign < 0.0
+    if beside[0] is not None and beside[1] is not None and not beside[0].sign * beside[1].sign < 0.0:
+        return False
+    return certain(segment.engine, segment.a) and certain(segment.engine, last)

@@ -25,7 +25,7 @@ class Attractor:
     mirror_share : float
         Of the starts that reach the image other than the one found first.
     starts : int
-        How many were simulated at this value.
+        How many were simulated at this value; 0 where another motion was followed here past the end of its stability, so that it has no share.
     exponent, error : float
         Largest Lyapunov exponent per period and its standard error, where it does not recur.
     """

@@ -148,10 +148,10 @@ def trace_pending(run: Run, pending: Pending) -> None:
         itself = run.engine(known.problem)[0]
         known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
-        if pending.kind is Origin.BORDER and pending.point is not None:
-            if known.label == pending.source:
-                run.remark(pending.point, "the solution found beyond lies on the same branch")
-                return
+        if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
+            run.remark(pending.point, "the solution found beyond lies on the same branch")
+            return
+        if pending.kind in (Origin.BORDER, Origin.REST) and pending.point is not None:
             pending.point = same_border(run, pending.point, known)
         run.connect(pending.point, pending.source, known.label, pending.note)
         return
@@ -268,11 +268,16 @@ def room(engine: Engine, border: Solved, step: float) -> float | None:
 
 
 def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
-    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part."""
+    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part.
+
+    Where it leaves shorter solutions at so small a distance that a step leaps to these, none is off the point.
+    """
+    root = engine.problem.root
+    primitive = root(point.u, point.p) is None
     for length in (step, 0.1 * step, 0.01 * step):
         for side in (length, -length):
             found = beside(engine, point, side)
-            if found is None:
+            if found is None or (primitive and root(found.u, found.p) is not None):
                 continue
             if real is None or (float(engine.smallest_margin(found.row)) >= MARGIN) == real:
                 return found

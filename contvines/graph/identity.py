@@ -12,6 +12,7 @@ from ..problems.protocol import Problem
 
 SAME = 1e-6
 EXACTLY = 1e-9  # two solutions to roundoff that differ by more are two, though they count as the same
+AT_END = 1e-5  # ends of branches are where equations may be singular, and known to half their digits
 FAR = 0.1  # length along two branches after which they are one
 
 
@@ -133,12 +134,17 @@ def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, 
     """Whether the solution is an end point of the branch, where the parameter is not passed."""
     if branch.closed:
         return False
-    for i in (0, -1):
-        if abs(branch.values[i] - p) <= SAME * (engine.scale[-1] + abs(p)):
-            here, near = engine.problem.canonical(branch.points[i], float(branch.values[i]))
-            if here == key and same_vector(near, vector, 1e-5, engine.scale):
-                return True
-    return False
+    return any(
+        abs(branch.values[i] - p) <= SAME * (engine.scale[-1] + abs(p))
+        and is_end(branch, engine, i, key, vector)
+        for i in (0, -1)
+    )
+
+
+def is_end(branch: Branch, engine: Engine, i: int, key: Hashable, vector: np.ndarray) -> bool:
+    """Whether a solution, in its canonical form, is point i of a branch, an end of it."""
+    here, near = engine.problem.canonical(branch.points[i], float(branch.values[i]))
+    return here == key and same_vector(near, vector, AT_END, engine.scale)
 
 
 def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:

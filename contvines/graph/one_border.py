@@ -11,7 +11,7 @@ from ..branches.special_point import SpecialPoint
 from ..events.kinds import BORDERS
 from ..events.located import Located
 from ..problems.protocol import Problem
-from .identity import same_vector
+from .identity import is_end, same_vector
 from .run import Run
 
 BACK_AT_BORDER = (
@@ -80,14 +80,12 @@ def same_border(run: Run, label: str, known: Branch) -> str:
     """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
     graph = run.graph
     here = graph.special[label]
-    for _, other in known.marks:
+    engine, _ = run.engine(known.problem)
+    for i, other in known.marks:
         point = graph.special[other]
-        if (
-            other != label
-            and point.kind in BORDERS
-            and _in_one_place(run, point, here)
-            and may_be_one(here.problem, here.u, here.value, point)
-        ):
+        if other == label or point.kind not in BORDERS or not _in_one_place(run, point, here):
+            continue
+        if may_be_one(here.problem, here.u, here.value, point) or is_end(known, engine, i, *run.form(here)):
             run.merge(label, other)
             return other
     return label

@@ -106,7 +106,7 @@ def special_table(graph: Graph) -> Table:
 def attractors_table(graph: Graph) -> Table:
     """A row per motion that simulated starts have met: where, and its share of the starts, over the interval and at most."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
-    values = np.array(sorted({a.value for a in graph.attractors}))
+    values = np.array(sorted({a.value for a in graph.attractors if a.starts}))
     low, high = graph.within
     edges = np.concatenate([[low], 0.5 * (values[1:] + values[:-1]), [high]])
     parts = dict(zip(values.tolist(), (np.diff(edges) / (high - low)).tolist(), strict=True))
@@ -117,7 +117,7 @@ def attractors_table(graph: Graph) -> Table:
     rows = []
     number = partial(number_text, digits=6, unit=size_of(graph.within))
     for (label, motion, periods), seen in met.items():
-        share = sum(a.share * parts[a.value] for a in seen)
+        share = sum(a.share * parts[a.value] for a in seen if a.starts)
         span = f"{number(seen[0].value)}..{number(seen[-1].value)}"
         where = span if len(seen) > 1 else number(seen[0].value)
         rows.append(
@@ -137,14 +137,19 @@ def attractors_table(graph: Graph) -> Table:
 
 def simulated(graph: Graph) -> str:
     """At how many values an atlas has simulated, and how long nothing new was met, in a sentence."""
-    count = len({a.value for a in graph.attractors})
+    count = len({a.value for a in graph.attractors if a.starts})
     line = f"starts simulated at {count} value{'' if count == 1 else 's'} of {graph.parameter}"
     scanned, quiet = graph.settings.get("scanned"), graph.settings.get("quiet", 0)
     if not scanned:
         return line
     if quiet >= graph.settings["scan"]:
-        return f"{line}; of {scanned} scattered ones the last {quiet} met nothing new"
-    return f"{line}; {scanned} scattered ones met something new again and again, the last {quiet} did not: raise scan to look on"
+        line += f"; of {scanned} scattered ones the last {quiet} met nothing new"
+    else:
+        line += f"; {scanned} scattered ones met something new again and again, the last {quiet} did not: raise scan to look on"
+    ends, left = graph.settings.get("followed", 0), graph.settings.get("unfollowed", 0)
+    if ends:
+        line += f"; at {ends} end{'' if ends == 1 else 's'} of stability the motion was followed to what comes after it"
+    return f"{line}; {left} more are left: raise scan" if left else line
 
 
 def describe(branch: Branch) -> str:

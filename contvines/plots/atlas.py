@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ..graph.attractor import Attractor
     from ..graph.graph import Graph
 
 MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one
@@ -103,14 +104,15 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
 
     Neighbouring values with few starts are one bar, so that each stands for as many starts as were simulated anywhere.
     """
-    values = np.array(sorted({a.value for a in graph.attractors}))
+    met = [a for a in graph.attractors if a.starts] or graph.attractors
+    values = np.array(sorted({a.value for a in met}))
     low, high = graph.within
-    group, starts = _grouped(graph, values)
+    group, starts = _grouped(met, values)
     last = np.flatnonzero(np.diff(group))
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
     weights = starts / np.bincount(group, weights=starts)[group]
     names: dict[tuple[str, int], float] = {}
-    for about in graph.attractors:
+    for about in met:
         key = (about.name, about.periods)
         names[key] = names.get(key, 0.0) + about.share
     shown = sorted(names, key=lambda key: -names[key])[:most]
@@ -118,7 +120,7 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     bottoms = np.zeros(len(edges) - 1)
     for k, key in enumerate([*order, None]):
         heights = np.zeros(len(edges) - 1)
-        for about in graph.attractors:
+        for about in met:
             own = (about.name, about.periods)
             if own == key or (key is None and own not in shown):
                 i = int(np.searchsorted(values, about.value))
@@ -138,9 +140,9 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     axes.grid(False)
 
 
-def _grouped(graph: Graph, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _grouped(met: Sequence[Attractor], values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which bar each value belongs to, and how many starts it had, shape (n,) each."""
-    counts = {a.value: max(a.starts, 1) for a in graph.attractors}
+    counts = {a.value: max(a.starts, 1) for a in met}
     starts = np.array([counts[float(v)] for v in values], dtype=float)
     group, bar, filled = np.zeros(len(values), dtype=int), 0, 0.0
     for i, count in enumerate(starts):

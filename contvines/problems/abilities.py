@@ -137,6 +137,16 @@ class Blurred(Protocol):
 
 
 @runtime_checkable
+class Doubtful(Protocol):
+    """Tells by how much the entries of (F_u, F_p) of its last linearisation may be wrong, shape (N, N + 1), an array or a sparse matrix.
+
+    `rounding`: of an entry relative to it. None where nobody knows.
+    """
+
+    def doubts(self, work: Any, rounding: float) -> Any: ...
+
+
+@runtime_checkable
 class Nearing(Protocol):
     """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`.
 

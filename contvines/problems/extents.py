@@ -7,11 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .differences import FACTOR, HALVINGS, REACH, bend, coupling
+from .differences import EPS, FACTOR, HALVINGS, REACH, bend, coupling
 
 EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
 PAIRS = 12  # up to so many, couplings between two of them are looked at
 FEW = 2  # lengths tried on either side where the function is slow
+ROUNDING = 64 * EPS  # of what others change in an equation: less is not felt
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
 Values = Callable[[np.ndarray], np.ndarray]
@@ -49,8 +50,10 @@ def measured(f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float) -
         Seconds of a call.
     """
     n, unit = len(u), np.eye(len(u)) if len(u) <= EACH else None
-    lengths, bends, known = np.where(u == 0.0, 1.0, np.abs(u)), np.zeros(n, dtype=bool), u != 0.0
     tries = REACH if (1 if unit is None else n) * 77 * cost < PATIENCE else FEW
+    if tries > FEW:
+        u = np.where(of_rounding(f, u), 0.0, u)
+    lengths, bends, known = np.where(u == 0.0, 1.0, np.abs(u)), np.zeros(n, dtype=bool), u != 0.0
     with np.errstate(all="ignore"):
         if unit is None:
             largest = float(np.abs(u).max()) or 1.0
@@ -67,6 +70,26 @@ def measured(f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float) -
         if tries > FEW and n <= PAIRS:
             _couple(f, u, unit, lengths, known)
     return Extents(lengths, bends, known)
+
+
+def of_rounding(f: Values, u: np.ndarray) -> np.ndarray:
+    """Which unknowns are zeros that rounding has moved, shape (n,): f does not feel them beside the others, but would if they were larger."""
+    found = np.zeros(len(u), dtype=bool)
+    if len(u) > EACH:
+        return found
+    with np.errstate(all="ignore"):
+        here = f(u)
+
+        def change(j: int, factor: float) -> np.ndarray:
+            moved = u.copy()
+            moved[j] *= factor
+            return np.abs(f(moved) - here)
+
+        changes = np.array([change(j, 0.0) for j in range(len(u))])
+        floor = ROUNDING * changes.max(axis=0)
+        for j in np.flatnonzero((u != 0.0) & (changes <= floor).all(axis=1)):
+            found[j] = (change(int(j), 1.0 / ROUNDING) > floor).any()
+    return found
 
 
 def _couple(f: Values, u: np.ndarray, unit: np.ndarray, lengths: np.ndarray, known: np.ndarray) -> None:

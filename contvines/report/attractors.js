@@ -1,6 +1,7 @@
 // What simulated starts settle on, over the parameter: bars of shares, and a table whose rows lead to the branch.
 function attractors() {
-  const known = data.attractors, values = [...new Set(known.map((a) => a.value))].sort((a, b) => a - b), most = colors.length;
+  const places = (of) => [...new Set(of.map((a) => a.value))].sort((a, b) => a - b);
+  const known = data.attractors, all = places(known), values = places(known.filter((a) => a.starts)), most = colors.length;
   const sizes = new Map();
   known.forEach((a) => sizes.set(a.name, (sizes.get(a.name) || 0) + a.share));
   const names = [...sizes.keys()], large = new Set([...names].sort((a, b) => sizes.get(b) - sizes.get(a)).slice(0, most));
@@ -24,15 +25,15 @@ function attractors() {
   // a row stands for neighbouring values at which the same motion was met
   const rows = [], open = new Map();
   [...known].sort((a, b) => a.value - b.value).forEach((a) => {
-    const key = JSON.stringify([a.name, a.kind, a.branch]), i = values.indexOf(a.value), row = open.get(key);
+    const key = JSON.stringify([a.name, a.kind, a.branch]), i = all.indexOf(a.value), row = open.get(key);
     if (row && i - row.last <= 1) Object.assign(row, { last: i, entries: [...row.entries, a] });
     else { const made = { last: i, entries: [a] }; open.set(key, made); rows.push(made); }
   });
   const span = (low, high, digits) => (low === high ? number(low, digits) : `${number(low, digits)} … ${number(high, digits)}`);
   table("attractors", [data.parameter, "motion", "kind", "branch", "share of the starts"], rows, ({ entries }) => {
-    const a = entries[entries.length >> 1], shares = entries.map((e) => 100 * e.share), starts = entries.reduce((sum, e) => sum + e.starts, 0);
+    const a = entries[entries.length >> 1], counted = entries.filter((e) => e.starts), shares = counted.map((e) => 100 * e.share), starts = entries.reduce((sum, e) => sum + e.starts, 0);
     const row = cells(element("tr"), [span(entries[0].value, entries[entries.length - 1].value, 8), a.name, a.kind, a.branch || "–",
-      `${span(Math.min(...shares), Math.max(...shares), 4)} % of ${starts}${entries.length > 1 ? ` at ${entries.length} values` : ""}`]);
+      counted.length ? `${span(Math.min(...shares), Math.max(...shares), 4)} % of ${starts}${counted.length > 1 ? ` at ${counted.length} values` : ""}` : "followed there"]);
     return a.branch && branches[a.branch] ? clickable(row, () => jump(a.branch, nearest(a.branch, a.value))) : row;
   });
 }

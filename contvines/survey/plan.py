@@ -141,7 +141,9 @@ def _axis(name: str, said: Any) -> np.ndarray | None:
         else:
             return None
     if not isinstance(said, list | tuple | np.ndarray) or not len(said):
-        raise PlanError(f"{place} = {said!r}: a list of values, or within and count, would do")
+        raise PlanError(
+            f"{place} = {said!r}: a list of values, or within and count, would do; what is uncertain has uniform = [from, to] or normal = [mean, deviation]"
+        )
     return np.array([_number(f"{place}[{i}]", value) for i, value in enumerate(said)])
 
 

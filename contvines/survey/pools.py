@@ -10,10 +10,11 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from .plan import PlanError
-from .work import Job, Row, begin, work
+from contvines_ground.processes import ATTEMPTS, spread
 
-ATTEMPTS = 3  # at one system whose worker is lost
+from .plan import PlanError
+from .work import Job, Row, work
+
 LOST = (
     "the process that worked on this system was lost {} times: it may need more memory than there is, or a script that calls for "
     "several processes has no `if __name__ == '__main__':` before the call"
@@ -30,37 +31,14 @@ def serial(job: Job, tasks: Sequence[Task]) -> Iterator[Row]:
 
 def pool(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     """In `workers` processes of this machine."""
-    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-    from concurrent.futures.process import BrokenProcessPool
-    from multiprocessing import get_context
+    pieces = [(job, *task) for task in tasks]
+    for _, row in spread(work, pieces, workers, lambda place: lost(tasks[place][0])):
+        yield row
 
-    left = {task[0]: task for task in tasks}
-    attempts = dict.fromkeys(left, 0)
-    context = get_context("spawn")
-    while left:
-        with ProcessPoolExecutor(min(workers, len(left)), mp_context=context, initializer=begin) as executor:
-            waiting = list(left.values())[::-1]
-            running: dict[Any, int] = {}
-            try:
-                while waiting or running:
-                    while waiting and len(running) < 2 * workers:
-                        task = waiting.pop()
-                        running[executor.submit(work, job, *task)] = task[0]
-                    done, _ = wait(running, return_when=FIRST_COMPLETED)
-                    for future in done:
-                        row = future.result()
-                        del running[future]
-                        del left[row.index]
-                        yield row
-            except BrokenProcessPool:
-                for index in running.values():
-                    attempts[index] += 1
-                    if attempts[index] >= ATTEMPTS and index in left:
-                        del left[index]
-                        yield Row(index, {}, LOST.format(ATTEMPTS))
-            finally:
-                for future in running:
-                    future.cancel()
+
+def lost(index: int) -> Row:
+    """The row of a system whose worker was lost again and again."""
+    return Row(index, {}, LOST.format(ATTEMPTS))
 
 
 def cluster(job: Job, tasks: Sequence[Task], client: Any) -> Iterator[Row]:
@@ -86,7 +64,7 @@ def cluster(job: Job, tasks: Sequence[Task], client: Any) -> Iterator[Row]:
             try:
                 yield future.result()
             except KilledWorker:
-                yield Row(index, {}, LOST.format(ATTEMPTS))
+                yield lost(index)
             future.release()
     finally:
         if own:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -118,10 +119,11 @@ def survey(
         begun = getattr(family, "starts", None)
         near = begun(systems, plan.neighbours()) if begun is not None else [None] * len(systems)
         tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in rows.found]
-        for row in _worked(job, tasks, workers, cluster):
-            rows.keep(row)
-            if progress is not None:
-                progress(row)
+        with closing(_worked(job, tasks, workers, cluster)) as worked:
+            for row in worked:
+                rows.keep(row)
+                if progress is not None:
+                    progress(row)
         found = [rows.found[i] for i in range(len(systems))]
     return Survey.of(plan, found, dict(units or {}), {**told, "digest": digest})
 

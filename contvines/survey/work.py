@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -113,11 +112,3 @@ def _simulated(job: Job, values: Mapping[str, float], graph: Any) -> list[Any]:
             values, job.over, np.linspace(*job.within, job.values + 2)[1:-1].tolist(), job.starts
         )
     return found
-
-
-def begin() -> None:
-    """Prepare a worker process."""
-    import signal
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that asks decides when to stop
-    gc.set_threshold(200_000, 20, 100)

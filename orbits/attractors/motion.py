@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
+RARE = 32  # forcing periods of the longest recurrence looked for where neighbours come together
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -35,3 +38,17 @@ class Motion:
     exponent: float = float("nan")
     error: float = float("nan")
     state: np.ndarray | None = field(default=None, repr=False)
+
+
+def wandering(exponent: float, error: float, roomy: bool) -> str:
+    """The kind of a motion that does not recur, from its largest Lyapunov exponent and the standard error of it.
+
+    Parameters
+    ----------
+    exponent, error : float
+    roomy : bool
+        Whether the states have room for two incommensurate frequencies.
+    """
+    if exponent > SIGMAS * error:
+        return "chaotic"
+    return "quasi-periodic" if roomy and exponent > -SIGMAS * error else "slow"

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from contvines_ground.near_names import no_parameter
+from contvines_ground.processes import ATTEMPTS, spread
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle
@@ -229,8 +230,18 @@ def _many(work: Callable[[Any], Any], jobs: Sequence[Any], workers: int) -> list
         raise SimulationError(f"workers = {workers}: give a number of processes, 1 or above")
     if workers == 1 or len(jobs) < 2:
         return [work(job) for job in jobs]
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    size = max(1, len(jobs) // (4 * workers))
+    pieces = [(work, jobs[i : i + size]) for i in range(0, len(jobs), size)]
+    found = dict(spread(_of_each, pieces, min(workers, len(pieces)), _lost))
+    return [result for place in range(len(pieces)) for result in found[place]]
 
-    with ProcessPoolExecutor(min(workers, len(jobs)), mp_context=get_context("spawn")) as pool:
-        return list(pool.map(work, jobs, chunksize=max(1, len(jobs) // (4 * workers))))
+
+def _of_each(work: Callable[[Any], Any], jobs: Sequence[Any]) -> list[Any]:
+    return [work(job) for job in jobs]
+
+
+def _lost(place: int) -> Any:
+    raise SimulationError(
+        f"workers: the process that simulated was lost {ATTEMPTS} times: there may be too little memory for several, or a script that calls "
+        "for them has no `if __name__ == '__main__':` before the call"
+    )

@@ -22,6 +22,8 @@ RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motio
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
 LONGEST_WORD = 400
 PLAIN = 40  # events up to which the plainest reading is looked for
+REPELS = 1.0 + 1e-6  # an orbit with a larger multiplier repels, and ...
+CLOSED = 1e-9  # ... a return to it that is open by more, relative to 1 + states, only passes it by
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +173,7 @@ def settle(stepper: Stepper, transient: int, max_period: int) -> DeclaredOrbit |
 
 
 def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | None:
-    """The shortest cycle at the end of a run whose equations confirm it."""
+    """The shortest cycle at the end of a run whose equations confirm it: not one that repels, beside which the run has only passed."""
     machine = run.machine
     if any(kind in (HOLD, RELEASE) for _, kind, _ in run.events[-LONGEST_WORD:]):
         return None
@@ -179,7 +181,8 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
         return _eventless(run)
     letters, modes = run.letters, run.modes[1:]
     clocks, states = run.clocks[1:], run.states[1:]
-    scale = near * (1.0 + float(np.abs(states).max()))
+    size = 1.0 + float(np.abs(states).max())
+    scale = near * size
     total = len(letters)
     last_tried = None
     for length in range(1, min(total // 2, LONGEST_WORD) + 1):
@@ -188,7 +191,8 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
             or modes[-length:] != modes[-2 * length : -length]
         ):
             continue
-        if np.abs(states[-length:] - states[-2 * length : -length]).max() > scale:
+        gap = np.abs(states[-length:] - states[-2 * length : -length]).max()
+        if gap > scale:
             continue
         periods = 1
         if machine.forced:
@@ -200,7 +204,7 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
             continue
         last_tried = length
         orbit = solved(run, length, periods)
-        if orbit is not None:
+        if orbit is not None and (gap <= CLOSED * size or not np.any(np.abs(orbit.multipliers) > REPELS)):
             return orbit
     return None
 

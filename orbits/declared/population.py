@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.attractors.distinct import alike, distinct
 from orbits.attractors.low_discrepancy import low_discrepancy
-from orbits.attractors.motion import Motion
+from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.declared.attractor import RETURNED, look, returning, skip
@@ -33,7 +33,6 @@ NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto 
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
 BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page are integrated one by one
-SIGMAS = 3.0  # an exponent so many standard errors above zero is chaos
 TOLD = 5  # looks after which a motion that does not recur is taken for the one that is known not to
 WANDERING = ("chaotic", "quasi-periodic", "slow")
 RELEASED = 1e-6  # difference of the clocks of two releases that are one
@@ -253,12 +252,11 @@ class _Sorting:
             return known, False
         exponent, error = growth(stepper)
         state = np.append(stepper.clock % TWO_PI, stepper.state) if self.machine.forced else stepper.state
-        if exponent > SIGMAS * error:
-            kind = "chaotic"
-        elif exponent > -SIGMAS * error and self.machine.size > 2:
-            kind = "quasi-periodic"
-        else:
-            kind = "slow"
+        kind = wandering(exponent, error, self.machine.size > 2)
+        if kind == "slow":  # neighbours come together: it may recur, but late
+            orbit = returning(look(stepper, RARE), RARE, RETURNED)
+            if orbit is not None:
+                return self._add(orbit, stepper)
         return self.plain(kind, exponent=exponent, error=error, state=state.copy())
 
     def _row(self, stepper: Stepper) -> np.ndarray:

@@ -45,6 +45,11 @@ def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
             raise ParameterError(
                 f"{path}: row {number} holds {', '.join(cells[:columns])!r}, not {_needed(columns, 'number')}"
             ) from None
+        if heads and len(cells) > len(heads):
+            decimals = "; decimal commas need semicolons between the columns" if parting == "," else ""
+            raise ParameterError(
+                f"{path}: row {number} has {len(cells)} cells below {_needed(len(heads), 'head')}{decimals}"
+            )
         if len(row) < columns:
             raise ParameterError(
                 f"{path}: row {number} has {_needed(len(row))}; {_needed(columns)} are needed"

@@ -169,6 +169,16 @@ class Model(Varying):
         return params[..., cls.parameter_names.index(name)]
 
     # ------------------------------------------------------------------ mechanics
+    def shakes(self, name: str) -> bool:
+        """Whether a parameter says how strongly the machine is shaken."""
+        return name == self.driven_by
+
+    def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
+        """Where nothing shakes the machine: the parameter that says so with its value, and one that would do; else None."""
+        if self.column(params, self.driven_by) != 0.0:
+            return None
+        return f"{self.driven_by} = 0", f"{self.driven_by} = {self.parameter(self.driven_by).example:g}"
+
     def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
         """Whether mirror images are motions of this machine, at these parameters and however `varying` varies."""
         return True

@@ -7,6 +7,7 @@ import importlib
 from functools import cache
 from typing import Any
 
+from contvines_ground.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.parameters import ParameterError
 from orbits.machines.stepping import Machine
@@ -29,7 +30,9 @@ def model_class(name: str) -> type[Model]:
         If there is none.
     """
     if name not in PLACES:
-        raise ParameterError(f"model name = {name!r} is unknown; choose one of {', '.join(NAMES)}")
+        raise ParameterError(
+            f"model name = {name!r} is unknown{did_you_mean(name, NAMES)}; choose one of {', '.join(NAMES)}"
+        )
     module, place = PLACES[name]
     return getattr(importlib.import_module(module), place)
 

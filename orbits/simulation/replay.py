@@ -15,6 +15,8 @@ from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 DISPLACED, NEAR = 1e-6, 1e-8  # a start off an orbit, and when it counts as back
 ILL = 1e-6  # an orbit is known at least as well
+SMALLER = (1e-7, 1e-8)  # displacements beside folds, of which no more ...
+SHRUNK = 1e-2  # ... than this part is to be left
 
 
 @dataclass(frozen=True)
@@ -234,21 +236,25 @@ def _returns(
     """
     cycles = min(200_000.0 / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
 
-    def later(size: float, wanted: np.ndarray) -> tuple[float, np.ndarray]:
+    def later(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
         """The motion from a start so far off, after these cycles, and its distance from the nodes wanted."""
         state = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
         state[2] *= 1.0 + size
         if codes[0] > 1:
             state[0] += size
         engine.launch(state, params)
-        skip(engine, state, params, state[4] + cycles * periods, int(1000 * cycles * periods))
+        skip(engine, state, params, state[4] + wait * periods, int(1000 * (1.0 + wait) * periods))
         return _nearest(engine, params, codes, modes, wanted, periods, state)
 
     tries = ((DISPLACED, NEAR), (1e-8, 1e-9), (1e-10, 1e-8), (1e-11, 1e-8))
     if any(later(size, nodes)[0] < near for size, near in tries):
         return True
     off, settled = later(0.0, nodes)
-    return NEAR < off < ILL and later(DISPLACED, settled)[0] < NEAR
+    if not off < ILL:
+        return False
+    if off > NEAR and later(DISPLACED, settled)[0] < NEAR:
+        return True
+    return any(later(size, nodes)[0] < min(ILL, SHRUNK * later(size, nodes, 0.0)[0]) for size in SMALLER)
 
 
 def _nearest(

@@ -148,6 +148,12 @@ def find(
     if orbit is not None:
         _warn(guess, reading, "a shorter orbit, written several times")
         return orbit
+    unshaken = model.unshaken(params)
+    if unshaken is not None:
+        zero, would = unshaken
+        raise StartError(
+            f"{zero}: nothing shakes the machine, so no motion with the word {reading.text!r} lasts; {would} would do"
+        )
     found = (
         f"the nearest motion that the simulator finds is {nearest}"
         if nearest

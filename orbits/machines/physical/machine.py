@@ -21,9 +21,7 @@ from orbits.machines.parameters import POSITIVE, Parameter
 from orbits.machines.path import along
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
-
-HEAVY, LIGHT = 0.5, 1e-5  # shares of the oscillator's mass beyond which an absorber is none
-FAST = 50.0  # ratio of the excitation's frequency to the natural one, or of that to it, beyond which one of them is a slip of the unit
+from orbits.machines.physical.ratios import check_ratios
 
 
 def tables(model: type[Model]) -> ModuleType:
@@ -119,29 +117,8 @@ def _assembled(
     machine = _made(base, numbers, basis, amounts, said, unusual)
     if not unusual:
         told = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
-        _check_ratios(numbers, told)
+        check_ratios(numbers, told)
     return machine
-
-
-def _check_ratios(numbers: Mapping[str, float], told: Mapping[str, str]) -> None:
-    """Refuse quantities that do not go together, as where one of them has a slip in its unit; `told` is how they were given."""
-    ratio = numbers.get("mass_ratio", 0.0)
-    if ratio > HEAVY or (0.0 < ratio < LIGHT and "absorber_mass" in told):
-        rule = f"at most {HEAVY}" if ratio > HEAVY else f"at least {LIGHT:g}"
-        raise QuantityError(
-            f"absorber_mass{_given(told, 'absorber_mass')} is {ratio:.3g} times oscillator_mass{_given(told, 'oscillator_mass')}, "
-            f"which is implausible for an absorber: {rule} times would do; if it is meant, say unusual = true in [model]"
-        )
-    pace = numbers.get("frequency", 1.0)
-    if "natural_frequency" in told and not 1.0 / FAST <= pace <= FAST:
-        raise QuantityError(
-            f"frequency{_given(told, 'frequency')} is {pace:.3g} times natural_frequency{_given(told, 'natural_frequency')}, which is "
-            f"implausible: {1.0 / FAST:g} to {FAST:g} times would do; if it is meant, say unusual = true in [model]"
-        )
-
-
-def _given(told: Mapping[str, str], name: str) -> str:
-    return f" = {told[name]}" if name in told else ""
 
 
 def _made(
@@ -268,6 +245,28 @@ class Physical(Model):
         params = self.vector(values)
         moved = along(self.path(name, params), params, value)
         return super().vector({**self.loose, **dict(zip(self.parameter_names, (float(v) for v in moved)))})
+
+    def check_at(self, name: str, value: float) -> None:
+        """Refuse a value of quantity `name`, counted in `units`, that does not go with the others.
+
+        Raises
+        ------
+        QuantityError
+        """
+        if self.unusual:
+            return
+        told = {**self._texts, name: units.text(value, self.units.get(name, ""))}
+        numbers = dict(zip(self.parameter_names, (float(number) for number in self.vector_at(name, value))))
+        check_ratios(numbers, {key: str(text) for key, text in told.items()}, wide=True)
+
+    def shakes(self, name: str) -> bool:
+        return name in self.tables.QUANTITIES and self.driven_by in self.tables.QUANTITIES[name].powers
+
+    def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
+        if super().unshaken(params) is None:
+            return None
+        quantity = next(q for q in self.basis.quantities if self.shakes(q.name))
+        return f"{quantity.name} = 0 {self.units[quantity.name]}", f'{quantity.name} = "{quantity.example}"'
 
     def with_(self, **changes: Any) -> Any:
         """The machine with other quantities, as text or as numbers counted in `units`."""

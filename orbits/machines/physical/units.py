@@ -35,6 +35,7 @@ _USUAL = {
 }
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*((?:[^\W\d]|%).*?|)\s*")
 
+_SPREAD = re.compile(r"\d\s*(?!e[-+])(?:[^\W\d]+\s*)??(?:±|\+/?-|\.\.|–|-|to)\s*\d")
 _COMMA = re.compile(r"\s*[-+]?\d*,\d")
 
 
@@ -96,7 +97,7 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
     shown = f"{section}{quantity.name} = {value!r}"
     would = f'"{quantity.example}" would do' if quantity.unit else f"{quantity.example} would do"
     if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise QuantityError(f"{shown} is no quantity; {would}")
+        raise QuantityError(f"{shown} is no quantity; {would}{_many(quantity, value)}")
     if not isinstance(value, str):
         if quantity.unit and value != 0:
             raise QuantityError(f"{shown} has no unit; {would}")
@@ -104,7 +105,8 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
     match = _NUMBER.fullmatch(value)
     if match is None:
         comma = " (decimals stand behind a point)" if _COMMA.match(value) else ""
-        raise QuantityError(f"{shown} is not a number with a unit{comma}; {would}")
+        what = "a number with a unit" if quantity.unit else "a number"
+        raise QuantityError(f"{shown} is not {what}{comma}; {would}{_many(quantity, value)}")
     number, unit = float(match[1]), match[2]
     if not quantity.unit:
         factor = size(unit, "") if unit else 1.0
@@ -119,7 +121,9 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
         other = next((name for known, name in _KINDS.items() if size(unit, known) is not None), None)
         meant = _meant(unit, quantity)
         if other is None:
-            raise QuantityError(f"{shown}: {unit!r} is no unit of {_with_article(kind)}{meant}; {would}")
+            raise QuantityError(
+                f"{shown}: {unit!r} is no unit of {_with_article(kind)}{meant}; {would}{_many(quantity, value)}"
+            )
         what = f"{unit!r} is the unit of {_with_article(other)}{meant}"
         raise QuantityError(f"{shown}: {what}, but {quantity.name} is {_with_article(kind)}; {would}")
     return _finite(quantity, number, shown, would), unit
@@ -154,11 +158,20 @@ def counted(name: str, value: str, own: str) -> float:
     return float(match[1]) * factor
 
 
+def _many(quantity: Quantity, value: Any) -> str:
+    """Where more than one value stands in a quantity's place: what says that it varies or is uncertain."""
+    if not (isinstance(value, list) or _SPREAD.search(str(value))):
+        return ""
+    return f"; several values, or a tolerance, go into [survey], as vary.{quantity.name} = {{ uniform = [from, to] }}"
+
+
 def _meant(unit: str, quantity: Quantity) -> str:
     """ " (did you mean ...?)" where a usual unit differs in capitals or in one letter, else empty."""
     usual = [unit_of(quantity), *_USUAL.get(quantity.unit, ())]
     alike = [one for one in usual if one.lower() == unit.lower()]
-    alike += [one for one in usual if len(one) == len(unit) and sum(map(str.__ne__, one, unit)) == 1]
+    alike += [one for one in usual if len(one) == len(unit) > 1 and sum(map(str.__ne__, one, unit)) == 1]
+    if unit == "g" and quantity.unit == "m/s^2":  # which is a gram
+        alike = ["g_0"]
     return f" (did you mean {alike[0]!r}?)" if alike else ""
 
 

@@ -48,3 +48,14 @@ def test_a_branch_that_is_crossed_at_a_small_angle_while_it_bends_away():
 def test_a_branch_that_leaves_at_so_small_an_angle_that_its_first_points_count_as_the_same():
     # x (x - 1) (p - 3 x) = 0: x = p / 3 leaves x = 0 at an angle of 0.0016 in units of unknowns of which the largest is 500
     assert System(21265).wrong() == []
+
+
+def test_signs_far_up_a_pole_are_those_of_rounding():
+    # x = p^3 - 1/p, followed to x = -5e4, where the entries of the matrix are 5e9 and its determinant 2e-5
+    assert System(51188).wrong() == []
+
+
+@pytest.mark.parametrize("seed", [60620, 61453])
+def test_sizes_that_rounding_makes_are_none(seed):
+    # y = 4e-16 at the start, which is a rounded zero; 1e16, where an unknown that cancels in a row has rounded all others away
+    assert System(seed).wrong() == []

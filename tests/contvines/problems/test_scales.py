@@ -152,6 +152,39 @@ def test_rounding_is_no_bend():
     assert 0.01 < problem.functions.lengths[0] < 100.0
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e9, 1e-9])
+def test_a_zero_that_rounding_has_moved_is_no_size(unit):
+    """y = x^2 + p x - 2 at x = root 2 is 4e-16 by rounding: it becomes 0.1 to 60 along the branch, in any unit."""
+
+    def F(u, p):
+        x, y = u[0], u[1] / unit
+        return np.array(
+            [3.0 * p * x**2 - x**3 + 2.0 * x + 3.0 * (y - p * x - x**2 + 2.0), y - p * x - x**2 + 2.0]
+        )
+
+    for rounded in (0.0, 4e-16, -4e-16):
+        problem = cv.AlgebraicProblem(F, [np.sqrt(2.0), rounded * unit], 0.0)
+        assert 0.1 < problem.scale_within((-2.0, 2.0))[1] / unit < 1e3
+
+
+def test_a_small_unknown_of_a_row_of_its_own_is_no_rounding():
+    """y = 1e-17 x is not felt by the row of x, but by its own."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: [p - u[0] + u[0] ** 3 + u[1], u[1] - 1e-17 * u[0]], [0.1, 1e-18], 0.099
+    )
+    assert 1e-19 < problem.scale_within((-1.0, 1.0))[1] < 1e-15
+
+
+def test_an_unknown_that_cancels_decides_nothing():
+    """2 (u0 + u1) - u0 - u0 - 5 u1 is -3 u1; where u0 is 1e16 rounding takes u1 from it, which looks as if they were multiplied."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: [2.0 * (u[0] + u[1]) - u[0] - u[0] - 5.0 * u[1], p * u[0] + p - 1.0 + u[1]],
+        [0.0, 0.0],
+        1.0,
+    )
+    assert not problem.functions.known.any()
+
+
 def test_rounding_of_terms_that_cancel_is_no_bend():
     """4 x, as 6 x^2 + 4 x - 6 x^2 with other terms between: far out, and rounded, it seems to bend."""
 

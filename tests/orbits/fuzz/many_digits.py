@@ -134,7 +134,7 @@ class Damped:
 class Exact(NamedTuple):
     """An orbit in many digits: how far the parameter and the nodes are from those claimed, its multipliers, dnode/dparameter, and
 
-    the nodes themselves.
+    the nodes and the parameter themselves.
     """
 
     shift: float
@@ -142,6 +142,7 @@ class Exact(NamedTuple):
     multipliers: np.ndarray
     steepness: float
     nodes: list[list[Any]]
+    value: Any
 
 
 class Motion:
@@ -158,21 +159,11 @@ class Motion:
         """The machine at a value of the parameter."""
         return self.kind({**self.given, self.parameter: value})
 
-    def step(self, machine: Any, i: int, node: list[Any], time: Any) -> tuple[list[Any], Any]:
-        """The node of the event after event i, and how long that takes (a guess is given)."""
-        j, mode = (i + 1) % len(self.codes), self.modes[i]
-        state = machine.state(self.codes[i], node)
-        small = mpf(10) ** (-mp.dps // 2)
-        for _ in range(60):
-            ends = [
-                machine.event(self.codes[j], self.modes[j], machine.flow(mode, state, time + part * small))
-                for part in (-1, 0, 1)
-            ]
-            correction = 2 * small * ends[1] / (ends[2] - ends[0])
-            time -= correction
-            if abs(correction) < mpf(10) ** (20 - mp.dps):
-                return machine.node(self.codes[j], machine.flow(mode, state, time)), time
-        raise ArithmeticError(f"event {j} does not come")
+    def step(self, machine: Any, i: int, node: list[Any], time: Any) -> tuple[Any, list[Any]]:
+        """What vanishes at the event after event i, and the rest of its node, if it comes so much later."""
+        j = (i + 1) % len(self.codes)
+        state = machine.flow(self.modes[i], machine.state(self.codes[i], node), time)
+        return machine.event(self.codes[j], self.modes[j], state), machine.node(self.codes[j], state)[1:]
 
 
 def exact(orbit: Any) -> Exact | None:
@@ -185,7 +176,8 @@ def exact(orbit: Any) -> Exact | None:
         return None
     with mp.workdps(DIGITS):
         try:
-            return _solved(Motion(orbit), orbit.nodes)
+            motion = Motion(orbit)
+            return solved(motion, orbit.nodes, motion.given[motion.parameter])
         except (ArithmeticError, ValueError):
             return None
 
@@ -210,11 +202,11 @@ def rounds_apart(orbit: Any, periods: int) -> float:
         return float(max(abs(phases[j + later] - phases[j] - 2 * mp.pi * periods) for j in range(count)))
 
 
-def _solved(motion: Motion, claimed: np.ndarray, sweeps: int = 12) -> Exact | None:
-    count, size = claimed.shape
-    start = [[mpf(float(x)) for x in row] for row in claimed]
-    nodes, value = [list(row) for row in start], motion.given[motion.parameter]
-    first = value
+def solved(motion: Motion, claimed: Any, value: Any, sweeps: int = 12) -> Exact | None:
+    """The orbit next to claimed nodes at a value of the parameter, both of which may have many digits."""
+    start = [[mpf(x) for x in row] for row in claimed]
+    size, first = len(start[0]), value
+    nodes = [list(row) for row in start]
     for _ in range(sweeps):
         maps, pushes, gaps = _linearised(motion, nodes, value)
         product, along, left = mp.eye(size), mp.matrix(size, 1), mp.matrix(size, 1)
@@ -255,33 +247,55 @@ def _solved(motion: Motion, claimed: np.ndarray, sweeps: int = 12) -> Exact | No
                 np.array([complex(z) for z in spectrum]),
                 float(steep),
                 nodes,
+                value,
             )
     return None
 
 
 def _linearised(motion: Motion, nodes: list[Any], value: Any) -> tuple[list[Any], list[Any], list[Any]]:
-    """Derivatives of the maps from event to event, those with respect to the parameter, and what the maps are off."""
+    """Derivatives of the maps from event to event, those with respect to the parameter, and what the maps are off.
+
+    The time from event to event is that of the nodes, and corrected by one step of Newton's method: where an impact is so gentle that
+    the nodes at hand miss it, it need not be met before they are right.
+    """
     small, size = mpf(10) ** (-mp.dps // 3), len(nodes[0])
     here, above, below = (motion.machine(value + part * small) for part in (0, 1, -1))
     maps, pushes, gaps = [], [], []
+
+    def difference(ends: list[tuple[Any, list[Any]]]) -> tuple[Any, list[Any]]:
+        (late, after), (early, before) = ends
+        return (late - early) / (2 * small), [(a - b) / (2 * small) for a, b in zip(after, before)]
+
     for i, node in enumerate(nodes):
         wanted = list(nodes[(i + 1) % len(nodes)])
         if i == len(nodes) - 1:
             wanted[0] += 2 * mp.pi * motion.periods
-        image, time = motion.step(here, i, node, (wanted[0] - node[0]) / here.omega)
-        gaps.append(mp.matrix([a - b for a, b in zip(image, wanted)]))
-        up, down = (motion.step(machine, i, node, time)[0] for machine in (above, below))
-        pushes.append(mp.matrix([(a - b) / (2 * small) for a, b in zip(up, down)]))
+        time = (wanted[0] - node[0]) / here.omega
+        missed, rest = motion.step(here, i, node, time)
+        flow = difference([motion.step(here, i, node, time + part * small) for part in (1, -1)])
+        late, *others = _at_event((missed, [a - b for a, b in zip(rest, wanted[1:])]), flow)
+        gaps.append(mp.matrix([here.omega * late, *others]))
+        # the phase of an event changes with that of the one before, with the time between and with what the phase rate is
+        late, *others = _at_event(difference([motion.step(m, i, node, time) for m in (above, below)]), flow)
+        rate = (above.omega - below.omega) / (2 * small)
+        pushes.append(mp.matrix([here.omega * late + rate * time, *others]))
         A = mp.matrix(size, size)
         for k in range(size):
-            ends = [
-                motion.step(here, i, [x + part * small * (j == k) for j, x in enumerate(node)], time)[0]
-                for part in (1, -1)
-            ]
-            for j in range(size):
-                A[j, k] = (ends[0][j] - ends[1][j]) / (2 * small)
+            ends = [[x + part * small * (j == k) for j, x in enumerate(node)] for part in (1, -1)]
+            late, *others = _at_event(difference([motion.step(here, i, end, time) for end in ends]), flow)
+            for j, change in enumerate([here.omega * late + (k == 0), *others]):
+                A[j, k] = change
         maps.append(A)
     return maps, pushes, gaps
+
+
+def _at_event(changes: tuple[Any, list[Any]], flow: tuple[Any, list[Any]]) -> list[Any]:
+    """By how much the event comes later, and by how much the rest of its node is another one when it comes.
+
+    Both are had from changes of what vanishes and of the rest at a given time, and from how these go on with time (`flow`).
+    """
+    later = -changes[0] / flow[0]
+    return [later, *(change + later * rate for change, rate in zip(changes[1], flow[1]))]
 
 
 def _null(system: Any) -> list[Any]:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from contvines.events.kinds import BORDERS
+from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact
-from tests.orbits.fuzz.motion import alike, apart
+from tests.orbits.fuzz.motion import alike, apart, shortest
 from tests.orbits.fuzz.tally import Tally
 
 PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
@@ -71,7 +72,8 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
     """The branch's orbits tend to the point's as the distance does."""
     branch = between.branch
     for way in between.ways(i):
-        seen = [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, PARTS)]
+        beside = list(between.beside(i, way, PARTS))
+        seen = [(d, apart(point.orbit, orbit)) for d, orbit in beside]
         if any(math.isnan(gap) for _, gap in seen[-2:]):
             seen += [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, CLOSER)]
         gaps = [gap for _, gap in seen]
@@ -84,12 +86,24 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
         falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
             tally.count("ways to special points shorter than the last bit of the parameter")
+        elif not falls and _comes_home(branch.orbit(i), [orbit for _, orbit in beside], point):
+            tally.count("ways to special points followed in many digits")
         elif not falls:
             what = ", ".join(f"{gap:.1e} at {d:.0e}" for d, gap in seen)
             tally.find(
                 "jump",
                 f"{branch.label} does not tend to {point.label} ({point.kind}, {point.value:.10g}): {what}",
             )
+
+
+def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
+    """Whether the branch of the furthest two orbits, in many digits, comes to the motion of the point; they repeat no shorter ones."""
+    return (
+        len(beside) > 1
+        and apart(end, point.orbit) < SAME
+        and all(shortest(orbit) == orbit.periods for orbit in beside[:2])
+        and comes_to(beside[0], beside[1], end)
+    )
 
 
 def _unresolved(point: Any) -> float:
@@ -124,7 +138,11 @@ def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
         tally.count("borders of orbits too unstable to tell")
         return
     if not np.all(np.abs(listed) < UNBOUNDED):
-        if not (sizes[-1] > 1.5 * sizes[-2] or sizes[-1] > UNBOUNDED):
+        if sizes[-1] > 1.5 * sizes[-2] or sizes[-1] > UNBOUNDED:
+            return
+        if grow_without_bound(beside[-3][1], beside[-2][1], point.location_error):
+            tally.count("multipliers at borders that grow in many digits, where doubles come no nearer")
+        else:
             tally.find("limit", f"{branch.label} at {point.label}: without bound, but {sizes[-3:]} beside it")
         return
     if _tend_to(listed, seen):

@@ -1,15 +1,19 @@
 """Machines in whose diagrams the search once found something false: nothing of the kind is found in them now."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from mpmath import mp
 
 import contvines as cv
+from contvines.events.kinds import BORDERS
 from orbits.attractors import find_attractor
 from orbits.simulation import replay
 from tests.orbits.fuzz import neighbours, structure
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.drawing import draw
-from tests.orbits.fuzz.many_digits import exact
+from tests.orbits.fuzz.many_digits import exact, rounds_apart
 from tests.orbits.fuzz.motion import apart
 from tests.orbits.fuzz.searching import LIMITS
 from tests.orbits.fuzz.tally import Tally
@@ -211,3 +215,75 @@ def test_a_border_beyond_which_all_that_was_tried_came_to_nothing_says_why():
     (border,) = (p for p in graph.of_kind("wall-graze") if p.branch == "B1")
     assert not any(switch.point == border.label for switch in graph.switches)
     assert "about to vanish" in border.note
+
+
+def test_one_border_has_one_label():
+    """LR grazes at both of its mirrored flights: a stick may begin at each (of positive or of negative duration), and four branches meet."""
+    graph = diagram("coupled", 33, 415)
+    borders = [p for p in graph.special.values() if p.kind in BORDERS and abs(p.value - 1.0001779826) < 1e-9]
+    assert len(borders) == 1
+    own = borders[0].orbit
+    there = [b for b in graph if any(label == borders[0].label for _, label in b.marks)]
+    for branch in there:
+        for i, label in branch.marks:
+            if label == borders[0].label:
+                assert apart(own, branch.orbit(i)) < 1e-5  # square roots
+    sticks = [b for b in there if b.description["word"] == "LsRs"]
+    assert {b.real for b in sticks} == {True, False}
+    durations = [
+        b.orbit(1 if b.marks[0][1] == borders[0].label else len(b) - 2).durations[[1, 4]] for b in sticks
+    ]
+    signs = {tuple(np.sort(np.sign(pair))) for pair in durations}
+    assert signs == {(1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0)}
+
+
+def test_multipliers_that_grow_towards_a_graze_grow_without_bound():
+    """As the inverse of the speed of the impact that vanishes, in eighty digits; in doubles nodes come no nearer than 1e-13 in speed."""
+    graph = diagram("cavity", 6, 415)
+    point = next(p for p in graph.of_kind("wall-graze") if abs(p.value - 1.560166461024261) < 1e-13)
+    branch = next(b for b in graph if b.seed == point.label and b.problem.periods == 18)
+    i = next(i for i, label in branch.marks if label == point.label)
+    assert np.abs(branch.multipliers[i]).max() > 1e14
+    between = Between(branch, graph.within)
+    (way,) = between.ways(i)
+    seen = []
+    for _, orbit in between.beside(i, way, (1.0, 1e-1)):
+        found = exact(orbit)
+        gentlest = min(
+            abs(amplitude_speed - node[1])
+            for node, code in zip(found.nodes, orbit.word.codes)
+            if code < 2
+            for amplitude_speed in [found.value * orbit.parameters["frequency"] * mp.cos(node[0])]
+        )
+        seen.append((float(gentlest), float(np.abs(found.multipliers).max())))
+    speeds, growth = np.array(seen).T
+    assert speeds[-1] < 0.2 * speeds[0]
+    np.testing.assert_allclose(speeds * growth, (speeds * growth)[0], rtol=1e-3)
+    tally = Tally("cavity", 415, 6)
+    neighbours.judge(replace(graph, branches={branch.label: branch}, switches=[]), tally)
+    assert not tally.findings
+    assert tally.counts["multipliers at borders that grow in many digits, where doubles come no nearer"] == 1
+
+
+def test_beyond_a_border_a_doubled_solution_is_not_taken_for_the_shorter_one_it_leaves():
+    """8e-8 beyond its period doubling the doubled branch ends at a border: that joins branches of its own motion only."""
+    graph = diagram("absorber", 54, 416)
+    border = next(p for p in graph.of_kind("wall-graze") if abs(p.value - 2.080876347527377) < 1e-12)
+    joined = {end for s in graph.switches if s.point == border.label for end in (s.source, s.target)}
+    assert len(joined) == 2
+    for label in joined:
+        assert min(apart(border.orbit, graph[label].orbit(i)) for i in (0, -1)) < 1e-9
+    doubled = exact(border.orbit)
+    assert abs(doubled.shift) < 1e-12
+    assert rounds_apart(border.orbit, 1) > 1e-7
+
+
+def test_a_steep_branch_comes_to_its_period_doubling_in_many_digits():
+    """In doubles what is solved for 3e-8 beside it lies on the shorter orbits, whose motion changes 2e5 times as fast as the amplitude."""
+    graph = diagram("absorber", 169, 416)
+    point = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.0673625373057962) < 1e-13)
+    branch = next(b for b in graph if b.seed == point.label)
+    tally = Tally("absorber", 416, 169)
+    neighbours.judge(replace(graph, branches={branch.label: branch}, switches=[]), tally)
+    assert not tally.findings
+    assert tally.counts["ways to special points followed in many digits"] == 1

@@ -8,6 +8,7 @@ import pytest
 import contvines as cv
 from orbits import Absorber, Coupled
 from tests.orbits.fuzz import finer, neighbours, simulated, structure
+from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.drawing import draw
 from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart, shortest
@@ -217,3 +218,21 @@ def test_multipliers_are_not_believed_for_want_of_digits(graph):
     orbit = branch.orbit(len(branch) // 2)
     assert simulated.in_many_digits(orbit)
     assert not simulated.in_many_digits(orbit.with_multipliers(orbit.multipliers * (1 + 1e-4)))
+
+
+def test_multipliers_that_do_not_grow_are_not_called_unbounded(graph):
+    """Beside the fold of LR they tend to 1, and where it is regular to those there."""
+    branch = word(graph, "LR")
+    orbits = [branch.orbit(i) for i in (2, 3)]
+    assert not grow_without_bound(*orbits, 0.0)
+    assert not grow_without_bound(*orbits[::-1], 0.0)
+
+
+def test_a_branch_comes_to_its_own_points_in_many_digits_and_to_no_others(graph):
+    branch = word(graph, "LRs")
+    orbits = [branch.orbit(i) for i in (4, 3)]
+    assert comes_to(*orbits, branch.orbit(1))
+    moved = branch.orbit(1)
+    moved = type(moved)(moved.model, moved.word, moved.periods, moved.nodes * (1.0 + 1e-6), moved.params)
+    assert not comes_to(*orbits, moved)
+    assert not comes_to(*orbits[::-1], branch.orbit(1))
