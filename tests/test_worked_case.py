@@ -8,8 +8,10 @@ import pytest
 
 from contvines.command.best import read_wish
 from contvines.command.cli import main
+from contvines.command.compose import checked_study, machine
 from contvines.command.study import read_study
 from contvines.command.survey_study import plan_and_machine
+from orbits.attractors.sweep import sweep
 
 STUDY = Path(__file__).parents[1] / "examples" / "design" / "absorber.toml"
 
@@ -103,3 +105,23 @@ def test_wishes_are_read(text, wish):
 def test_wishes_that_cannot_be_read(text):
     with pytest.raises(ValueError, match=r"^--best"):
         read_wish(text)
+
+
+def test_from_which_shaking_on_is_where_simulated_impacts_begin_and_end(tmp_path, monkeypatch, capsys):
+    """More and less shaking than the survey says, simulated: from rest, and carried on from a motion with impacts."""
+    monkeypatch.chdir(tmp_path)
+    text = (STUDY.parent / "shaking.toml").read_text().replace("samples = 6", "samples = 1")
+    (tmp_path / "case.toml").write_text(text)
+    assert run("survey", "case.toml", "--workers", "1", "--json") == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    drawn = {name: row[name] for name in ("restitution", "friction")}
+    below, above = (row[f"activation_from_{side}"] for side in ("below", "above"))
+    model = machine(checked_study(tmp_path / "case.toml")).with_(**drawn)
+
+    def impacts(*values):
+        rows = sweep(model, "base_amplitude", list(values), transient=1000)
+        return [row.measures["impacts_per_period"] for row in rows]
+
+    assert impacts(0.99 * below) == [0.0] and impacts(1.01 * below) != [0.0]
+    busy, calm = impacts(1.2 * below, 0.5 * (above + below), 1.02 * above, 0.97 * above)[-2:]
+    assert busy == 2.0 and calm == 0.0

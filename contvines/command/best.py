@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
 WORST = ("worst-case", "worst", "robust")
+PEAKS = ("peak", "lower_peak")  # outcomes that the oscillator alone, and a tuned absorber, have too
+ALONE = ("bare", "tuned")  # what is told beside them
 FORM = '"lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak" would do'
 
 
@@ -59,6 +61,7 @@ def choose(
     """Survey, choose, refine, and say what is sacrificed."""
     import dataclasses
 
+    from contvines.command.compare import peaks_compared, told_compared
     from contvines.command.compose import say
     from contvines.command.survey_study import (
         family_of,
@@ -111,6 +114,8 @@ def choose(
         evaluate, outcome, limits, largest=largest, tolerances=drawn, quantile=quantile, known=known
     )
     units = units_of(study, model)
+    alone = outcome in PEAKS and bool(study.quantities) and "damping" in model.parameter_names
+    chosen = model.with_(**choice.values) if alone else model
     if json_:
         from contvines.export import json_text
 
@@ -120,11 +125,14 @@ def choose(
             "best": choice.values,
             outcome: choice.outcome,
             "others": choice.others,
+            **({"compared": peaks_compared(chosen, study.parameter, study.within, ALONE)} if alone else {}),
             **({"units": said} if said else {}),
         }
         typer.echo(json_text(about))
     elif not quiet:
         typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)))))
+        if alone:
+            typer.echo(fitted(told_compared(chosen, study.parameter, study.within, ALONE)))
     if plot is not None:
         from contvines.plots.figures import save_figure
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.axes import Axes
 
 CompareOption = Annotated[
@@ -71,10 +73,23 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
     ValueError
         If the graph shows no response of an oscillator over its parameter.
     """
+    from orbits.design.references import NAMES
+
+    for kind, (values, response) in _lines(graph, kinds, x, y).items():
+        color, dashes = LOOKS[kind]
+        axes.plot(
+            values, response, color=color, linestyle=dashes, linewidth=1.4, zorder=1.7, label=NAMES[kind]
+        )
+
+
+def _lines(
+    graph: Any, kinds: list[str], x: str | None, y: str | None
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Values of the parameter and responses there, of each kind."""
     import numpy as np
 
     from contvines.graph.measures import default_measure
-    from orbits.design.references import NAMES, reference
+    from orbits.design.references import reference
     from orbits.problem import OrbitProblem
 
     shown, over = y or default_measure(graph), x or graph.parameter
@@ -92,9 +107,37 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
     model = problem.model
     values = np.linspace(graph.within[0], graph.within[1], POINTS)
     params = np.atleast_2d(problem.values(values))
+    return {kind: (values, reference(kind, model, params) * model.gauge("length", params)) for kind in kinds}
+
+
+def peaks_compared(
+    model: Any, over: str, within: tuple[float, float], kinds: Sequence[str]
+) -> dict[str, tuple[float, float]]:
+    """The largest response of each kind over an interval of a parameter, and where, in the machine's units."""
+    import numpy as np
+
+    from orbits.design.references import reference
+
+    found = {}
     for kind in kinds:
-        color, dashes = LOOKS[kind]
-        response = reference(kind, model, params) * model.gauge("length", params)
-        axes.plot(
-            values, response, color=color, linestyle=dashes, linewidth=1.4, zorder=1.7, label=NAMES[kind]
-        )
+        low, high = within
+        for _ in range(3):  # each time between the neighbours of the largest
+            values = np.linspace(low, high, POINTS)
+            params = np.array([model.vector_at(over, float(value)) for value in values])
+            response = reference(kind, model, params) * model.gauge("length", params)
+            place = int(response.argmax())
+            low, high = values[max(place - 1, 0)], values[min(place + 1, POINTS - 1)]
+        found[kind] = float(response[place]), float(values[place])
+    return found
+
+
+def told_compared(model: Any, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
+    """The largest responses to compare with, as a sentence."""
+    from orbits.design.references import NAMES
+
+    unit, place = model.units.get(SHOWN[0], ""), model.units.get(over, "")
+    said = [
+        f"{NAMES[kind]} {peak:.4g} {unit} at {over} = {at:.4g} {place}".replace("  ", " ").rstrip()
+        for kind, (peak, at) in peaks_compared(model, over, within, kinds).items()
+    ]
+    return f"to compare with, at most: {'; '.join(said)}"

@@ -205,6 +205,11 @@ def _run(
         graph = _look(study, target)
     if not quiet:
         typer.echo(str(graph))
+    if compare and not quiet:
+        from contvines.command.compare import told_compared
+        from contvines.text_table import fitted
+
+        typer.echo("\n" + fitted(told_compared(machine(study), study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import told
 

@@ -13,20 +13,21 @@ from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Doubtful
 from .segment import Segment
 
+ROUNDING = 64 * 2.0**-53  # of entries
 AT_END = 1e-3  # part of a segment: so close to a branch point the determinant may well be next to zero
 
 
 def certain(engine: Engine, point: Solved) -> bool:
     """Whether the sign of det [[F_u, F_p], [tangent]] at a point is known in spite of the errors of F_u and F_p.
 
-    True also of problems that do not tell those errors (:class:`contvines.problems.abilities.Doubtful`).
+    True also of problems that do not tell those errors (:class:`contvines.problems.abilities.Doubtful`), or whose matrices are sparse.
     """
     problem = engine.problem
     if not isinstance(problem, Doubtful):
         return True
     engine.residual(point.u, point.p)
-    doubts = problem.doubts(engine.work)
-    if doubts is None:
+    doubts = problem.doubts(engine.work, ROUNDING)
+    if not isinstance(doubts, np.ndarray):
         return True
     matrix = np.empty((engine.n + 1, engine.n + 1))
     matrix[:-1, :-1], matrix[:-1, -1] = engine.work.jacobian, engine.work.derivative

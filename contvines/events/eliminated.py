@@ -8,7 +8,7 @@ from .determinant import DeterminantTest
 from .locate import Root, locate, locate_singular
 from .segment import Segment
 
-VAGUE = 1e-10  # error of a place, in units of the parameter, from which it is worth while
+VAGUE = 1e-12  # error of a place, in units of the parameter, from which it is worth while
 WIDTH = 0.02  # part of a segment, either side
 AT_SIGNS = Aim(SIGN, NO_COLUMNS)
 

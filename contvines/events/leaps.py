@@ -10,6 +10,7 @@ The branch is then traced again from the point before the gap, with shorter step
 
 from __future__ import annotations
 
+from .blur import singular_within
 from .certain import certain
 from .located import Located, Role
 from .segment import Segment
@@ -46,7 +47,12 @@ def inexact(segment: Segment, event: Located) -> bool:
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
     least = max(INEXACT, NOISY * noise)
     solved = EXACT if scaled and not noise and event.kind == "branch-point" else least
-    return event.kind == "astray" or event.error > 10.0 * least * unit or event.point.residual > solved * size
+    vague = event.error > 10.0 * least * unit
+    if vague and event.kind == "branch-point":
+        # no better than the rounding of its matrix allows
+        point = event.point
+        vague = event.error > singular_within(segment.engine, point.u, point.p, point.tangent)
+    return event.kind == "astray" or vague or event.point.residual > solved * size
 
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:

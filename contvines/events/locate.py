@@ -13,6 +13,7 @@ from .roots import bracketed_root, chebyshev_fit, chebyshev_nodes, chebyshev_val
 from .segment import Segment
 
 NODES = 8
+SETTLED = 1e-14  # accuracy at which no smaller window is asked
 JUMP = 1e-2  # a test function that differs by more than this across the final bracket has a jump there
 
 
@@ -110,19 +111,25 @@ def locate_singular(
     width : float
         Half of the window, relative to the segment.
     """
-    best: Root | None = None
-    best_score = np.inf
+    roots: list[tuple[float, Root]] = []
     for _ in range(7):
         found = _interpolated(segment, test, rough, width)
         if found is not None:
             root, residual = found
             score = max(root.error, residual / segment.engine.size(root.point.u))
-            if score < best_score:
-                best, best_score = root, score
-            if score < 1e-14:
-                break
+            if score < SETTLED:
+                return root
+            roots.append((score, root))
             rough = root.position
         width *= 0.5
+    roots.sort(key=lambda pair: pair[0])
+    if not roots:
+        return None
+    best = roots[0][1]
+    if len(roots) > 1 and segment.engine.problem.scales is not None:
+        # rounding rules in all windows, and the smallest of their estimates is small by chance
+        apart = abs(roots[1][1].point.p - best.point.p)
+        return best._replace(error=2.0 * max(best.error, roots[1][1].error, apart))
     return best
 
 

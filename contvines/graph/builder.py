@@ -268,11 +268,16 @@ def room(engine: Engine, border: Solved, step: float) -> float | None:
 
 
 def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
-    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part."""
+    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part.
+
+    Where it leaves shorter solutions at so small a distance that a step leaps to these, none is off the point.
+    """
+    root = engine.problem.root
+    primitive = root(point.u, point.p) is None
     for length in (step, 0.1 * step, 0.01 * step):
         for side in (length, -length):
             found = beside(engine, point, side)
-            if found is None:
+            if found is None or (primitive and root(found.u, found.p) is not None):
                 continue
             if real is None or (float(engine.smallest_margin(found.row)) >= MARGIN) == real:
                 return found

@@ -14,6 +14,7 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
+from ..events.blur import singular_within
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
 from ..forms.criticality import pair_form
@@ -229,6 +230,9 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
     special.location_error = max(
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
+    if special.kind == "branch-point":
+        within = singular_within(engine, special.u, special.value, special.tangent)
+        special.location_error = max(special.location_error, within)
     wrong = problem.check(special.u, special.value)
     if wrong is not None:
         special.remarks = (*special.remarks, str(wrong))

@@ -138,9 +138,12 @@ class Blurred(Protocol):
 
 @runtime_checkable
 class Doubtful(Protocol):
-    """Tells by how much the entries of (F_u, F_p) of its last linearisation may be wrong, shape (N, N + 1); None where nobody knows."""
+    """Tells by how much the entries of (F_u, F_p) of its last linearisation may be wrong, shape (N, N + 1), an array or a sparse matrix.
 
-    def doubts(self, work: Any) -> np.ndarray | None: ...
+    `rounding`: of an entry relative to it. None where nobody knows.
+    """
+
+    def doubts(self, work: Any, rounding: float) -> Any: ...
 
 
 @runtime_checkable

@@ -7,6 +7,7 @@ from copy import copy
 from typing import Any, Self
 
 import numpy as np
+from scipy.sparse import csc_array, diags_array, hstack
 
 from ..doors import above
 from . import dense, sparse
@@ -253,13 +254,23 @@ class CallableProblem(ProblemDefaults):
         scale = self.scales.unknowns[: len(errors)]
         return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
-    def doubts(self, work: Any) -> np.ndarray | None:
-        """Bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and what differences are known to; None of a sparse problem."""
-        if self.functions.structure != "dense":
+    def doubts(self, work: Any, rounding: float) -> Any:
+        """Bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and what differences are known to.
+
+        A sparse matrix of a sparse problem, None of one without a matrix.
+        """
+        if self.functions.structure == "operator":
             return None
         n, rows = self.dimension, self.sizes()[0]
-        found = ROUNDING * np.abs(np.column_stack([work.jacobian, work.derivative]))
-        found[:, :n] += rows[:, None] / rows.max() * np.resize(self.functions.errors, n)
+        errors = np.resize(self.functions.errors, n)
+        if self.functions.structure == "sparse":
+            inner = rounding * abs(work.jacobian)
+            if errors.any():
+                ones = (inner != 0.0).astype(float)
+                inner = inner + diags_array(rows / rows.max()) @ ones @ diags_array(errors)
+            return hstack([inner, rounding * csc_array(np.abs(work.derivative)[:, None])])
+        found = rounding * np.abs(np.column_stack([work.jacobian, work.derivative]))
+        found[:, :n] += rows[:, None] / rows.max() * errors
         return found
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:

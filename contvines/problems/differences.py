@@ -17,6 +17,7 @@ GOOD = 1e-13  # relative error at which a difference is taken without trying a s
 FACTOR = 64.0  # between the lengths that are tried by `bend`
 ASIDE = 1.37  # ratio of two lengths at which slopes are compared
 HALVINGS = 5  # of the factor between two of them, to find where f has bent
+MANY = 64  # rows of fewer are asked one by one
 CLOSER = 20  # halvings after which a continuous function has hardly changed any more
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
@@ -139,9 +140,12 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
         slope = odd / lengths[:, None]
         # where rounding makes stairs of f, or it is a power, it is not linear
         seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
-        found = np.inf
+        found, many = np.inf, odd.shape[1] > MANY
         for r in range(odd.shape[1]):
-            found = min(found, _bend_of_row(f, r, lengths, slope[:, r], even[:, r], seen[:, r], found))
+            # of many rows those that bend within the same factor are as good as one another: each asked costs evaluations of all
+            least = found / FACTOR if many else found
+            there = float(here[r])
+            found = min(found, _bend_of_row(f, r, there, lengths, slope[:, r], even[:, r], seen[:, r], least))
         if not np.isfinite(found) and not seen.any():
             found = _end_of_square(f, lengths, even, floor)
     return float(found) if np.isfinite(found) else None
@@ -165,10 +169,17 @@ def _end_of_square(f: Line, lengths: np.ndarray, even: np.ndarray, floor: np.nda
 
 
 def _bend_of_row(
-    f: Line, r: int, lengths: np.ndarray, slope: np.ndarray, even: np.ndarray, seen: np.ndarray, least: float
+    f: Line,
+    r: int,
+    here: float,
+    lengths: np.ndarray,
+    slope: np.ndarray,
+    even: np.ndarray,
+    seen: np.ndarray,
+    least: float,
 ) -> float:
     """Length over which row r bends, infinity where it does not, or not below `least`."""
-    here, k = float(f(0.0)[r]), 0
+    k = 0
     finite = np.isfinite(slope) & np.isfinite(even)
     for first in np.flatnonzero(seen):
         if first < k:

@@ -149,7 +149,8 @@ def activation(found: Findings) -> dict[str, float]:
     """Where impacts begin.
 
     From below: the value up to which a motion without impacts is stable. From above: the least value at which one with impacts is. Both
-    are special points of the diagram; no number where the interval ends first.
+    are special points of the diagram; no number where the interval ends first, where the diagram has no motion without impacts (it
+    may then lack the branch that begins where they do), or where a simulation contradicts it.
     """
     low, high = found.graph.within
     known = stretches(found.graph)
@@ -157,9 +158,16 @@ def activation(found: Findings) -> dict[str, float]:
     busy = [s for s in known if s.branch.description.get("impacts")]
     above = max((float(s.values.max()) for s in calm), default=np.nan)
     below = min((float(s.values.min()) for s in busy), default=np.nan)
+    told = [
+        (value, measures["impacts_per_period"])
+        for value, measures, _ in found.simulated
+        if "impacts_per_period" in measures
+    ]
+    beyond = any(not impacts and value > above for value, impacts in told)
+    before = any(impacts and value < below for value, impacts in told)
     return {
-        "activation_from_below": above if above < high else np.nan,
-        "activation_from_above": below if below > low else np.nan,
+        "activation_from_below": above if above < high and not beyond else np.nan,
+        "activation_from_above": below if below > low and calm and not before else np.nan,
     }
 
 

@@ -2,6 +2,7 @@
 
     python -m tests.benchmarks.large [n]
     python -m tests.benchmarks.large 316 whole
+    python -m tests.benchmarks.large 5000 line
 
 The script does what a point takes: two factorisations of Newton's method in a bordered system by block elimination, no
 location of anything, no stability. Printed are processor seconds a point, their ratios, and the largest memory.
@@ -19,6 +20,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import contvines as cv
+from tests.contvines.problems.brusselator import brusselator
 
 
 def bratu(n: int) -> tuple[Any, Any, Any]:
@@ -127,6 +129,32 @@ def whole(n: int) -> None:
     print(f"they differ by {abs(point.value - exact) / exact:.1e}")
 
 
+def line(m: int) -> None:
+    """Brusselator on a line of m cells: the homogeneous state's first Turing point, and its Hopf point with ten eigenvalues, beside closed forms."""
+    modes = 4.0 * m**2 * np.sin(np.arange(1, 9) * np.pi / (2 * m)) ** 2
+    for kind, (A, D, E), within, spectrum in (
+        ("branch-point", (2.0, 0.02, 0.5), (2.0, 2.16), "none"),
+        ("hopf", (1.0, 0.008, 0.004), (1.5, 2.01), "flow"),
+    ):
+        exact = 1.0 + A**2
+        if kind == "branch-point":
+            exact = float(((1.0 + D * modes) * (A**2 + E * modes) / (E * modes)).min())
+        F, jacobian, derivative = brusselator(m, A, D, E)
+        start = np.tile([A, within[0] / A], m)
+        began = time.process_time()
+        problem = cv.AlgebraicProblem(
+            F, start, within[0], "B", jacobian=jacobian, derivative=derivative, spectrum=spectrum
+        )
+        graph = cv.diagram(problem, within=within, depth=0)
+        seconds, points = time.process_time() - began, len(graph["B1"].values)
+        (found,) = graph.of_kind(kind)
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        print(f"N = {2 * m}, {kind}: {points} points, {seconds:.1f} s; {memory:.0f} MB")
+        print(
+            f"    {found.value!r} +- {found.location_error:.1e}, closed form {exact!r}, differ by {abs(found.value - exact):.1e}"
+        )
+
+
 def main(n: int) -> None:
     """Print the comparison."""
     points = 40
@@ -139,4 +167,6 @@ def main(n: int) -> None:
 
 
 if __name__ == "__main__":
-    (whole if "whole" in sys.argv else main)(int(sys.argv[1]) if len(sys.argv) > 1 else 100)
+    (whole if "whole" in sys.argv else line if "line" in sys.argv else main)(
+        int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    )

@@ -1,12 +1,14 @@
 """Lines to compare a graph with, and numbers as people read them."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.command.compare import draw_compared
-from contvines.command.compose import checked_study, first_orbit
+from contvines.command.compare import draw_compared, peaks_compared
+from contvines.command.compose import checked_study, first_orbit, machine
 from contvines.command.orbit import _number
 
 STUDY = """
@@ -62,3 +64,17 @@ def test_lines_go_with_displacements_over_the_parameter_only(graph):
 )
 def test_only_rounding_is_shown_as_zero(value, shown):
     assert _number(value) == shown
+
+
+def test_peaks_to_compare_with_are_those_of_two_oscillators_in_the_frequency_domain():
+    """The bare oscillator on its shaken base, and Den Hartog's absorber on it: tuned to f_0/(1 + mu), c = 2 m omega_0 sqrt(3 mu/(8 (1 + mu)^3))."""
+    study = Path(__file__).parents[3] / "examples" / "design" / "absorber.toml"
+    model = machine(checked_study(study))
+    r, zeta, mu = np.linspace(7.0, 9.0, 400_001) / 8.0, 0.007, 0.032 / 3.8
+    load = 0.3 * (1.0 + 2j * zeta * r)  # mm, over the oscillator's stiffness
+    own = 1.0 - r**2 + 2j * zeta * r
+    link = mu * (1.0 / (1.0 + mu) ** 2 + 2j * r * np.sqrt(3.0 * mu / (8.0 * (1.0 + mu) ** 3)))
+    wanted = {"bare": np.abs(load / own), "tuned": np.abs(load / (own + link - link**2 / (link - mu * r**2)))}
+    for kind, (peak, at) in peaks_compared(model, "frequency", (7.0, 9.0), list(wanted)).items():
+        assert peak == pytest.approx(wanted[kind].max(), rel=1e-9)
+        assert at == pytest.approx(8.0 * r[wanted[kind].argmax()], abs=1e-5)

@@ -9,8 +9,7 @@ import pytest
 import contvines as cv
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from contvines.events.certain import certain
-from contvines.problems.callables import ROUNDING
+from contvines.events.certain import ROUNDING, certain
 
 
 def fibonacci(k):

@@ -66,7 +66,21 @@ def test_activation_is_no_end_of_the_interval(found):
     assert known["activation_from_below"] == pytest.approx(0.6) and known[
         "activation_from_above"
     ] == pytest.approx(0.4)
+    for contradiction in [
+        (0.7, 0.0),
+        (0.3, 2.0),
+    ]:  # a motion without impacts above both, one with impacts below both
+        value, impacts = contradiction
+        simulated = outcomes.Findings(found.graph, None, [(value, {"impacts_per_period": impacts}, "")])
+        wrong = outcomes.activation(simulated)
+        assert np.isnan(wrong["activation_from_below"]) == (impacts == 0.0)
+        assert np.isnan(wrong["activation_from_above"]) == (impacts > 0.0)
     found.graph.branches["B0"].values = np.linspace(0.0, 1.0, 61)
     found.graph.branches["B1"].values = np.linspace(0.0, 1.0, 61)
     ends = outcomes.activation(found)
     assert np.isnan(ends["activation_from_below"]) and np.isnan(ends["activation_from_above"])
+
+
+def test_activation_is_not_told_where_the_diagram_has_no_motion_without_impacts(found):
+    del found.graph.branches["B0"]
+    assert all(np.isnan(value) for value in outcomes.activation(found).values())

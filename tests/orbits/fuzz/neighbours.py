@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from contvines.events.kinds import BORDERS
+from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact
-from tests.orbits.fuzz.motion import alike, apart
+from tests.orbits.fuzz.motion import alike, apart, shortest
 from tests.orbits.fuzz.tally import Tally
-from tests.orbits.fuzz.unbounded import grow_without_bound
 
 PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
 CLOSER = (1e-4, 1e-5)  # the same, where times of virtual orbits further away run backwards
@@ -72,7 +72,8 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
     """The branch's orbits tend to the point's as the distance does."""
     branch = between.branch
     for way in between.ways(i):
-        seen = [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, PARTS)]
+        beside = list(between.beside(i, way, PARTS))
+        seen = [(d, apart(point.orbit, orbit)) for d, orbit in beside]
         if any(math.isnan(gap) for _, gap in seen[-2:]):
             seen += [(d, apart(point.orbit, orbit)) for d, orbit in between.beside(i, way, CLOSER)]
         gaps = [gap for _, gap in seen]
@@ -85,12 +86,24 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
         falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
             tally.count("ways to special points shorter than the last bit of the parameter")
+        elif not falls and _comes_home(branch.orbit(i), [orbit for _, orbit in beside], point):
+            tally.count("ways to special points followed in many digits")
         elif not falls:
             what = ", ".join(f"{gap:.1e} at {d:.0e}" for d, gap in seen)
             tally.find(
                 "jump",
                 f"{branch.label} does not tend to {point.label} ({point.kind}, {point.value:.10g}): {what}",
             )
+
+
+def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
+    """Whether the branch of the furthest two orbits, in many digits, comes to the motion of the point; they repeat no shorter ones."""
+    return (
+        len(beside) > 1
+        and apart(end, point.orbit) < SAME
+        and all(shortest(orbit) == orbit.periods for orbit in beside[:2])
+        and comes_to(beside[0], beside[1], end)
+    )
 
 
 def _unresolved(point: Any) -> float:

@@ -13,7 +13,7 @@ from orbits.simulation import replay
 from tests.orbits.fuzz import neighbours, structure
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.drawing import draw
-from tests.orbits.fuzz.many_digits import exact
+from tests.orbits.fuzz.many_digits import exact, rounds_apart
 from tests.orbits.fuzz.motion import apart
 from tests.orbits.fuzz.searching import LIMITS
 from tests.orbits.fuzz.tally import Tally
@@ -263,3 +263,27 @@ def test_multipliers_that_grow_towards_a_graze_grow_without_bound():
     neighbours.judge(replace(graph, branches={branch.label: branch}, switches=[]), tally)
     assert not tally.findings
     assert tally.counts["multipliers at borders that grow in many digits, where doubles come no nearer"] == 1
+
+
+def test_beyond_a_border_a_doubled_solution_is_not_taken_for_the_shorter_one_it_leaves():
+    """8e-8 beyond its period doubling the doubled branch ends at a border: that joins branches of its own motion only."""
+    graph = diagram("absorber", 54, 416)
+    border = next(p for p in graph.of_kind("wall-graze") if abs(p.value - 2.080876347527377) < 1e-12)
+    joined = {end for s in graph.switches if s.point == border.label for end in (s.source, s.target)}
+    assert len(joined) == 2
+    for label in joined:
+        assert min(apart(border.orbit, graph[label].orbit(i)) for i in (0, -1)) < 1e-9
+    doubled = exact(border.orbit)
+    assert abs(doubled.shift) < 1e-12
+    assert rounds_apart(border.orbit, 1) > 1e-7
+
+
+def test_a_steep_branch_comes_to_its_period_doubling_in_many_digits():
+    """In doubles what is solved for 3e-8 beside it lies on the shorter orbits, whose motion changes 2e5 times as fast as the amplitude."""
+    graph = diagram("absorber", 169, 416)
+    point = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.0673625373057962) < 1e-13)
+    branch = next(b for b in graph if b.seed == point.label)
+    tally = Tally("absorber", 416, 169)
+    neighbours.judge(replace(graph, branches={branch.label: branch}, switches=[]), tally)
+    assert not tally.findings
+    assert tally.counts["ways to special points followed in many digits"] == 1

@@ -8,12 +8,12 @@ import pytest
 import contvines as cv
 from orbits import Absorber, Coupled
 from tests.orbits.fuzz import finer, neighbours, simulated, structure
+from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.drawing import draw
 from tests.orbits.fuzz.many_digits import exact
 from tests.orbits.fuzz.motion import alike, apart, shortest
 from tests.orbits.fuzz.searching import search
 from tests.orbits.fuzz.tally import Tally
-from tests.orbits.fuzz.unbounded import grow_without_bound
 
 
 @pytest.mark.parametrize(("kind", "seed"), [("absorber", 0), ("absorber", 3), ("cavity", 8), ("coupled", 1)])
@@ -226,3 +226,13 @@ def test_multipliers_that_do_not_grow_are_not_called_unbounded(graph):
     orbits = [branch.orbit(i) for i in (2, 3)]
     assert not grow_without_bound(*orbits, 0.0)
     assert not grow_without_bound(*orbits[::-1], 0.0)
+
+
+def test_a_branch_comes_to_its_own_points_in_many_digits_and_to_no_others(graph):
+    branch = word(graph, "LRs")
+    orbits = [branch.orbit(i) for i in (4, 3)]
+    assert comes_to(*orbits, branch.orbit(1))
+    moved = branch.orbit(1)
+    moved = type(moved)(moved.model, moved.word, moved.periods, moved.nodes * (1.0 + 1e-6), moved.params)
+    assert not comes_to(*orbits, moved)
+    assert not comes_to(*orbits[::-1], branch.orbit(1))

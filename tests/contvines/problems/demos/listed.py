@@ -119,7 +119,16 @@ DEMOS = [
         "q2",
         printed="folds 1.042049, 1.052200; Hopf 1.051558, 1.040991 (MatCont); folds 1.04204851, 1.05220029 (BifurcationKit, test/hopf_codim_2/COModel.jl)",
     ),
-    Demo("bazykin", "MatCont tutorials", eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2), "alpha"),
+    Demo(
+        "bazykin",
+        "MatCont tutorials",
+        eq.bazykin,
+        [1.5, 1.2],
+        0.2,
+        (0.05, 1.2),
+        "alpha",
+        printed="0.9900000 (J. Sieber's files of the model for AUTO, readme.txt; there with delta = 0, which does not move this point); closed form 99/100",
+    ),
     Demo(
         "morris-lecar II",
         "MatCont, PyDSTool MorrisLecar_TypeII",
@@ -178,6 +187,7 @@ DEMOS = [
         -2.0,
         (-4.0, -0.9),
         "E0",
+        printed="folds -1.46302733, -1.86522391; Hopf -1.85012460, -1.15105934 (BifurcationKit, docs, tutorial 'Neural mass equation (automatic)')",
     ),
     Demo(
         "steinmetz",
@@ -206,6 +216,7 @@ DEMOS = [
         0.0,
         (-14.0, 4.0),
         "z",
+        printed="closed form 49/27, 3 (folds of z = 3 - 2 x^2 - x^3)",
     ),
     Demo(
         "hindmarsh-rose",
@@ -236,6 +247,7 @@ DEMOS = [
         7.0,
         (1.0, 12.0),
         "k",
+        printed="closed form 72/29 (branch point)",
         depth=1,
     ),
     Demo(

@@ -26,9 +26,10 @@ vanishing Hurwitz determinant, a multiplier -1, a product of multipliers 1). The
 1e-15 (the largest difference as a part of the interval, when the page was made, stands in the table); a test says so. That there are
 no more was asked by Newton's method for the same equations from 150 random starts for each kind (cycles of length one, up to six unknowns). Cycles are followed to twice or four times their length only.
 
-Printed is what the source prints; a closed form is what its equations say by hand. None: the first five digits of every value were looked for in the
-repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation, and nothing was found: these
-demos show their values when they are run, or as pictures. What MatCont's, MatContM's and COCO's tutorials may print beyond the values here was not to be had.
+Printed is what the source prints; a closed form is what its equations say by hand. None printed: the sources print no value, for the first five digits
+of every value were looked for in the repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation (as written
+and as rendered), MatContM and cl_matcontL, and nothing was found. These demos show their values when they are run, or as pictures, or are those of a textbook.
+The manuals and tutorials of MatCont, MatContM and COCO are no repositories, and were not to be had whole.
 
 In other units: the same demos with u, p and the rows of F times 1e9 or 1e-9, in {sets} sets of units that nothing is said about
 (`python -m tests.contvines.problems.demos.units`); the column counts those in which the special points are the same to 1e-10: {alike} of {all} in all.
@@ -77,7 +78,7 @@ def render() -> str:
                 points,
                 ("0" if max(away) == 0.0 else f"{max(away):.0e}") if away else "",
                 str(alike[demo.name]),
-                demo.printed or "none",
+                demo.printed or "none printed",
             )
             lines.append("| " + " | ".join(cells) + " |")
         lines.append("")

@@ -1,4 +1,4 @@
-"""Multipliers that are told to grow without bound towards a border: followed in many digits, where nodes in doubles come no nearer."""
+"""Branches followed in many digits towards a special point, where nodes in doubles come no nearer."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ FASTER = 100.0  # the border is approached in steps after which multipliers are 
 GROWS = 10.0  # ... and at least so many times
 NEAR = 1e-8  # the border's motion is so near to those beside it; and in the parameter, relative ...
 PLACE = 1e-13  # ... beside the border's told error
+THERE = 1e-9  # nodes that are no further from those of a special point are there
+TENTH, HALF = 0.1, 0.5  # of the distance that each step is to leave, and leaves at most
 
 
 def grow_without_bound(one: Any, nearer: Any, error: float) -> bool:
@@ -52,9 +54,45 @@ def _nearer(motion: Motion, before: Exact, here: Exact) -> Exact | None:
     if not other < one:
         return None
     share = (other - other / FASTER) / (one - other)
-    guess = [[x + share * (x - y) for x, y in zip(*rows)] for rows in zip(here.nodes, before.nodes)]
-    found = solved(motion, guess, here.value + share * (here.value - before.value))
+    found = _further(motion, before, here, share)
     return found if found is not None and _growth(found) > GROWS * _growth(here) else None
+
+
+def comes_to(one: Any, nearer: Any, end: Any) -> bool:
+    """Whether a branch through two orbits goes on to the nodes of a third one: along the line through the last two, solved each time.
+
+    Beside a branch point the equations are the more singular the nearer it is: what solves them in doubles stops short of it, or is of
+    the other branch. Of that, of repeated shorter orbits, the first two must not be.
+    """
+    if not nearer.impacts:
+        return False
+    with mp.workdps(DIGITS):
+        motion = Motion(nearer)
+
+        def off(found: Exact) -> Any:
+            return max(abs(x - y) for row, own in zip(found.nodes, end.nodes) for x, y in zip(row, own))
+
+        try:
+            before, here = (
+                solved(motion, orbit.nodes, Motion(orbit).given[motion.parameter]) for orbit in (one, nearer)
+            )
+            while before is not None and here is not None and off(here) > THERE:
+                far, near = off(before), off(here)
+                if not near < far:
+                    return False
+                found = _further(motion, before, here, (1 - TENTH) * near / (far - near))
+                if found is None or off(found) > HALF * near:
+                    return False
+                before, here = here, found
+        except (ArithmeticError, ValueError):
+            return False
+        return before is not None and here is not None
+
+
+def _further(motion: Motion, before: Exact, here: Exact, share: Any) -> Exact | None:
+    """The orbit beyond the second one by so much of the way from the first one to it."""
+    guess = [[x + share * (x - y) for x, y in zip(*rows)] for rows in zip(here.nodes, before.nodes)]
+    return solved(motion, guess, here.value + share * (here.value - before.value))
 
 
 def _growth(found: Exact) -> float:

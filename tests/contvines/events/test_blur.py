@@ -1,0 +1,39 @@
+"""Stated errors of branch points cover what rounding of the matrices does to their places, and not very much more."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from tests.contvines.problems.brusselator import brusselator
+
+
+@pytest.mark.parametrize("growth", [5.0, 10.0, 20.0, 30.0])
+def test_a_branch_point_beside_an_eigenvalue_that_has_grown(growth):
+    """x (x - p + 0.3) = 0 and exp(growth p) (y - 1) = 0, mixed: at p = 0.3 eigenvalues, relative to those at p = -0.7, are 0 and exp(growth)."""
+    mixed, rows = np.array([[3.0, 7.0], [2.0, 5.0]]), np.array([[2.0, -3.0], [-7.0, 11.0]])
+
+    def F(u, p):
+        x, y = mixed @ u
+        return rows @ np.array([x * (x - p + 0.3), np.exp(growth * p) * (y - 1.0)])
+
+    start = np.linalg.solve(mixed, [0.0, 1.0])
+    graph = cv.diagram(cv.AlgebraicProblem(F, start, -0.7), within=(-0.8, 0.8), depth=0)
+    (point,) = graph.of_kind("branch-point")
+    assert abs(point.value - 0.3) <= point.location_error < 1e-8
+
+
+@pytest.mark.parametrize("m", [50, 400, 1500])
+def test_stiff_fields_on_a_line(m):
+    """The first Turing point of a brusselator: entries of D/h^2 are rounded, and the stated error grows with them.
+
+    B = (1 + D l)(A^2 + E l)/(E l), l = 4 m^2 sin(k pi/2 m)^2 the eigenvalues of the second difference with no flux at the walls.
+    """
+    A, D, E = 2.0, 0.02, 0.5
+    F, jacobian, derivative = brusselator(m, A, D, E)
+    problem = cv.AlgebraicProblem(F, np.tile([A, 1.0], m), 2.0, "B", jacobian=jacobian, derivative=derivative)
+    graph = cv.diagram(problem, within=(2.0, 2.16), depth=0)
+    lengths = 4.0 * m**2 * np.sin(np.arange(1, 9) * np.pi / (2 * m)) ** 2
+    exact = min((1.0 + D * lengths) * (A**2 + E * lengths) / (E * lengths))
+    (point,) = graph.of_kind("branch-point")
+    assert abs(point.value - exact) <= point.location_error
+    assert point.location_error < 2e-11 + 1e-13 * m**2
