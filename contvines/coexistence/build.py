@@ -233,12 +233,11 @@ class _Looking:
 
     def past_ends(self, most: int) -> None:
         """Follow what is lost at the ends of stable stretches, those of what it leads to included, until `most` starts have been in all."""
-        depth = max(self.run.depth - 1, 0)
         while ends := self.handover.left()[: max(most // FOLLOWED - len(self.handover.done), 0)]:
             for end in ends:
                 found = self.handover.follow(end)
                 self.found += found
-                join(self.run, found, depth)
+                join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
         left = len(self.handover.left())
         self.run.graph.settings |= {"followed": len(self.handover.done), "unfollowed": left}
 
