@@ -54,7 +54,10 @@ class HalfBranch:
     first: np.ndarray | None = None
 
     def __len__(self) -> int:
-        return sum(len(piece.values) for piece in self.pieces)
+        total = 0
+        for piece in self.pieces:
+            total += len(piece.values)
+        return total
 
     @property
     def end(self) -> float:

@@ -44,7 +44,7 @@ def find_border(segment: Segment, real: bool) -> Border | None:
     if not len(a):
         return None
     if real:
-        falling = np.flatnonzero((b < MARGIN) & (a >= MARGIN))
+        falling = ((b < MARGIN) & (a >= MARGIN)).nonzero()[0]
     else:
         falling = np.arange(len(a)) if (a < MARGIN).any() and not (b < MARGIN).any() else np.zeros(0, int)
     if not len(falling):

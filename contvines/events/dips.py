@@ -17,7 +17,7 @@ from .scan import dips
 from .segment import Segment
 
 GOLDEN = 0.3819660112501051
-SHARES = (0.99, 0.9, 0.7, 0.4)  # of the way to a border: other margins are looked at there
+SHARES = np.array([0.99, 0.9, 0.7, 0.4])  # of the way to a border: other margins are looked at there
 
 
 def below_zero(segment: Segment, test: Callable[[Solved], float]) -> tuple[float, Solved] | None:
@@ -66,8 +66,10 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
     left, middle, right = (margins(point.row) for point in (segment.a, border, segment.b))
     if middle.min() < MARGIN:  # one of a flight, say, that is over before the segment is
         return position, border
-    for share, point in zip(SHARES, segment.several([share * position for share in SHARES])):
-        if point is not None and margins(point.row).min() < MARGIN:
+    rows, found = segment.rows(position * SHARES)
+    for share in SHARES[found & (segment.engine.smallest_margin(rows) < MARGIN)].tolist():
+        point = segment.at(share * position)
+        if point is not None:
             return share * position, point
     convex = np.flatnonzero(middle < (1.0 - position) * left + position * right)
     parts = (position * segment.length, (1.0 - position) * segment.length)

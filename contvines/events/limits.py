@@ -79,13 +79,11 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     """
     best: list[np.ndarray] | None = None
     error = np.inf
-    spacings, rows = _rows(segment, position, DISTANCES)
-    if not len(spacings):
+    if _plainly(segment, position, computed):
         return None
-    values = _characteristic(segment.engine.spectrum(rows))
-    sure = np.isfinite(values).all(axis=(1, 2))
-    spacings = spacings[sure]
-    limits = np.power.outer(spacings, np.arange(POLES + 1))[:, :, None] * (EXTRAPOLATION @ values[sure])
+    limits = _extrapolated(segment, position, DISTANCES)
+    if not len(limits):
+        return None
     agree = _apart(limits[:, 0], computed)
     changes = _apart(limits[1:], limits[:-1]).tolist()
     for i, agreed in enumerate(agree.tolist()):
@@ -102,6 +100,27 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
         return None
     return None if best is not None and len(best) > 1 and _bounded(segment, position, computed) else best
+
+
+def _plainly(segment: Segment, position: float, computed: np.ndarray) -> bool:
+    """Whether the polynomial tends to the one computed at the border by the first points already, as at most borders."""
+    step = DISTANCES[0] / segment.length
+    places = [position - k * step for k in PLACES]
+    if places[-1] < -1.0:
+        return False
+    rows, found = segment.rows(places)
+    if not found.all():
+        return False
+    return bool(_apart(CUBIC @ _characteristic(segment.engine.spectrum(rows)), computed) < AGREEING)
+
+
+def _extrapolated(segment: Segment, position: float, wanted: tuple[float, ...]) -> np.ndarray:
+    """The polynomials times each power of the distance, extrapolated to the border from each spacing that tells, (k, powers, m + 1)."""
+    spacings, rows = _rows(segment, position, wanted)
+    values = _characteristic(segment.engine.spectrum(rows))
+    sure = np.isfinite(values).all(axis=(1, 2))
+    powers = np.power.outer(spacings[sure], np.arange(POLES + 1))
+    return powers[:, :, None] * (EXTRAPOLATION @ values[sure])
 
 
 def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:

@@ -44,7 +44,7 @@ class Segment:
         """The points of the branch at some places, each as by `at`."""
         return solved_points(self._found(places))
 
-    def rows(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def rows(self, places: Sequence[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Rows of multipliers and margins at some places, (k, columns), and which of them are of points of the branch, (k,)."""
         found = self._found(places)
         return found.rows, found.numbers[:, 1] >= 0.0

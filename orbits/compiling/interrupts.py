@@ -7,8 +7,8 @@ until the compiled code is done.
 from __future__ import annotations
 
 import sys
-import threading
 from signal import SIGINT
+from threading import get_ident, main_thread
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -27,7 +27,7 @@ class kept_back:
 
     def __enter__(self) -> None:
         listener = _plain.getsignal(SIGINT)
-        if threading.current_thread() is threading.main_thread() and callable(listener):
+        if get_ident() == main_thread().ident and callable(listener):
             _plain.signal(SIGINT, self._comes)
             self.listener = listener
 

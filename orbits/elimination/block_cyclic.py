@@ -241,7 +241,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
 
     @kernel
     def eliminate_lanes(F, A, D, Q, twist, stored, small, order, solution, short, found, listed):
-        """The same with sixteen segments side by side, where the cycle is long enough."""
+        """The same with eight segments side by side, where the cycle is long enough."""
         length = F.shape[0]
         if length < SHORTEST:
             return eliminate_two(F, A, D, Q, twist, stored, small, order, solution)

@@ -14,6 +14,8 @@ from llvmlite import ir
 from numba import carray, cfunc, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.extending import intrinsic
 
+from orbits.compiling.decorators import digest_of
+from orbits.elimination import two_unknowns, vectorised
 from orbits.elimination.vectorised import ENDS, KEEP, LANES, PACK, SHORTEST, STATE, condense, expand
 
 FUNCTIONS, ARRAYS = 2, 11
@@ -72,7 +74,11 @@ def _expand(length, twist, links):
 
 @cache
 def functions() -> tuple[Any, Any]:
+    # numba looks at this file only, not at those whose functions are called
+    digest = digest_of(two_unknowns, vectorised)
     compile_ = cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)
+    for function in (_condense, _expand):
+        function.__qualname__ = f"{function.__name__.strip('_')}_{digest}"
     return compile_(_condense), compile_(_expand)
 
 

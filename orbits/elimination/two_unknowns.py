@@ -3,7 +3,7 @@
 One reflection step needs the one before it, and most of its time is waiting for a square root and a division. The
 cycle is therefore cut in two halves that are eliminated side by side, from node 1 and from the middle on; the
 middle node comes last. (Two segments of Wright's structured orthogonal factorisation, SIAM J. Sci. Stat. Comput. 13
-(1992) 742; `orbits.elimination.vectorised` has sixteen.) Sums are written with what is known last at their end.
+(1992) 742; `orbits.elimination.vectorised` has eight.) Sums are written with what is known last at their end.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
-"""Elimination of the inner nodes of long cycles with two unknowns per node, sixteen segments side by side.
+"""Elimination of the inner nodes of long cycles with two unknowns per node, eight segments side by side.
 
-The cycle is cut into sixteen segments of equal length; each eliminates its inner nodes by the same Householder
+The cycle is cut into eight segments of equal length; each eliminates its inner nodes by the same Householder
 reflections as `orbits.elimination.two_unknowns` (this is the parallel form of Wright's structured orthogonal factorisation, SIAM J.
 Sci. Stat. Comput. 13 (1992) 742, with the same stability), and leaves one block that ties its two ends. The segments
 are independent, so the innermost loops run over them and the compiler turns them into vector instructions: arrays
-are flat, the lane is their last index, and each place is a slice (indices are then known not to be negative).
+are flat, the lane is their last index, and each place is a slice (indices are then known not to be negative). How many lanes there
+are is no constant to the compiler, which would unroll so short a loop rather than make vectors of it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numba import njit
 from orbits.compiling.decorators import kernel
 from orbits.elimination.two_unknowns import FAST, reflect
 
-LANES = 16
+LANES = 8
 SHORTEST = 32  # cycles shorter than this are eliminated by `orbits.elimination.two_unknowns`
 PACK, KEEP, STATE, ENDS = 12 * LANES, 16 * LANES, 13 * LANES, 14 * LANES
 
@@ -28,109 +29,109 @@ def lanes_size(length: int) -> int:
 
 
 @njit(**FAST)
-def _pack(F, A, D, Q, m, pack):
+def _pack(F, A, D, Q, m, lanes, pack):
     """Copy block s m + b to place b of lane s: A, D, Q, -F as twelve rows."""
     for b in range(m):
-        for s in range(LANES):
+        for s in range(lanes):
             i = s * m + b
             at = b * PACK + s
             pack[at] = A[i, 0, 0]
-            pack[at + 16] = A[i, 0, 1]
-            pack[at + 32] = A[i, 1, 0]
-            pack[at + 48] = A[i, 1, 1]
-            pack[at + 64] = D[i, 0, 0]
-            pack[at + 80] = D[i, 0, 1]
-            pack[at + 96] = D[i, 1, 0]
-            pack[at + 112] = D[i, 1, 1]
-            pack[at + 128] = Q[i, 0]
-            pack[at + 144] = Q[i, 1]
-            pack[at + 160] = -F[i, 0]
-            pack[at + 176] = -F[i, 1]
+            pack[at + LANES] = A[i, 0, 1]
+            pack[at + 2 * LANES] = A[i, 1, 0]
+            pack[at + 3 * LANES] = A[i, 1, 1]
+            pack[at + 4 * LANES] = D[i, 0, 0]
+            pack[at + 5 * LANES] = D[i, 0, 1]
+            pack[at + 6 * LANES] = D[i, 1, 0]
+            pack[at + 7 * LANES] = D[i, 1, 1]
+            pack[at + 8 * LANES] = Q[i, 0]
+            pack[at + 9 * LANES] = Q[i, 1]
+            pack[at + 10 * LANES] = -F[i, 0]
+            pack[at + 11 * LANES] = -F[i, 1]
 
 
 @njit(**FAST)
-def _forward(m, pack, keep, state):
+def _forward(m, lanes, pack, keep, state):
     """Eliminate the inner nodes of every segment.
 
     `state` holds per lane the two equations V x_b + U x_0 + w p = r (rows a, u, w, r) and the sign of the
     determinant; `keep` the rows of R, of x_0, of x_{b+1}, of p and the right-hand side for each inner node.
     """
-    for s in range(LANES):
-        state[s] = pack[s + 64]
-        state[s + 16] = pack[s + 80]
-        state[s + 32] = pack[s]
-        state[s + 48] = pack[s + 16]
-        state[s + 64] = pack[s + 128]
-        state[s + 80] = pack[s + 160]
-        state[s + 96] = pack[s + 96]
-        state[s + 112] = pack[s + 112]
-        state[s + 128] = pack[s + 32]
-        state[s + 144] = pack[s + 48]
-        state[s + 160] = pack[s + 144]
-        state[s + 176] = pack[s + 176]
-        state[s + 192] = 1.0
+    for s in range(lanes):
+        state[s] = pack[s + 4 * LANES]
+        state[s + LANES] = pack[s + 5 * LANES]
+        state[s + 2 * LANES] = pack[s]
+        state[s + 3 * LANES] = pack[s + LANES]
+        state[s + 4 * LANES] = pack[s + 8 * LANES]
+        state[s + 5 * LANES] = pack[s + 10 * LANES]
+        state[s + 6 * LANES] = pack[s + 6 * LANES]
+        state[s + 7 * LANES] = pack[s + 7 * LANES]
+        state[s + 8 * LANES] = pack[s + 2 * LANES]
+        state[s + 9 * LANES] = pack[s + 3 * LANES]
+        state[s + 10 * LANES] = pack[s + 9 * LANES]
+        state[s + 11 * LANES] = pack[s + 11 * LANES]
+        state[s + 12 * LANES] = 1.0
     for b in range(1, m):
         block = pack[b * PACK : (b + 1) * PACK]
         kept = keep[b * KEEP : (b + 1) * KEEP]
-        for s in range(LANES):
+        for s in range(lanes):
             row = reflect(
                 state[s],
-                state[s + 16],
-                state[s + 32],
-                state[s + 48],
-                state[s + 64],
-                state[s + 80],
-                state[s + 96],
-                state[s + 112],
-                state[s + 128],
-                state[s + 144],
-                state[s + 160],
-                state[s + 176],
+                state[s + LANES],
+                state[s + 2 * LANES],
+                state[s + 3 * LANES],
+                state[s + 4 * LANES],
+                state[s + 5 * LANES],
+                state[s + 6 * LANES],
+                state[s + 7 * LANES],
+                state[s + 8 * LANES],
+                state[s + 9 * LANES],
+                state[s + 10 * LANES],
+                state[s + 11 * LANES],
                 block[s],
-                block[s + 16],
-                block[s + 32],
-                block[s + 48],
-                block[s + 64],
-                block[s + 80],
-                block[s + 96],
-                block[s + 112],
-                block[s + 128],
-                block[s + 144],
-                block[s + 160],
-                block[s + 176],
+                block[s + LANES],
+                block[s + 2 * LANES],
+                block[s + 3 * LANES],
+                block[s + 4 * LANES],
+                block[s + 5 * LANES],
+                block[s + 6 * LANES],
+                block[s + 7 * LANES],
+                block[s + 8 * LANES],
+                block[s + 9 * LANES],
+                block[s + 10 * LANES],
+                block[s + 11 * LANES],
             )
-            kept[s + 0] = row[0]
-            kept[s + 16] = row[1]
-            kept[s + 32] = row[2]
-            kept[s + 48] = row[3]
-            kept[s + 64] = row[4]
-            kept[s + 80] = row[5]
-            kept[s + 96] = row[6]
-            kept[s + 112] = row[7]
-            kept[s + 128] = row[8]
-            kept[s + 144] = row[9]
-            kept[s + 160] = row[10]
-            kept[s + 176] = row[11]
-            kept[s + 192] = row[12]
-            kept[s + 208] = row[13]
-            kept[s + 224] = row[14]
-            state[s + 0] = row[15]
-            state[s + 16] = row[16]
-            state[s + 32] = row[17]
-            state[s + 48] = row[18]
-            state[s + 64] = row[19]
-            state[s + 80] = row[20]
-            state[s + 96] = row[21]
-            state[s + 112] = row[22]
-            state[s + 128] = row[23]
-            state[s + 144] = row[24]
-            state[s + 160] = row[25]
-            state[s + 176] = row[26]
-            state[s + 192] *= math.copysign(1.0, row[0] * row[8])
+            kept[s] = row[0]
+            kept[s + LANES] = row[1]
+            kept[s + 2 * LANES] = row[2]
+            kept[s + 3 * LANES] = row[3]
+            kept[s + 4 * LANES] = row[4]
+            kept[s + 5 * LANES] = row[5]
+            kept[s + 6 * LANES] = row[6]
+            kept[s + 7 * LANES] = row[7]
+            kept[s + 8 * LANES] = row[8]
+            kept[s + 9 * LANES] = row[9]
+            kept[s + 10 * LANES] = row[10]
+            kept[s + 11 * LANES] = row[11]
+            kept[s + 12 * LANES] = row[12]
+            kept[s + 13 * LANES] = row[13]
+            kept[s + 14 * LANES] = row[14]
+            state[s] = row[15]
+            state[s + LANES] = row[16]
+            state[s + 2 * LANES] = row[17]
+            state[s + 3 * LANES] = row[18]
+            state[s + 4 * LANES] = row[19]
+            state[s + 5 * LANES] = row[20]
+            state[s + 6 * LANES] = row[21]
+            state[s + 7 * LANES] = row[22]
+            state[s + 8 * LANES] = row[23]
+            state[s + 9 * LANES] = row[24]
+            state[s + 10 * LANES] = row[25]
+            state[s + 11 * LANES] = row[26]
+            state[s + 12 * LANES] *= math.copysign(1.0, row[0] * row[8])
 
 
 @njit(**FAST)
-def _backward(m, keep, ends, p, null):
+def _backward(m, lanes, keep, ends, p, null):
     """Inner nodes of the particular and the null solution from the two ends of every segment.
 
     `ends` holds per lane x_0 and x_{b+1} of either solution: (particular 0, 1, null 0, 1) twice; each node that is
@@ -138,40 +139,52 @@ def _backward(m, keep, ends, p, null):
     """
     for b in range(m - 1, 0, -1):
         kept = keep[b * KEEP : (b + 1) * KEEP]
-        for s in range(LANES):
-            x0, x1, y0, y1 = ends[s], ends[s + 16], ends[s + 32], ends[s + 48]
-            n0, n1, z0, z1 = ends[s + 64], ends[s + 80], ends[s + 96], ends[s + 112]
-            u10, u11, e10, e11 = (
-                kept[s + 144],
-                kept[s + 160],
-                kept[s + 176],
-                kept[s + 192],
+        for s in range(lanes):
+            x0, x1, y0, y1 = ends[s], ends[s + LANES], ends[s + 2 * LANES], ends[s + 3 * LANES]
+            n0, n1, z0, z1 = (
+                ends[s + 4 * LANES],
+                ends[s + 5 * LANES],
+                ends[s + 6 * LANES],
+                ends[s + 7 * LANES],
             )
-            w1 = kept[s + 208]
-            by = kept[s + 128]
-            second = (kept[s + 224] - w1 * p - u10 * x0 - u11 * x1 - e11 * n1 - e10 * n0) * by
+            u10, u11, e10, e11 = (
+                kept[s + 9 * LANES],
+                kept[s + 10 * LANES],
+                kept[s + 11 * LANES],
+                kept[s + 12 * LANES],
+            )
+            w1 = kept[s + 13 * LANES]
+            by = kept[s + 8 * LANES]
+            second = (kept[s + 14 * LANES] - w1 * p - u10 * x0 - u11 * x1 - e11 * n1 - e10 * n0) * by
             other = (-w1 * null - u10 * y0 - u11 * y1 - e10 * z0 - e11 * z1) * by
-            u00, u01, e00, e01 = kept[s + 32], kept[s + 48], kept[s + 64], kept[s + 80]
-            w0 = kept[s + 96]
-            a01 = kept[s + 16]
+            u00, u01, e00, e01 = (
+                kept[s + 2 * LANES],
+                kept[s + 3 * LANES],
+                kept[s + 4 * LANES],
+                kept[s + 5 * LANES],
+            )
+            w0 = kept[s + 6 * LANES]
+            a01 = kept[s + LANES]
             by = kept[s]
-            first = (kept[s + 112] - w0 * p - u00 * x0 - u01 * x1 - e00 * n0 - e01 * n1 - a01 * second) * by
+            first = (
+                kept[s + 7 * LANES] - w0 * p - u00 * x0 - u01 * x1 - e00 * n0 - e01 * n1 - a01 * second
+            ) * by
             one = (-w0 * null - u00 * y0 - u01 * y1 - e00 * z0 - e01 * z1 - a01 * other) * by
-            ends[s + 64] = first
-            ends[s + 80] = second
-            ends[s + 96] = one
-            ends[s + 112] = other
+            ends[s + 4 * LANES] = first
+            ends[s + 5 * LANES] = second
+            ends[s + 6 * LANES] = one
+            ends[s + 7 * LANES] = other
             kept[s] = first
-            kept[s + 16] = second
-            kept[s + 32] = one
-            kept[s + 48] = other
+            kept[s + LANES] = second
+            kept[s + 2 * LANES] = one
+            kept[s + 3 * LANES] = other
 
 
 @kernel
 def condense(F, A, D, Q, scratch, short):
-    """Eliminate the inner nodes of sixteen segments; `short` = (F, A, D, Q) of the shorter cycle is filled.
+    """Eliminate the inner nodes of eight segments; `short` = (F, A, D, Q) of the shorter cycle is filled.
 
-    Nodes of the shorter cycle: the sixteen starts of the segments, then the nodes that did not fit.
+    Nodes of the shorter cycle: the eight starts of the segments, then the nodes that did not fit.
 
     Returns
     -------
@@ -183,20 +196,21 @@ def condense(F, A, D, Q, scratch, short):
     pack = scratch[: m * PACK]
     keep = scratch[m * PACK : m * (PACK + KEEP)]
     state = scratch[m * (PACK + KEEP) : m * (PACK + KEEP) + STATE]
-    _pack(F, A, D, Q, m, pack)
-    _forward(m, pack, keep, state)
+    lanes = short[0].shape[0] - length % LANES
+    _pack(F, A, D, Q, m, lanes, pack)
+    _forward(m, lanes, pack, keep, state)
     F_, A_, D_, Q_ = short
     sign = 1.0
     for s in range(LANES):
         for r in range(2):
-            at = 96 * r + s
+            at = 6 * LANES * r + s
             D_[s, r, 0] = state[at]
-            D_[s, r, 1] = state[at + 16]
-            A_[s, r, 0] = state[at + 32]
-            A_[s, r, 1] = state[at + 48]
-            Q_[s, r] = state[at + 64]
-            F_[s, r] = -state[at + 80]
-        sign *= state[192 + s]
+            D_[s, r, 1] = state[at + LANES]
+            A_[s, r, 0] = state[at + 2 * LANES]
+            A_[s, r, 1] = state[at + 3 * LANES]
+            Q_[s, r] = state[at + 4 * LANES]
+            F_[s, r] = -state[at + 5 * LANES]
+        sign *= state[12 * LANES + s]
     nodes = LANES
     for i in range(LANES * m, length):
         for r in range(2):
@@ -220,13 +234,13 @@ def expand(length, scratch, found, twist, solution):
     for s in range(LANES):
         for r in range(2):
             for c in range(2):
-                ends[16 * (2 * r + c) + s] = found[r, 2 * s + c]
+                ends[(2 * r + c) * LANES + s] = found[r, 2 * s + c]
                 if s + 1 < nodes:
                     ahead = found[r, 2 * s + 2 + c]
                 else:
                     ahead = found[r, c] if c == 0 else twist * found[r, c]
-                ends[64 + 16 * (2 * r + c) + s] = ahead
-    _backward(m, keep, ends, p, null)
+                ends[(4 + 2 * r + c) * LANES + s] = ahead
+    _backward(m, (found.shape[1] - 1) // 2 - length % LANES, keep, ends, p, null)
     for r in range(2):
         for s in range(LANES):
             i = 2 * s * m
@@ -235,8 +249,8 @@ def expand(length, scratch, found, twist, solution):
         for b in range(1, m):
             for s in range(LANES):
                 i = 2 * (s * m + b)
-                solution[r, i] = keep[b * KEEP + 32 * r + s]
-                solution[r, i + 1] = keep[b * KEEP + 32 * r + 16 + s]
+                solution[r, i] = keep[b * KEEP + 2 * r * LANES + s]
+                solution[r, i + 1] = keep[b * KEEP + (2 * r + 1) * LANES + s]
         for j in range(2 * LANES, 2 * nodes + 1):
             solution[r, 2 * LANES * m + j - 2 * LANES] = found[r, j]
 

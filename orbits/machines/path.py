@@ -77,7 +77,9 @@ def along(path: np.ndarray, params: np.ndarray, p: np.ndarray | float) -> np.nda
         value = np.asarray(p, dtype=float)
         found = np.empty((*value.shape, params.size))
         found[...] = params
-    for j, (factor, power) in enumerate(zip(*path.tolist())):
+    factors, powers = path.tolist()
+    for j, power in enumerate(powers):
         if power != 0.0:
+            factor = factors[j]
             found[..., j] = factor * value if power == 1.0 else factor * value**power
     return found

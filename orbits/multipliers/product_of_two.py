@@ -14,12 +14,72 @@ CERTAIN, UNCERTAIN, BROKEN, UNDEFINED = 1, 0, 2, -1
 
 
 @kernel
+def _simple_bound(length, twist, scratch):
+    """A bound on the error that is larger than that of `_bound`, and costs less: from sums of absolute entries.
+
+    Infinite or NaN where products leave the range of numbers.
+    """
+    before = scratch[9 * length + 2 :]
+    s00, s01, s10, s11 = 1.0, 0.0, 0.0, twist
+    norm = 2.0
+    bound = 0.0
+    for i in range(length - 1, -1, -1):
+        k = 9 * i
+        m00, m01, m10, m11 = scratch[k], scratch[k + 1], scratch[k + 2], scratch[k + 3]
+        bound += (abs(m00) + abs(m01) + abs(m10) + abs(m11)) * (before[i] * norm)
+        s00, s01 = s00 * m00 + s01 * m10, s00 * m01 + s01 * m11
+        s10, s11 = s10 * m00 + s11 * m10, s10 * m01 + s11 * m11
+        norm = abs(s00) + abs(s01) + abs(s10) + abs(s11)
+    return bound
+
+
+@kernel
+def _bound(length, twist, power, scratch):
+    """The error bound, and its part that comes from rounding the factors themselves."""
+    # (s) is the product after factor i, (p) the product before it
+    s00, s01, s10, s11 = 1.0, 0.0, 0.0, twist
+    back = 0
+    bound = 0.0
+    inherent = 0.0
+    for i in range(length - 1, -1, -1):
+        k = 9 * i
+        m00, m01, m10, m11 = scratch[k], scratch[k + 1], scratch[k + 2], scratch[k + 3]
+        p00, p01, p10, p11 = scratch[k + 4], scratch[k + 5], scratch[k + 6], scratch[k + 7]
+        a00, a01, a10, a11 = abs(m00), abs(m01), abs(m10), abs(m11)
+        weight = a00 * (abs(p00 * s00) + abs(p01 * s10)) + a01 * (abs(p10 * s00) + abs(p11 * s10))
+        weight += a10 * (abs(p00 * s01) + abs(p01 * s11)) + a11 * (abs(p10 * s01) + abs(p11 * s11))
+        least = a00 * abs(p00 * s00 + p01 * s10) + a01 * abs(p10 * s00 + p11 * s10)
+        least += a10 * abs(p00 * s01 + p01 * s11) + a11 * abs(p10 * s01 + p11 * s11)
+        raised = int(scratch[k + 8]) + back - power
+        if raised != 0:
+            factor = math.ldexp(1.0, min(max(raised, -1000), 900))
+            weight *= factor
+            least *= factor
+        bound += weight
+        inherent += least
+        s00, s01 = s00 * m00 + s01 * m10, s00 * m01 + s01 * m11
+        s10, s11 = s10 * m00 + s11 * m10, s10 * m01 + s11 * m11
+        norm = abs(s00) + abs(s01) + abs(s10) + abs(s11)
+        if not SMALL < norm < LARGE:
+            if not norm < math.inf:
+                return math.inf, inherent
+            if norm == 0.0:
+                break
+            shift = math.frexp(norm)[1]
+            factor = math.ldexp(1.0, -shift)
+            s00, s01, s10, s11 = s00 * factor, s01 * factor, s10 * factor, s11 * factor
+            back += shift
+    return bound, inherent
+
+
+@kernel
 def product_of_two(A, D, twist, re, im, scratch):
     """Multipliers of 2 x 2 factors from the scaled product: CERTAIN; UNCERTAIN: the error bound is too large;
     BROKEN: the product vanished or left the range of numbers; UNDEFINED: a D_i is singular."""
     length = A.shape[0]
+    before = scratch[9 * length + 2 :]  # sums of the absolute entries of the product before each factor
     p00, p01, p10, p11 = 1.0, 0.0, 0.0, 1.0
-    norm = 1.0
+    norm = 2.0
     power = 0
     det = 1.0
     det_power = 0
@@ -39,6 +99,7 @@ def product_of_two(A, D, twist, re, im, scratch):
         scratch[k], scratch[k + 1], scratch[k + 2], scratch[k + 3] = m00, m01, m10, m11
         scratch[k + 4], scratch[k + 5], scratch[k + 6], scratch[k + 7] = p00, p01, p10, p11
         scratch[k + 8] = power
+        before[i] = norm
         p00, p10 = m00 * p00 + m01 * p10, m10 * p00 + m11 * p10
         p01, p11 = m00 * p01 + m01 * p11, m10 * p01 + m11 * p11
         norm = abs(p00) + abs(p01) + abs(p10) + abs(p11)
@@ -72,42 +133,12 @@ def product_of_two(A, D, twist, re, im, scratch):
     else:
         root = half
         modulus = math.sqrt(relative)
-    # the error bound; (s) is the product after factor i, (p) the product before it
-    s00, s01, s10, s11 = 1.0, 0.0, 0.0, twist
-    back = 0
-    bound = 0.0
-    inherent = 0.0
-    for i in range(length - 1, -1, -1):
-        k = 9 * i
-        m00, m01, m10, m11 = scratch[k], scratch[k + 1], scratch[k + 2], scratch[k + 3]
-        p00, p01, p10, p11 = scratch[k + 4], scratch[k + 5], scratch[k + 6], scratch[k + 7]
-        a00, a01, a10, a11 = abs(m00), abs(m01), abs(m10), abs(m11)
-        weight = a00 * (abs(p00 * s00) + abs(p01 * s10)) + a01 * (abs(p10 * s00) + abs(p11 * s10))
-        weight += a10 * (abs(p00 * s01) + abs(p01 * s11)) + a11 * (abs(p10 * s01) + abs(p11 * s11))
-        least = a00 * abs(p00 * s00 + p01 * s10) + a01 * abs(p10 * s00 + p11 * s10)
-        least += a10 * abs(p00 * s01 + p01 * s11) + a11 * abs(p10 * s01 + p11 * s11)
-        raised = int(scratch[k + 8]) + back - power
-        if raised != 0:
-            factor = math.ldexp(1.0, min(max(raised, -1000), 900))
-            weight *= factor
-            least *= factor
-        bound += weight
-        inherent += least
-        s00, s01 = s00 * m00 + s01 * m10, s00 * m01 + s01 * m11
-        s10, s11 = s10 * m00 + s11 * m10, s10 * m01 + s11 * m11
-        norm = abs(s00) + abs(s01) + abs(s10) + abs(s11)
-        if not SMALL < norm < LARGE:
-            if not norm < math.inf:
-                return UNCERTAIN
-            if norm == 0.0:
-                break
-            shift = math.frexp(norm)[1]
-            factor = math.ldexp(1.0, -shift)
-            s00, s01, s10, s11 = s00 * factor, s01 * factor, s10 * factor, s11 * factor
-            back += shift
-    error = bound * UNIT_ROUNDOFF
-    if not (error <= CERTIFIED * modulus or (bound <= EXCESS * inherent and error <= PASSABLE * modulus)):
-        return UNCERTAIN
+    trusted = CERTIFIED * modulus / UNIT_ROUNDOFF
+    if power != 0 or not _simple_bound(length, twist, scratch) <= trusted:
+        bound, inherent = _bound(length, twist, power, scratch)
+        error = bound * UNIT_ROUNDOFF
+        if not (error <= CERTIFIED * modulus or (bound <= EXCESS * inherent and error <= PASSABLE * modulus)):
+            return UNCERTAIN
     if disc >= 0.0:
         first = scaled(root, power)
         second = scaled(det / root, det_power - power) if root != 0.0 else 0.0

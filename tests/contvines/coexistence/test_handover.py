@@ -46,6 +46,7 @@ def test_a_fixed_point_that_doubles_hands_over_to_the_cycle_of_two():
         p, about = counted.attractor.value, counted.attractor
         assert (about.kind, about.periods, about.starts, about.share) == ("periodic", 2, 0, 0.0)
         root = np.sqrt((p - 3) * (p + 1))
+        assert counted.u is not None
         assert np.sort(counted.u) == pytest.approx(
             [(p + 1 - root) / (2 * p), (p + 1 + root) / (2 * p)], abs=1e-8
         )
@@ -67,7 +68,7 @@ def test_a_symmetric_motion_hands_over_to_what_has_lost_the_symmetry():
     assert near
     for counted in near:
         p = counted.attractor.value
-        assert abs(counted.u[0]) == pytest.approx(np.sqrt(p - 1.0), abs=1e-6)
+        assert counted.u is not None and abs(counted.u[0]) == pytest.approx(np.sqrt(p - 1.0), abs=1e-6)
 
 
 def test_the_motion_beyond_a_fold_is_found():
@@ -82,7 +83,7 @@ def test_the_motion_beyond_a_fold_is_found():
     ((_, found),) = ends
     for counted in found:
         (upper,) = [r.real for r in np.roots([-1, 0, 1, counted.attractor.value]) if abs(r.imag) < 1e-12]
-        assert counted.u[0] == pytest.approx(upper, abs=1e-8)
+        assert counted.u is not None and counted.u[0] == pytest.approx(upper, abs=1e-8)
 
 
 def test_an_atlas_goes_down_a_cascade_of_its_own_accord():

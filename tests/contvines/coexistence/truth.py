@@ -183,11 +183,14 @@ def on_atlas(graph: cv.Graph, met: Sequence[Met], mirror: bool = True, say: Any 
     return tally + Tally(kinds=len(kinds), lost=sum(kinds.values()))
 
 
-def shares(population: Any, met: Sequence[Met], starts: int, mirror: bool, say: Any = print) -> Tally:
-    """Compare the package's shares with the witness's."""
+def shares(
+    population: Any, met: Sequence[Met], starts: int, mirror: bool, say: Any = print, drawing: Any = None
+) -> Tally:
+    """Compare the package's shares with the witness's; `drawing` is the population whose box of starts the witness has, if it is another."""
     tally = Tally()
     for here in met:
-        motions, index, _ = population.settle(population.starts(starts, 99, here.value), here.value)
+        drawn_starts = (drawing or population).starts(starts, 99, here.value)
+        motions, index, _ = population.settle(drawn_starts, here.value)
         own = [(m, int(np.sum(index == k))) for k, m in enumerate(motions) if m.problem is not None]
         total = sum(n for _, _, n, *_ in here.attractors) + here.stuck + here.wandering
         for periods, hits, number, row, piles in here.attractors:
@@ -275,7 +278,11 @@ def studied(
     mirror = not isinstance(machine, Cavity)
     met = witness(machine, over, at, count, tries=4 if isinstance(machine, Coupled) else 5)
     tally = on_atlas(graph, met, mirror) + shares(
-        population, met, min(count, FEW_OF_A_PAGE if page else ENOUGH), mirror
+        population,
+        met,
+        min(count, FEW_OF_A_PAGE if page else ENOUGH),
+        mirror,
+        drawing=machine.population(over),
     )
     twice = listed_twice(graph)
     print(f"{tally}; {len(graph)} branches in {seconds:.1f} s; listed twice: {twice or 'none'}", flush=True)

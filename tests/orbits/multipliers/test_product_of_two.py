@@ -31,7 +31,7 @@ def test_the_dominant_one_has_its_sign(twist, seed, length):
     draw = np.random.default_rng(100 * seed + length)
     A, D = draw.normal(size=(2, length, 2, 2))
     A[0] = A[0] @ np.diag([1.0, 1e-6])  # two multipliers of different size, both signs among the seeds
-    re, im, scratch = np.zeros(2), np.zeros(2), np.zeros(9 * length + 16)
+    re, im, scratch = np.zeros(2), np.zeros(2), np.zeros(scratch_size(length, 2))
     wanted = exact(A, D, twist)
     plain(product_of_two)(A, D, twist, re, im, scratch)
     assert plain(dominant_of_two)(length, twist, re, im, scratch) == CERTAIN
