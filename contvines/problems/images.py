@@ -28,7 +28,14 @@ def image_map(symmetry: Any, n: int, name: str = "mirror") -> Callable[[np.ndarr
     """
     if callable(symmetry):
         call: Callable[[np.ndarray], Any] = symmetry
-        return lambda u: np.array(call(np.array(u, dtype=float)), dtype=float).reshape(-1)
+
+        def image(u: np.ndarray) -> np.ndarray:
+            found = np.array(call(np.array(u, dtype=float)), dtype=float).reshape(-1)
+            if len(found) != n:
+                raise ValueError(f"{name} returns {len(found)} numbers for {n} unknowns; as many are needed")
+            return found
+
+        return image
     matrix = np.asarray(symmetry)
     if matrix.ndim == 1 and len(matrix) == n and np.array_equal(np.sort(matrix), np.arange(n)):
         order = matrix.astype(int)
