@@ -20,7 +20,7 @@ from .records import pack, unpack
 
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 SHOWN = 1e-10  # margins of a special point that are certainly positive
-ASTRAY = 0.5  # part of its distance by which a nearer point may miss the parabola through the first one
+ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
 UPRIGHT = 1e-6  # parameter's part (in its unit) of the direction in which a branch leaves, where that is none
 NEARER = 4  # times that a first point is looked at nearer
 FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times the distance at which they are seen
@@ -90,7 +90,7 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
     if found is None:
         return None
     missed = engine.norm(engine.join(found.u, found.p) - guess)
-    return found if missed <= ASTRAY * SHORTER * engine.norm(gap) else None
+    return found if missed <= ASTRAY * SHORTER * abs(along) else None
 
 
 def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:

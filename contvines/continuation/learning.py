@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..problems.extents import of_rounding
+from ..problems.extents import of_parameter, of_rounding
 from ..problems.scales import Scales, in_fields
 from .approach import approach
 
@@ -57,9 +57,9 @@ class Scout:
         start = np.abs(np.asarray(problem.u0, dtype=float))
         far = (start > 0.0) & (self.first > BEYOND * start)
         if far.any():
-            far &= ~of_rounding(
-                lambda u: problem.residuals(u, problem.p0), np.asarray(problem.u0, dtype=float)
-            )
+            u0, p0 = np.asarray(problem.u0, dtype=float), float(problem.p0)
+            terms = of_parameter(lambda p: problem.residuals(u0, p), p0)
+            far &= ~of_rounding(lambda u: problem.residuals(u, p0), u0, terms)
         self.first = np.where(far, start, self.first)
         self.scale = self.first.copy()
         self.low = self.high = np.append(problem.u0, problem.p0)

@@ -19,6 +19,7 @@ DOUBLINGS = 26
 SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
+ROUNDING = 1e-12  # changes of the parameter, in its unit, that are none
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
 
 
@@ -38,7 +39,8 @@ class Reach:
         self.doubled = engine.settings.escape
         self.slow = 0  # points in a row that came next to nowhere
         self.low = self.high = start.p
-        self.moved = np.inf  # change of the parameter while the distance doubled last
+        # change of the parameter while the distance doubled last: infinite where it turned back, as it stands still at a fold
+        self.moved, self.turned = np.inf, False
 
     def growth(self, point: Solved) -> float:
         """Factor of the longest step at a point."""
@@ -61,22 +63,27 @@ class Reach:
         distances = self._distances(chunk.points)
         if not distances.max() > 0.5 * self.doubled:
             self.low = self.high = float(chunk.values[-1])
+            self.turned = False
             return None
         for i in range(1, len(chunk)):
             value = float(chunk.values[i])
             self.low, self.high = min(self.low, value), max(self.high, value)
+            self.turned |= bool(chunk.tangents[i - 1, -1] * chunk.tangents[i, -1] < 0.0)
             if distances[i] <= self.doubled:
                 if distances[i] <= 0.5 * self.doubled:
-                    self.low = self.high = value
+                    self.low, self.high, self.turned = value, value, False
                 continue
             moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
             room = self.engine.upper - value if ahead else value - self.engine.lower
             last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
-            bound = moved <= self.moved and (last or DOUBLINGS * moved < room)
-            if self.doubled > escape and (bound or distances[i] > FAR * escape):
+            # where the parameter stands still its turns are those of rounding
+            turned = self.turned and moved > max(ROUNDING, 10.0 * self.engine.noise) * self.engine.scale[-1]
+            comparable = self.moved < np.inf and not turned
+            bound = comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
+            if bound or distances[i] > FAR * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
-            self.moved = moved
+            self.moved, self.turned = np.inf if turned else moved, False
         return None
 
     def creeps(self, chunk: Chunk) -> bool:

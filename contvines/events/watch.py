@@ -177,6 +177,7 @@ class Watch(Examiner):
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
             if e.kind != "astray"
+            and not e.error > self.engine.upper - self.engine.lower
             and not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (
                 e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= max(flat, 10.0 * e.error)
@@ -293,9 +294,14 @@ class Watch(Examiner):
             return -np.log(np.abs(spectrum).max(axis=-1))
 
     def _of_rounding(self, event: Located) -> bool:
-        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well."""
+        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well, or
+
+        at a place that rounding leaves open: anywhere in the interval.
+        """
         if event.role is not Role.SPECIAL or event.name:
             return False
+        if event.error > self.engine.upper - self.engine.lower:
+            return True
         return bool(abs(self.engine.smallest_margin(event.point.row)) < NO_MARGIN)
 
     def _apart(self, event: Located, stop: Located) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .colouring import Colouring
 from .differences import Difference, along, bend, noise_of, roughness
-from .extents import measured
+from .extents import measured, of_parameter
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
 
@@ -278,7 +278,8 @@ class Differentiated:
 
     def _measure_lengths(self, u: np.ndarray, p: float, cost: float, grain: float | np.ndarray) -> None:
         values = self._quietly_at(p, len(u))
-        self.lengths, self.bends, self.known = measured(values, u, grain, cost)
+        terms = of_parameter(self._quietly(lambda q: self._value(u, q), len(u)), p)
+        self.lengths, self.bends, self.known = measured(values, u, grain, cost, terms)
 
     def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))

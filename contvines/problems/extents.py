@@ -13,6 +13,7 @@ EACH = 64  # up to so many unknowns each one's length is measured; of more, one 
 PAIRS = 12  # up to so many, couplings between two of them are looked at
 FEW = 2  # lengths tried on either side where the function is slow
 ROUNDING = 64 * EPS  # of what others change in an equation: less is not felt
+BESIDE = 2.0**-17  # part of the parameter by which it is changed to see its terms
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
 Values = Callable[[np.ndarray], np.ndarray]
@@ -36,7 +37,9 @@ class Extents(NamedTuple):
     known: np.ndarray
 
 
-def measured(f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float) -> Extents:
+def measured(
+    f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float, terms: float | np.ndarray = 0.0
+) -> Extents:
     """Sizes of the unknowns at u.
 
     Parameters
@@ -48,11 +51,13 @@ def measured(f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float) -
         Standard deviation of f.
     cost : float
         Seconds of a call.
+    terms : float or ndarray
+        See :func:`of_rounding`.
     """
     n, unit = len(u), np.eye(len(u)) if len(u) <= EACH else None
     tries = REACH if (1 if unit is None else n) * 77 * cost < PATIENCE else FEW
     if tries > FEW:
-        u = np.where(of_rounding(f, u), 0.0, u)
+        u = np.where(of_rounding(f, u, terms), 0.0, u)
     lengths, bends, known = np.where(u == 0.0, 1.0, np.abs(u)), np.zeros(n, dtype=bool), u != 0.0
     with np.errstate(all="ignore"):
         if unit is None:
@@ -72,8 +77,30 @@ def measured(f: Values, u: np.ndarray, grain: float | np.ndarray, cost: float) -
     return Extents(lengths, bends, known)
 
 
-def of_rounding(f: Values, u: np.ndarray) -> np.ndarray:
-    """Which unknowns are zeros that rounding has moved, shape (n,): f does not feel them beside the others, but would if they were larger."""
+def of_parameter(f: Callable[[float], np.ndarray], p: float) -> np.ndarray:
+    """Size of the terms with the parameter in each equation, p times the derivative; 0 where it cannot be had.
+
+    Parameters
+    ----------
+    f : callable
+        (p) -> n numbers.
+    p : float
+    """
+    with np.errstate(all="ignore"):
+        found = np.abs(f(p + BESIDE * p) - f(p)) / BESIDE
+    return np.where(np.isfinite(found), found, 0.0)
+
+
+def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np.ndarray:
+    """Which unknowns are zeros that rounding has moved, shape (n,): f does not feel them beside the others, but would if they were larger.
+
+    Parameters
+    ----------
+    f : callable
+    u : ndarray, shape (n,)
+    terms : float or ndarray
+        Size of what else is in each equation, see :func:`of_parameter`.
+    """
     found = np.zeros(len(u), dtype=bool)
     if len(u) > EACH:
         return found
@@ -86,7 +113,7 @@ def of_rounding(f: Values, u: np.ndarray) -> np.ndarray:
             return np.abs(f(moved) - here)
 
         changes = np.array([change(j, 0.0) for j in range(len(u))])
-        floor = ROUNDING * changes.max(axis=0)
+        floor = ROUNDING * np.maximum(changes.max(axis=0), terms)
         for j in np.flatnonzero((u != 0.0) & (changes <= floor).all(axis=1)):
             found[j] = (change(int(j), 1.0 / ROUNDING) > floor).any()
     return found

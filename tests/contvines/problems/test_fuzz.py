@@ -59,3 +59,18 @@ def test_signs_far_up_a_pole_are_those_of_rounding():
 def test_sizes_that_rounding_makes_are_none(seed):
     # y = 4e-16 at the start, which is a rounded zero; 1e16, where an unknown that cancels in a row has rounded all others away
     assert System(seed).wrong() == []
+
+
+def test_a_fold_is_no_end_at_a_pole():
+    # the distance doubles while the parameter stands still: p^2 = x^2 - x + 1 turns at x = 1/2 and goes on to x = 1.95
+    assert System(100208).wrong() == []
+
+
+def test_a_nearer_point_of_a_bent_branch_is_none_of_the_known_one():
+    # p = 1 - 2 x^2 leaves x = 0, bent so much (radius 1/800) that its first point is beside its tangent as far as along it
+    assert System(101051).wrong() == []
+
+
+def test_a_rounded_zero_beside_terms_of_the_parameter_has_no_size():
+    # y = -1e-16 in a row in which the other unknown is multiplied by y: 9 p + 3 alone is what it is small beside
+    assert System(101437).wrong() == []

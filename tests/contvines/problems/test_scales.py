@@ -235,3 +235,16 @@ def test_nor_is_it_beside_an_eigenvalue_that_is_next_to_nothing():
     (demo,) = (demo for demo in listed.DEMOS if demo.name == "adaptx")
     found = points(demo.equations, np.array(demo.u), demo.p, demo.within, 1e-9, 1.0, 1.0)
     assert {row[0] for row in found} == {"end"}
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e9, 1e-9])
+def test_nor_is_one_that_only_the_parameter_outweighs(unit):
+    """9 p + 3 = 0 at the start, and x is multiplied by y: where y is rounding, so is what x does. Along the branch 9 p + 3 = -6 y + ..."""
+
+    def F(u, p):
+        x, y = u[0], u[1] / unit
+        return np.array([9.0 * p + 3.0 + 2.0 * x * y + 12.0 * y - 4.0 * y**3, x + 3.0 - y**2])
+
+    for rounded in (0.0, 1.1e-16, -1.1e-16):
+        problem = cv.AlgebraicProblem(F, [-3.0, rounded * unit], -1.0 / 3.0)
+        assert 0.1 < problem.scale_within((-2.0, 2.0))[1] / unit < 10.0
