@@ -48,7 +48,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
     derivative : callable, or mapping of str to callable, optional
         (u, p) -> dF/dp of shape (N,); of several parameters by name.
     spectrum : {"none", "flow"}
-        "flow": stability and Hopf points from the eigenvalues of dF/du.
+        "flow": stability and Hopf points from the eigenvalues of dF/du. With "none" no branch counts as stable.
     mirror : callable, matrix or permutation, optional
         u -> image of u that solves the same equations; branch points on its fixed space are symmetry breakings and one
         of the two mirror images is traced.
