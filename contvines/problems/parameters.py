@@ -39,6 +39,9 @@ class Parameters:
         return f"Parameters({', '.join(f'{name}={value!r}' for name, value in self.__dict__.items())})"
 
 
+UNNAMED = "p"  # what the parameter is called where nobody says
+
+
 class ParameterSet:
     """The parameters of a problem: their values, and which one varies.
 
@@ -48,12 +51,12 @@ class ParameterSet:
     ----------
     given : number, or mapping of str to number
     varying : str
-        Name of the parameter that varies; of a mapping that does not have it, the first one varies.
+        Name of the parameter that varies; "p" in a mapping that does not have it stands for the first one.
 
     Raises
     ------
     ValueError
-        If a name is no identifier, a value no finite number, or the mapping is empty.
+        If a name is no identifier, a value no finite number, the mapping is empty, or the name is not among them.
     """
 
     def __init__(self, given: Any, varying: str) -> None:
@@ -72,6 +75,9 @@ class ParameterSet:
                 raise ValueError(f"parameter {name} = {value!r} must be a number") from None
             if not math.isfinite(values[name]):
                 raise ValueError(f"parameter {name} = {value!r} must be finite")
+        if varying not in values and varying != UNNAMED:
+            hint = did_you_mean(varying, values)
+            raise ValueError(f"there is no parameter {varying!r}{hint}; the problem has {', '.join(values)}")
         self.values: dict[str, float] = values
         self.varying = varying if varying in values else next(iter(values))
 

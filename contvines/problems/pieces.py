@@ -39,7 +39,7 @@ class Pieces:
     Raises
     ------
     ValueError
-        If a switch is no function, or cannot be evaluated at a node.
+        If a switch is no function, or cannot be evaluated at a node, or is no finite number there.
     """
 
     def __init__(
@@ -54,6 +54,11 @@ class Pieces:
             values = np.array([self._at(node, parameters.start) for node in nodes])
         except NotEvaluable as error:
             raise ValueError(f"{error}, at the start") from error
+        for name, column in zip(self.given, values.T):
+            if not np.isfinite(column).all():
+                raise ValueError(
+                    f"the switch {name} is {column[0]:g} at the start: it must be a finite number there"
+                )
         self.signs = np.where(values >= 0.0, 1, -1).reshape(len(nodes), len(self.switches))
         self.current = 0
 

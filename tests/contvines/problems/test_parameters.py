@@ -62,3 +62,9 @@ def test_a_map_with_a_mirror():
     assert sorted(q.value for q in graph.of_kind("period-doubling")) == pytest.approx([-1.0, 2.0], abs=1e-12)
     assert not graph.of_kind("fold")
     assert graph.of_kind("symmetry-breaking")[0].mirror
+
+
+def test_a_parameter_that_is_none_of_those_given_is_refused():
+    with pytest.raises(ValueError, match="there is no parameter 'gane'.*gain.*; the problem has gain, loss"):
+        cv.AlgebraicProblem(lambda u, p: [p.gain - u[0]], [1.0], {"gain": 1.0, "loss": 2.0}, parameter="gane")
+    assert ParameterSet({"gain": 1.0, "loss": 2.0}, "p").varying == "gain"

@@ -73,3 +73,8 @@ def test_the_same_from_the_other_side():
     left = next(b for b in graph.branches.values() if b.points.min() < -0.1)
     np.testing.assert_allclose(left.points[:, 0], left.values / 0.5, atol=1e-10)
     assert left.values.min() == -1.0
+
+
+def test_a_switch_that_is_no_number_at_the_start_is_refused():
+    with pytest.raises(ValueError, match="the switch wall is nan at the start"):
+        cv.AlgebraicProblem(lambda u, p, s: [p - u[0]], [1.0], 1.0, switches={"wall": lambda u, p: np.nan})
