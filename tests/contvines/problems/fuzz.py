@@ -226,7 +226,8 @@ class System:
         g = curve(rng)
         if not (g.has(X) and g.has(P)) or sy.degree(g, X) < 1:
             raise Unsuitable("no curve")
-        self.curve = Curve(g)
+        with mp.workdps(15):  # whatever others have left: starts are to be the same to the last bit
+            self.curve = Curve(g)
         places = [(k, i) for k, (_, roots) in enumerate(self.curve.middles) for i in range(len(roots))]
         if not places:
             raise Unsuitable("no real root")
