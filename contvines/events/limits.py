@@ -81,7 +81,7 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
     error = np.inf
     if _plainly(segment, position, computed):
         return None
-    limits = _extrapolated(segment, position, DISTANCES)
+    limits = _extrapolated(segment, position)
     if not len(limits):
         return None
     agree = _apart(limits[:, 0], computed)
@@ -114,9 +114,9 @@ def _plainly(segment: Segment, position: float, computed: np.ndarray) -> bool:
     return bool(_apart(CUBIC @ _characteristic(segment.engine.spectrum(rows)), computed) < AGREEING)
 
 
-def _extrapolated(segment: Segment, position: float, wanted: tuple[float, ...]) -> np.ndarray:
+def _extrapolated(segment: Segment, position: float) -> np.ndarray:
     """The polynomials times each power of the distance, extrapolated to the border from each spacing that tells, (k, powers, m + 1)."""
-    spacings, rows = _rows(segment, position, wanted)
+    spacings, rows = _rows(segment, position, DISTANCES)
     values = _characteristic(segment.engine.spectrum(rows))
     sure = np.isfinite(values).all(axis=(1, 2))
     powers = np.power.outer(spacings[sure], np.arange(POLES + 1))

@@ -177,7 +177,7 @@ class Watch(Examiner):
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
             if e.kind != "astray"
-            and not e.error > self.engine.upper - self.engine.lower
+            and not self._placeless(e)
             and not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (
                 e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= max(flat, 10.0 * e.error)
@@ -293,16 +293,15 @@ class Watch(Examiner):
         with np.errstate(divide="ignore"):
             return -np.log(np.abs(spectrum).max(axis=-1))
 
-    def _of_rounding(self, event: Located) -> bool:
-        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well, or
+    def _placeless(self, event: Located) -> bool:
+        """Whether rounding leaves open where an event is: anywhere in the interval."""
+        return bool(event.error > self.engine.upper - self.engine.lower)
 
-        at a place that rounding leaves open: anywhere in the interval.
-        """
+    def _of_rounding(self, event: Located) -> bool:
+        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well, or at no known place."""
         if event.role is not Role.SPECIAL or event.name:
             return False
-        if event.error > self.engine.upper - self.engine.lower:
-            return True
-        return bool(abs(self.engine.smallest_margin(event.point.row)) < NO_MARGIN)
+        return self._placeless(event) or bool(abs(self.engine.smallest_margin(event.point.row)) < NO_MARGIN)
 
     def _apart(self, event: Located, stop: Located) -> bool:
         """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""

@@ -14,6 +14,7 @@ PAIRS = 12  # up to so many, couplings between two of them are looked at
 FEW = 2  # lengths tried on either side where the function is slow
 ROUNDING = 64 * EPS  # of what others change in an equation: less is not felt
 BESIDE = 2.0**-17  # part of the parameter by which it is changed to see its terms
+HUGE = 20  # times 1 / `ROUNDING` in a row: from the smallest number to the largest
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
 Values = Callable[[np.ndarray], np.ndarray]
@@ -115,7 +116,7 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
         changes = np.array([change(j, 0.0) for j in range(len(u))])
         floor = ROUNDING * np.maximum(changes.max(axis=0), terms)
         for j in np.flatnonzero((u != 0.0) & (changes <= floor).all(axis=1)):
-            found[j] = (change(int(j), 1.0 / ROUNDING) > floor).any()
+            found[j] = any((change(int(j), ROUNDING**-k) > floor).any() for k in range(1, HUGE))
     return found
 
 

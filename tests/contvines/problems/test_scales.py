@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.problems.extents import weighed
+from contvines.problems.extents import of_rounding, weighed
 from contvines.problems.scales import in_fields
 from tests.contvines.problems.demos import equilibria as eq
 from tests.contvines.problems.demos import listed, maps
@@ -248,3 +248,12 @@ def test_nor_is_one_that_only_the_parameter_outweighs(unit):
     for rounded in (0.0, 1.1e-16, -1.1e-16):
         problem = cv.AlgebraicProblem(F, [-3.0, rounded * unit], -1.0 / 3.0)
         assert 0.1 < problem.scale_within((-2.0, 2.0))[1] / unit < 10.0
+
+
+@pytest.mark.parametrize("residue", [1e-16, -2.5e-30, 1e-200])
+def test_a_zero_that_rounding_has_moved_is_one_however_small(residue):
+    """x y + y^2 = 0, x = 3: the second unknown is zero, whatever digits its root was computed with; the first one is not."""
+    found = of_rounding(
+        lambda u: np.array([u[0] * u[1] + u[1] ** 2 + u[0] - 3.0, u[0] - 3.0]), np.array([3.0, residue])
+    )
+    assert found.tolist() == [False, True]
