@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from ..events.kinds import BORDERS
 from ..number_text import number_text
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
-from .shortening import short_word, short_words
+from .shortening import short_text, short_word, short_words
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -65,7 +66,7 @@ def branches_table(graph: Graph) -> Table:
     rows = []
     for branch in graph.branches.values():
         low, high = branch.range
-        stable = ", ".join(f"{number(a)}..{number(b)}" for a, b in branch.stable_intervals()) or "-"
+        stable = stable_text(branch, number)
         where = f"{number(low)}..{number(high)}"
         proved = told(graph, branch.label)
         rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
@@ -152,6 +153,13 @@ def simulated(graph: Graph) -> str:
     return f"{line}; {left} more are left: raise scan" if left else line
 
 
+def stable_text(branch: Branch, number: Callable[[float], str]) -> str:
+    """Where a branch is stable, with numbers as `number` writes them; "-" nowhere, or that it is not computed."""
+    if branch.stable is None:
+        return "not computed"
+    return ", ".join(f"{number(a)}..{number(b)}" for a, b in branch.stable_intervals()) or "-"
+
+
 def describe(branch: Branch) -> str:
     """A branch in a few words: its motion's word, periods, symmetry, virtual or not."""
     about = branch.description
@@ -165,12 +173,15 @@ def describe(branch: Branch) -> str:
 
 
 def ends(branch: Branch) -> str:
-    """The labels at both ends of a branch; where there is none, why it ends there; "closed" for a circle."""
+    """The labels at both ends of a branch; where there is none, why it ends there, shortened; "closed" for a circle."""
     if branch.closed:
         return "closed"
     at = dict(reversed(branch.marks))
     first, last = (at.get(i, "") for i in (0, len(branch) - 1))
-    told = [label or short_words(why) or "?" for label, why in zip((first, last), branch.ended, strict=True)]
+    told = [
+        label or short_text(short_words(why)) or "?"
+        for label, why in zip((first, last), branch.ended, strict=True)
+    ]
     if told[0] == told[1] and not first:
         return f"{told[0]} (both ends)"
     return " .. ".join(told)
