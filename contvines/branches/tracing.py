@@ -107,4 +107,8 @@ def trace_half(
             notice(len(half), half.end)
         if status != Status.RUNNING:
             break
-    return half if origin is None or half.status == Status.CLOSED else without_rounding(engine, origin, half)
+    if half.status == Status.CLOSED:
+        return half
+    if half.events and half.events[-1][1].role is Role.MEETING:
+        half = without_rounding(engine, half.events[-1][1].point, half.reversed()).reversed()
+    return half if origin is None else without_rounding(engine, origin, half)

@@ -239,16 +239,18 @@ def turns_twice(here, there, mean):
 def _compiled() -> Callable[..., Any]:
     from numba import njit
 
+    from contvines_ground.parts import part
+
     from ..continuation.binding import OPTIONS, copy_with
 
-    inner = {f.__name__: njit(forceinline=True, **OPTIONS)(f) for f in (dips, turns_twice)}
+    inner = {f.__name__: part(forceinline=True, **OPTIONS)(f) for f in (dips, turns_twice)}
     # numba looks at this file only, not at where the constants come from
     sources = [Path(str(module.__file__)) for module in (aims, bits, multipliers, loop)]
     sources.append(Path(__file__))
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=4).hexdigest()
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
     fast = {"fastmath": {"reassoc", "contract", "nsz"}, **OPTIONS}
-    inner["one_dips"] = njit(**fast)(copy_with(one_dips, f"_{digest}", dips=inner["dips"]))
+    inner["one_dips"] = part(**fast)(copy_with(one_dips, f"_{digest}", dips=inner["dips"]))
     return njit(cache=True, **fast)(copy_with(mark_segments, f"_{digest}", **inner))
 
 
