@@ -50,8 +50,8 @@ def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
     return any(a != b and {a, b} <= LOST for a in one for b in other)
 
 
-def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.ndarray:
-    """Which points count as stable.
+def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.ndarray | None:
+    """Which points count as stable; None where the problem has no spectrum that tells.
 
     A special point is stable when one of its neighbours is. A point with a multiplier on the circle to roundoff, as at the
     end of an interval or where a multiplier crosses, takes the stability of the nearest point that can tell, up to the next
@@ -65,6 +65,8 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
     special : list of int
         Indices of the special points.
     """
+    if not engine.tells_stability:
+        return None
     outermost = engine.outermost(spectrum)
     stable = outermost < 0.0
     n = len(stable)

@@ -35,8 +35,9 @@ class Branch:
         Of the full period (eigenvalues for flows).
     margin : ndarray, shape (n,)
         Smallest margin, +inf for a problem without margins.
-    stable : ndarray of bool, shape (n,)
-        A special point counts as stable when one of its neighbours is.
+    stable : ndarray of bool, shape (n,), or None
+        A special point counts as stable when one of its neighbours is. None: stability is not computed, as for a problem
+        with ``spectrum="none"``.
     real : bool
         False: beyond a border, no machine follows it.
     endings : (Ending, Ending)
@@ -59,7 +60,7 @@ class Branch:
     tangents: np.ndarray = field(repr=False)
     multipliers: np.ndarray = field(repr=False)
     margin: np.ndarray = field(repr=False)
-    stable: np.ndarray = field(repr=False)
+    stable: np.ndarray | None = field(repr=False)
     real: bool = True
     endings: tuple[Ending, Ending] = (Ending.said(""), Ending.said(""))
     closed: bool = False
@@ -98,11 +99,14 @@ class Branch:
         first, last = (ending.sentence(self.parameter, unit) for ending in self.endings)
         return first, last
 
-    def pieces(self) -> list[tuple[int, int, bool]]:
-        """Runs of equal stability: (first, last, stable) with inclusive indices, neighbours sharing a point."""
+    def pieces(self) -> list[tuple[int, int, bool | None]]:
+        """Runs of equal stability: (first, last, stable) with inclusive indices, neighbours sharing a point.
+
+        One run, ``stable`` None, where stability is not computed.
+        """
         n = len(self)
-        if n < 2:
-            return [(0, n - 1, bool(self.stable[0]))] if n else []
+        if self.stable is None or n < 2:
+            return [(0, n - 1, None if self.stable is None else bool(self.stable[0]))] if n else []
         segment = self.stable[:-1] & self.stable[1:]  # segment i joins point i to point i + 1
         breaks = np.flatnonzero(segment[1:] != segment[:-1]) + 1
         starts = [0, *breaks.tolist()]
@@ -110,7 +114,7 @@ class Branch:
         return [(a, b, bool(segment[a])) for a, b in zip(starts, stops, strict=True)]
 
     def stable_intervals(self) -> list[tuple[float, float]]:
-        """Parameter intervals of the stable pieces, each with its ends in increasing order."""
+        """Parameter intervals of the pieces that are known to be stable, each with its ends in increasing order."""
         intervals = []
         for first, last, stable in self.pieces():
             if stable:
@@ -196,7 +200,9 @@ class Branch:
             "real": bool(self.real),
             "range": list(self.range),
             "points": len(self),
-            "stable": [list(interval) for interval in self.stable_intervals()],
+            "stable": None
+            if self.stable is None
+            else [list(interval) for interval in self.stable_intervals()],
             "ended": list(self.ended),
             "closed": bool(self.closed),
             "seed": self.seed,

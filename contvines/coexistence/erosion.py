@@ -13,7 +13,7 @@ from ..doors import above
 from ..graph.table import with_unit
 from ..hints import hinted, hinting
 from ..text_table import Table, terminal_width
-from .robustness import Robustness, robustness
+from .robustness import Robustness, refuse_uncomputed, robustness
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,6 +130,7 @@ def _spread(branch: Branch, count: int) -> list[float]:
         elif last > first:
             merged.append([first, last])
     if not merged:
+        refuse_uncomputed(branch)
         raise ValueError(f"{branch.label} has no stable real motions")
     ends = np.array(merged)
     lengths = np.diff(ends, axis=1)[:, 0]

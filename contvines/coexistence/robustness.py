@@ -188,6 +188,20 @@ def robustness(
     )
 
 
+def refuse_uncomputed(branch: Branch) -> None:
+    """Refuse a branch whose stability is not computed.
+
+    Raises
+    ------
+    ValueError
+        If it is not.
+    """
+    if branch.stable is None:
+        raise ValueError(
+            f'{branch.label}: its stability is not computed; trace it with spectrum="flow", if F(u, p) are the rates of u'
+        )
+
+
 def stable_at(branch: Branch, at: float) -> np.ndarray:
     """The unknowns of a branch's stable real solution at a value of its parameter.
 
@@ -201,6 +215,7 @@ def stable_at(branch: Branch, at: float) -> np.ndarray:
         for solved in found:
             if engine.stable(solved.row):
                 return solved.u
+    refuse_uncomputed(branch)
     raise ValueError(
         f"{branch.label} has no stable real motion at {branch.parameter} = {at:.10g}; its stable intervals are "
         + (", ".join(f"{a:.6g} to {b:.6g}" for a, b in branch.stable_intervals() if branch.real) or "none")

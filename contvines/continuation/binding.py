@@ -83,12 +83,14 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         return Bound(march, copy_with(corrector.points, improve=improve, **sums, **functions))
     from numba import njit
 
+    from contvines_ground.parts import part
+
     from ..problems.kernels import kernels_digest
     from .kept import Keeper
 
     suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
-    part = njit(**OPTIONS)  # of the two functions that are kept on disk; never needed without them
-    sums = {name: part(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    inside = part(**OPTIONS)  # of the two functions that are kept on disk
+    sums = {name: inside(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     improve = copy_with(corrector.improve, suffix, **sums)
     # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
     # is compiled, the corrector is optimised once; inlined by force afterwards, twice.
@@ -97,29 +99,29 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     own = (
         rule is not BY_ANGLE
     )  # a user's function may change while its loop is kept on disk: compiled in every process
-    judge = compiled_rule(rule) if own else part(copy_with(by_angle, suffix))
+    judge = compiled_rule(rule) if own else inside(copy_with(by_angle, suffix))
     march = njit(cache=not own, **OPTIONS)(
         copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
     )
-    search = _search(part, suffix)
+    search = _search(inside, suffix)
 
     def make(unpack: Any, mark: str) -> Any:
-        names = {"unpack": unpack, "improve": part(improve), **sums, **functions, **search}
+        names = {"unpack": unpack, "improve": inside(improve), **sums, **functions, **search}
         return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix + mark, **names))
 
     return Bound(march, corrector.points, Keeper(make, OPTIONS, suffix))
 
 
-def _search(part: Callable[..., Any], suffix: str) -> dict[str, Any]:
+def _search(inside: Callable[..., Any], suffix: str) -> dict[str, Any]:
     """What looks for a zero along a chord, compiled."""
     known = {
-        name: part(copy_with(getattr(bracketing, name), suffix))
+        name: inside(copy_with(getattr(bracketing, name), suffix))
         for name in ("begin", "best", "_add", "_ahead")
     }
-    follow = part(copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead")))
-    sorts = {name: part(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
-    multiplier = part(copy_with(aims.multiplier, suffix, **sorts))
-    return {**known, "follow": follow, "probe": part(copy_with(aims.probe, suffix, multiplier=multiplier))}
+    follow = inside(copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead")))
+    sorts = {name: inside(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
+    multiplier = inside(copy_with(aims.multiplier, suffix, **sorts))
+    return {**known, "follow": follow, "probe": inside(copy_with(aims.probe, suffix, multiplier=multiplier))}
 
 
 def compiled_rule(rule: StepRule) -> Any:

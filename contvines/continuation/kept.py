@@ -16,6 +16,8 @@ from numba import njit, typeof, types  # pyright: ignore[reportPrivateImportUsag
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
+from contvines_ground.parts import part
+
 Maker = Callable[[Any, str], Callable[..., Any]]
 
 
@@ -80,7 +82,7 @@ class Keeper:
         kind = typeof(frame)
         if not _plain(kind):
             if self.plain is None:
-                itself: Any = njit(**self.options)
+                itself: Any = part(**self.options)
                 self.plain = self.make(itself(_itself), "")
             return self.plain, frame, None
         context: Any = cpu_target.target_context

@@ -62,13 +62,18 @@ class Rows:
         """Multipliers of the full period, shape (..., m)."""
         return np.asarray(self.problem.to_multipliers(self.spectrum(rows)), dtype=complex)
 
+    @property
+    def tells_stability(self) -> bool:
+        """Whether the problem has a spectrum that tells stability; else it is not computed."""
+        return self.problem.spectrum in ("map", "flow")
+
     def stable(self, rows: np.ndarray) -> np.ndarray:
-        """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows)."""
+        """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows); False where nothing says."""
         return self.outermost(rows) < 0.0
 
     def outermost(self, rows: np.ndarray) -> np.ndarray:
         """How far the outermost multiplier is outside the unit circle (right of the imaginary axis for flows); NaN where nothing says."""
-        if self.problem.spectrum not in ("map", "flow"):
+        if not self.tells_stability:
             return np.full(rows.shape[:-1], np.nan)
         if not self.m:
             return np.full(rows.shape[:-1], -np.inf)

@@ -177,8 +177,8 @@ def _pack(solved: list[Solved], status: Status) -> Chunk:
 class Point(NamedTuple):
     """A point of a branch, as ``trace`` yields it.
 
-    ``multipliers`` are those of the full period (eigenvalues for flows), ``margin`` is the smallest margin, ``status`` is
-    empty but for the last point, where it says why the branch ends.
+    ``multipliers`` are those of the full period (eigenvalues for flows), ``margin`` is the smallest margin, ``stable`` is
+    None where stability is not computed, ``status`` is empty but for the last point, where it says why the branch ends.
     """
 
     u: np.ndarray
@@ -186,7 +186,7 @@ class Point(NamedTuple):
     tangent: np.ndarray
     multipliers: np.ndarray
     margin: float
-    stable: bool
+    stable: bool | None
     status: str
 
 
@@ -246,7 +246,8 @@ def trace(
             chunk = next(walk, None)
         if chunk is None:
             return
-        multipliers, stable = engine.multipliers(chunk.rows), engine.stable(chunk.rows)
+        multipliers = engine.multipliers(chunk.rows)
+        stable = engine.stable(chunk.rows).tolist() if engine.tells_stability else [None] * len(chunk)
         ends = [""] * len(chunk)
         if chunk.status != Status.RUNNING:
             ends[-1] = chunk.status.sentence(problem.parameter, float(chunk.values[-1]))
@@ -256,7 +257,7 @@ def trace(
             chunk.tangents.copy(),
             multipliers,
             engine.smallest_margin(chunk.rows).tolist(),
-            stable.tolist(),
+            stable,
             ends,
         )
         yield from itertools.starmap(Point, itertools.islice(points, 0 if first else 1, None))

@@ -55,12 +55,12 @@ def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[
     """The columns of one branch, a row per point; see :func:`graph_columns`."""
     units = units or {}
     marks = dict(branch.marks)
-    n = len(branch)
+    n, undefined = len(branch), float("nan")
     columns: dict[str, list[Any]] = {
         "branch": [branch.label] * n,
         "index": list(range(n)),
         with_unit(branch.parameter, units.get(branch.parameter)): [float(v) for v in branch.values],
-        "stable": [bool(v) for v in branch.stable],
+        "stable": [undefined] * n if branch.stable is None else [bool(v) for v in branch.stable],
         "real": [bool(branch.real)] * n,
         "margin": [float(v) for v in branch.margin],
         "special": [marks.get(i, "") for i in range(n)],

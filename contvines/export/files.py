@@ -138,7 +138,7 @@ def _mat(graph: "Graph", path: Path) -> None:
             "tangents": b.tangents,
             "multipliers": b.multipliers,
             "margin": b.margin,
-            "stable": b.stable,
+            "stable": np.zeros(0, dtype=bool) if b.stable is None else b.stable,
             "real": b.real,
             "ended": list(b.ended),
             "word": str(b.description.get("word", "")),

@@ -87,7 +87,7 @@ def branch_frame(branch: Branch) -> Any:
 
 
 def branch_dataset(branch: Branch) -> Any:
-    """One branch as a data set: points, multipliers and measures over the dimension ``point``.
+    """One branch as a data set: points, multipliers, stability (where it is computed) and measures over the dimension ``point``.
 
     Raises
     ------
@@ -99,9 +99,10 @@ def branch_dataset(branch: Branch) -> Any:
     variables: dict[str, Any] = {
         "unknowns": (("point", "unknown"), branch.points),
         "multipliers": (("point", "multiplier"), branch.multipliers),
-        "stable": ("point", branch.stable),
         "margin": ("point", branch.margin),
     }
+    if branch.stable is not None:
+        variables["stable"] = ("point", branch.stable)
     for name, values in measures_of(branch).items():
         if name not in variables and name != branch.parameter:
             variables[name] = ("point", values, {"units": units[name]} if name in units else {})

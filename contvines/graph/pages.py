@@ -16,6 +16,7 @@ from .table import (
     ends,
     simulated,
     special_table,
+    stable_text,
     title,
 )
 
@@ -33,12 +34,11 @@ def graph_page(graph: Graph) -> str:
 
 def branch_page(branch: Branch) -> str:
     """What a branch is, line by line."""
-    intervals = ", ".join(f"{number(a, 6)}..{number(b, 6)}" for a, b in branch.stable_intervals()) or "-"
     low, high = branch.range
     rows = [
         ("what", describe(branch)),
         (branch.parameter, f"{number(low, 10)}..{number(high, 10)}"),
-        ("stable", intervals),
+        ("stable", stable_text(branch, lambda value: number(value, 6))),
         ("points", str(len(branch))),
         ("from .. to", ends(branch)),
         ("special points", ", ".join(label for _, label in branch.marks) or "-"),

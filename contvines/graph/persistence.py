@@ -76,6 +76,8 @@ def branch_of(content: Mapping[str, Any], problem: Any) -> Branch:
         if "ended" in own
         else [Ending.from_dict(ending) for ending in own["endings"]]
     )
+    if own["description"].get("spectrum") == "none":
+        own["stable"] = None  # files up to 0.1 called it unstable
     own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
     return Branch(problem=problem, **own)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+
 
 def short_word(word: str, limit: int = 24) -> str:
     """A word of events in at most about `limit` characters.
@@ -18,6 +20,11 @@ def short_word(word: str, limit: int = 24) -> str:
         events = sum(letter.isalpha() for letter in root)
         root = f"{root[: limit - 8]}... {events} events"
     return f"({root}){power}" if power else root
+
+
+def short_text(text: str, limit: int = 100) -> str:
+    """A text on one line of at most `limit` characters, cut between words."""
+    return textwrap.shorten(text, limit, placeholder=" ...", break_on_hyphens=False)
 
 
 def short_words(text: str, limit: int = 24) -> str:

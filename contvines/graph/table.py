@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,13 +13,14 @@ from ..events.kinds import BORDERS
 from ..number_text import number_text
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
-from .shortening import short_word, short_words
+from .shortening import short_text, short_word, short_words
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
     from .attractor import Attractor
     from .graph import Graph
 
+PAIRS = ("hopf", "neimark-sacker")  # whose remarks say why nothing is known of what leaves
 AT_END = 1e-9  # part of the interval: special points closer to its end are at it
 
 
@@ -65,7 +67,7 @@ def branches_table(graph: Graph) -> Table:
     rows = []
     for branch in graph.branches.values():
         low, high = branch.range
-        stable = ", ".join(f"{number(a)}..{number(b)}" for a, b in branch.stable_intervals()) or "-"
+        stable = stable_text(branch, number)
         where = f"{number(low)}..{number(high)}"
         proved = told(graph, branch.label)
         rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
@@ -95,7 +97,8 @@ def special_table(graph: Graph) -> Table:
             if switch.point == point.label:
                 arrow = f"{switch.source} -> {switch.target}"
                 targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
-        if not targets and point.kind in BORDERS and point.real and point.remarks:
+        open_end = point.kind in BORDERS and point.real
+        if not targets and (open_end or point.kind in PAIRS) and point.remarks:
             targets.append(f"({'; '.join(point.remarks)})")
         about = " ".join(filter(None, remarks))
         value = number_text(point.value, 12, size_of(graph.within))
@@ -152,6 +155,13 @@ def simulated(graph: Graph) -> str:
     return f"{line}; {left} more are left: raise scan" if left else line
 
 
+def stable_text(branch: Branch, number: Callable[[float], str]) -> str:
+    """Where a branch is stable, with numbers as `number` writes them; "-" nowhere, or that it is not computed."""
+    if branch.stable is None:
+        return "not computed"
+    return ", ".join(f"{number(a)}..{number(b)}" for a, b in branch.stable_intervals()) or "-"
+
+
 def describe(branch: Branch) -> str:
     """A branch in a few words: its motion's word, periods, symmetry, virtual or not."""
     about = branch.description
@@ -165,12 +175,15 @@ def describe(branch: Branch) -> str:
 
 
 def ends(branch: Branch) -> str:
-    """The labels at both ends of a branch; where there is none, why it ends there; "closed" for a circle."""
+    """The labels at both ends of a branch; where there is none, why it ends there, shortened; "closed" for a circle."""
     if branch.closed:
         return "closed"
     at = dict(reversed(branch.marks))
     first, last = (at.get(i, "") for i in (0, len(branch) - 1))
-    told = [label or short_words(why) or "?" for label, why in zip((first, last), branch.ended, strict=True)]
+    told = [
+        label or short_text(short_words(why)) or "?"
+        for label, why in zip((first, last), branch.ended, strict=True)
+    ]
     if told[0] == told[1] and not first:
         return f"{told[0]} (both ends)"
     return " .. ".join(told)

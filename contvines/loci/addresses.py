@@ -15,6 +15,8 @@ from numba.core import cgutils
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
+from contvines_ground.parts import part
+
 from ..continuation.binding import OPTIONS, copy_with
 
 WHOLE, NUMBER, VECTOR = types.int64, types.float64, types.Array(types.float64, 1, "C")
@@ -173,7 +175,7 @@ def transpose(calls, data, work, column, other):
 def callers() -> dict[str, Any]:
     """The six kernels by name; the first argument is the array of addresses that `addresses` returns."""
     number, nothing = _calls(NUMBER), _calls(types.none)
-    compile_ = njit(**OPTIONS)
+    compile_ = part(**OPTIONS)
     kinds = {linearise: number, bordered: number, inspect: nothing, assign: nothing}
     kinds |= {flip: nothing, transpose: nothing}
     return {f.__name__: compile_(copy_with(f, by_address=kind)) for f, kind in kinds.items()}

@@ -67,7 +67,7 @@ def plot_network(
         boxes: dict[str, Any] = {}
         for label, (px, py) in place.items():
             branch = graph.branches[label]
-            some = bool(branch.stable.any()) and branch.real
+            some = branch.stable is not None and bool(branch.stable.any()) and branch.real
             style = {
                 "fc": "0.90" if some else "white",
                 "ec": "black",
@@ -84,7 +84,8 @@ def plot_network(
                 bbox={"boxstyle": "round,pad=0.45", **style},
             )
         if graph.branches:
-            told = "grey: partly stable; dotted: virtual"
+            computed = any(branch.stable is not None for branch in graph.branches.values())
+            told = f"{'grey: partly stable' if computed else 'stability not computed'}; dotted: virtual"
             less = len(graph.branches) - len(place)
             more = (
                 f"; {less} more further on"

@@ -17,7 +17,7 @@ from .figures import scale
 from .insets import Region, add_inset, crowded_region, find_room, outlines
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
-from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATES, WIDTHS
+from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATE_OF, STATES, WIDTHS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ class Picture:
             for name in (self.x, self.y):
                 measured(branch, name)  # refused in a sentence before anything is drawn
             for first, last, stable in branch.pieces():
-                state = ("stable" if stable else "unstable") if branch.real else "virtual"
+                state = STATE_OF[stable] if branch.real else "virtual"
                 self.key.states.setdefault(state, None)
                 shade = STATE_COLORS[state] if self.color == "stability" else tint
                 if self.color == "stability":
@@ -90,7 +90,7 @@ class Picture:
                     linestyle=LINES[state],
                     color=shade,
                     linewidth=WIDTHS[state] * width,
-                    zorder=3 if state == "stable" else 2.5,
+                    zorder=2.5 if state in ("unstable", "virtual") else 3,
                 )
                 self.curves.append(curve)
             self._draw_proved(branch, width)

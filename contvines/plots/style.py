@@ -6,12 +6,18 @@ from typing import Any
 
 from ..events.kinds import KINDS
 
-# line styles of the three states of an orbit
-LINES: dict[str, Any] = {"stable": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
-WIDTHS = {"stable": 1.25, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
-STATE_COLORS = {"stable": "#0b3c6f", "unstable": "#d9484b", "virtual": "#8a8a8a"}
+# line styles of the states of an orbit; what nobody has asked for is drawn solid, and named
+LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
+WIDTHS = {"stable": 1.25, "unknown": 1.1, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
+STATE_COLORS = {"stable": "#0b3c6f", "unknown": "#4d4d4d", "unstable": "#d9484b", "virtual": "#8a8a8a"}
 PROVED = {"color": "#7fc97f", "alpha": 0.45}  # beneath what is proved
-STATES = {"stable": "stable", "unstable": "unstable", "virtual": "virtual (beyond a border)"}
+STATES = {
+    "stable": "stable",
+    "unknown": "stability not computed",
+    "unstable": "unstable",
+    "virtual": "virtual (beyond a border)",
+}
+STATE_OF = {True: "stable", False: "unstable", None: "unknown"}
 
 
 @dataclass(frozen=True)

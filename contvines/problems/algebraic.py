@@ -48,7 +48,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
     derivative : callable, or mapping of str to callable, optional
         (u, p) -> dF/dp of shape (N,); of several parameters by name.
     spectrum : {"none", "flow"}
-        "flow": stability and Hopf points from the eigenvalues of dF/du. With "none" no branch counts as stable.
+        "flow": stability and Hopf points from the eigenvalues of dF/du. With "none" stability is not computed.
     mirror : callable, matrix or permutation, optional
         u -> image of u that solves the same equations; branch points on its fixed space are symmetry breakings and one
         of the two mirror images is traced.
@@ -78,7 +78,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
     Raises
     ------
     ValueError
-        If F does not return N finite numbers at the start, or a given derivative disagrees with it.
+        If F does not return N finite numbers at the start, or a given derivative or symmetry disagrees with it.
     """
 
     @hinting
@@ -125,10 +125,12 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         self.outputs = Outputs(outputs, self.values)
         self.mirror = None if mirror is None else image_map(mirror, self.node)
         self.symmetric = len(symmetries) > 0
-        generators = [image_map(s, self.node, "symmetries") for s in symmetries]
+        self.generators = [
+            (f"symmetries[{i}]", image_map(s, self.node, "symmetries")) for i, s in enumerate(symmetries)
+        ]
         if self.mirror is not None:
-            generators.append(self.mirror)
-        self.images = images_of(generators, self.node)
+            self.generators.append(("mirror", self.mirror))
+        self.images, self.symmetric_for = images_of([f for _, f in self.generators], self.node), set()
         self.conditions = Conditions(list(conditions), self.functions, start) if conditions else None
         self.u0 = start if self.conditions is None else self.conditions.extended(start)
         self.dimension = len(self.u0)
@@ -201,6 +203,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         return f.value(u, p), f.jacobian(u, p), f.derivative(u, p)
 
     inverse: Any = None
+    mixed_rows = True
 
     def preconditioner_at(self) -> Any:
         """The user's approximation of the inverse of dF/du where the equations were evaluated last, or None."""

@@ -12,8 +12,9 @@ from scipy.sparse import csc_array, diags_array, hstack
 from ..doors import above
 from . import dense, sparse
 from .breaks import find_break
-from .checks import disagreement, empty_row
+from .checks import disagreement, empty_row, refuse_derivatives
 from .derivatives import Differentiated
+from .equivariance import refuse_asymmetry
 from .extents import weighed
 from .functions import NotEvaluable
 from .nearness import side
@@ -56,6 +57,8 @@ class CallableProblem(ProblemDefaults):
         Why the equations could not be evaluated the last time that happened.
     unsolved : bool
         Whether the last linear system, of a Jacobian without a matrix, was not solved.
+    generators, symmetric_for, mixed_rows
+        Symmetries by name, and for which parameters they are known to be some; see :mod:`.equivariance`.
     """
 
     values: ParameterSet
@@ -72,6 +75,9 @@ class CallableProblem(ProblemDefaults):
 
     given: dict[str, Any]
     pieces: Pieces
+    generators: Any = ()
+    symmetric_for: Any = ()
+    mixed_rows = False
 
     def _wrapped(self, pieces: Pieces) -> tuple[Any, Any, Any]:
         """The equations and their given derivatives in a piece.
@@ -85,7 +91,7 @@ class CallableProblem(ProblemDefaults):
             given = self.given[key]
             if not (callable(given) or isinstance(given, Mapping) or (given is None and key != "F")):
                 raise ValueError(f"{key} = {given!r} must be a function of (u, p)")
-        return tuple(pieces.wrap(self.given[key]) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
+        return tuple(pieces.wrap(self.given[key], key) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
 
     # ------------------------------------------------------------------ parameters
     @property
@@ -162,6 +168,7 @@ class CallableProblem(ProblemDefaults):
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""
         scales = self.scales
+        refuse_asymmetry(self)
         if scales is None:
             scales = self.scales = above("learn")(self, within, self.given_scale)
         return scales.vector
@@ -326,12 +333,8 @@ class CallableProblem(ProblemDefaults):
         return disagreement(self.functions, u, p, scales)
 
     def _check_start(self, u: np.ndarray) -> None:
-        try:
-            wrong = disagreement(self.functions, u, self.p0)
-        except NotEvaluable as error:
-            wrong = str(error)
-        if wrong is not None:
-            raise ValueError(wrong)
+        refuse_derivatives(self.functions, u, self.p0)
+        refuse_asymmetry(self)
 
     def _check_rows(self, u: np.ndarray) -> None:
         with np.errstate(all="ignore"):

@@ -29,6 +29,22 @@ def disagreement(
             return None
 
 
+def refuse_derivatives(functions: Differentiated, u: np.ndarray, p: float) -> None:
+    """Refuse derivatives that disagree with f at a start, or cannot be evaluated there.
+
+    Raises
+    ------
+    ValueError
+        With the sentence of `disagreement`.
+    """
+    try:
+        wrong = disagreement(functions, u, p)
+    except NotEvaluable as error:
+        wrong = str(error)
+    if wrong is not None:
+        raise ValueError(wrong)
+
+
 def empty_row(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
     """A sentence on an entry of f that is zero at the start and all round it, and so is no equation; None if there is none."""
     draw = np.random.default_rng(8)

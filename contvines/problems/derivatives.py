@@ -158,9 +158,14 @@ class Differentiated:
         where = f"at the start {self._where(u, p)}"
         try:
             with np.errstate(all="ignore"):
-                value = self._value(u, p)
+                given = self._value.raw(u, p)
+                value = self._value.flat(given, u, p)
         except NotEvaluable as error:
             raise ValueError(f"{error}, {where}") from error
+        if np.ndim(given) > 1:
+            raise ValueError(
+                f"{self.name} returns numbers in shape {np.shape(given)}; they are needed in a row, of shape ({len(u)},)"
+            )
         if len(value) != len(u):
             raise ValueError(
                 f"{self.name} returns {len(value)} numbers for {len(u)} unknowns; as many are needed"

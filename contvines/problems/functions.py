@@ -64,7 +64,10 @@ class UserFunction:
         NotEvaluable
             If f raises, or returns complex numbers for real ones, or no numbers at all.
         """
-        value = self.raw(u, p)
+        return self.flat(self.raw(u, p), u, p)
+
+    def flat(self, value: Any, u: np.ndarray, p: Any) -> np.ndarray:
+        """What f has returned at (u, p) as a flat array; see ``__call__``."""
         if value is None:
             raise NotEvaluable(f"{self.name} returns None; numbers are needed")
         if type(value) is np.ndarray and value.dtype == FLOAT:

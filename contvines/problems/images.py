@@ -8,6 +8,14 @@ from typing import Any
 
 import numpy as np
 
+Image = Callable[[np.ndarray], np.ndarray]
+
+
+def linear_part(image: Image, n: int) -> Image:
+    """How an image acts on differences of states: without what it adds to all of them."""
+    added = image(np.zeros(n))
+    return image if not added.any() else lambda v: image(v) - added
+
 
 def image_map(symmetry: Any, n: int, name: str = "mirror") -> Callable[[np.ndarray], np.ndarray]:
     """u -> image of u.

@@ -60,7 +60,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     Raises
     ------
     ValueError
-        If the start does not fit the cycle, or f does not return d finite numbers.
+        If the start does not fit the cycle, f does not return d finite numbers, or a derivative or the mirror disagrees with it.
     """
 
     spectrum = "map"
@@ -87,13 +87,10 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
             raise ValueError(f"cycle = {cycle!r} must be a whole number of at least 1")
         start = np.array(u0, dtype=float)
         flat = flat_start(start.reshape(-1))
-        if dimension is None:
-            if start.ndim == 2 or (cycle > 1 and len(flat) % cycle == 0 and len(flat) >= cycle):
-                d = len(flat) // (start.shape[0] if start.ndim == 2 else cycle)
-            else:
-                d = len(flat)
-        else:
-            d = int(dimension)
+        d = len(flat) if dimension is None else int(dimension)
+        whole = start.ndim == 2 or (cycle > 1 and len(flat) % cycle == 0 and len(flat) >= cycle)
+        if dimension is None and whole:
+            d = len(flat) // (start.shape[0] if start.ndim == 2 else cycle)
         self.values = ParameterSet(p0, parameter)
         self.cycle, self.name, self.node = int(cycle), name, d
         self.pieces = Pieces(switches, self.values, flat[None, :d])
@@ -120,6 +117,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         self.given_scale = None if self.node_scale is None else np.tile(self.node_scale, self.cycle)
         self.data = self
         self.mirror = None if mirror is None else image_map(mirror, d)
+        self.generators, self.symmetric_for = [("mirror", self.mirror)][: mirror is not None], set()
         self._check_start(flat[:d])
         self._find_symmetries()
         self.describe()  # its callables are known by their addresses from now on

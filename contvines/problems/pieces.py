@@ -13,9 +13,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from copy import copy
+from inspect import signature
 from typing import Any
 
 import numpy as np
+
+from contvines_ground.near_names import did_you_mean
 
 from .abilities import Doubling
 from .functions import NotEvaluable, UserFunction
@@ -23,6 +26,32 @@ from .parameters import ParameterSet
 from .protocol import Seed
 
 NOTHING = 1e-3  # margins below this part of their change over a small step vanish
+
+
+class UnknownSwitch(KeyError):
+    """A switch of another name was asked for."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class Signs(dict[str, int]):
+    """+1 or -1 by the name of a switch."""
+
+    def __missing__(self, name: Any) -> int:
+        hint = did_you_mean(str(name), self)
+        raise UnknownSwitch(f"there is no switch {name!r}{hint}; the problem has {', '.join(self)}")
+
+
+def _takes_signs(call: Callable[..., Any]) -> bool:
+    """Whether a function can be called with three arguments; one that does not tell is believed."""
+    try:
+        signature(call).bind(None, None, None)
+    except TypeError:
+        return False
+    except ValueError:
+        return True
+    return True
 
 
 class Pieces:
@@ -85,17 +114,28 @@ class Pieces:
         """The signs as text: a group for each node, ``+-|--``."""
         return "|".join("".join("+" if sign > 0 else "-" for sign in node) for node in self.signs)
 
-    def wrap(self, f: Any) -> Any:
-        """A function, or a mapping of functions, (u, p, sign) as one of (u, p), in the piece of the current node."""
+    def wrap(self, f: Any, name: str = "F") -> Any:
+        """A function, or a mapping of functions, (u, p, sign) as one of (u, p), in the piece of the current node.
+
+        Raises
+        ------
+        ValueError
+            If it does not take the signs; `name` is what it is called then.
+        """
         if f is None or not self.switches:
             return f
         if isinstance(f, Mapping):
-            return {name: self.wrap(part) for name, part in f.items()}
+            return {key: self.wrap(part, name) for key, part in f.items()}
         call: Callable[..., Any] = f
+        if not _takes_signs(call):
+            raise ValueError(
+                f"{name} cannot be called as {name}(u, p, sign): with switches= it must take a third argument, a mapping from "
+                f"their names ({', '.join(self.given)}) to +1 or -1"
+            )
         return lambda u, p: call(u, p, self._current_signs())
 
     def _current_signs(self) -> dict[str, int]:
-        return dict(zip(self.given, (int(sign) for sign in self.signs[self.current])))
+        return Signs(zip(self.given, (int(sign) for sign in self.signs[self.current])))
 
     def margins(self, nodes: np.ndarray, p: float) -> np.ndarray:
         """Switches times their signs, flat."""

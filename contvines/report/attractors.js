@@ -20,7 +20,7 @@ function attractors() {
   dark.addEventListener("change", paint);
   const nearest = (label, value) => {
     const xs = branches[label].measures[data.parameter];
-    return xs.reduce((best, v, i) => (branches[label].stable_points[i] && Math.abs(v - value) < Math.abs(xs[best] - value) ? i : best), xs.length >> 1);
+    return xs.reduce((best, v, i) => ((!branches[label].stable_points || branches[label].stable_points[i]) && Math.abs(v - value) < Math.abs(xs[best] - value) ? i : best), xs.length >> 1);
   };
   // a row stands for neighbouring values at which the same motion was met
   const rows = [], open = new Map();

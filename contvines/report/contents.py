@@ -84,7 +84,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
     return about | {
         "word": None if word is None else str(word),
         "what": "" if word is None else short_word(str(word)) or "stuck",
-        "stable_points": branch.stable.astype(int).tolist(),
+        "stable_points": None if branch.stable is None else branch.stable.astype(int).tolist(),
         "measures": measures,
         "marks": [[int(i), label] for i, label in branch.marks],
         "proof": told(graph, branch.label),

@@ -3,6 +3,9 @@ const branches = Object.fromEntries(data.branches.map((b) => [b.label, b]));
 const points = Object.fromEntries(data.special.map((p) => [p.label, p]));
 let here = null; // { branch, index, label }
 
+// stable_points is null where stability is not computed
+const state_at = (branch, i) => (!branch.stable_points ? "stability not computed" : branch.stable_points[i] ? "stable" : "unstable");
+
 // ------------------------------------------------------------------ the diagram
 function traces() {
   const x = $("x").value, y = $("y").value, found = [];
@@ -12,10 +15,10 @@ function traces() {
     if (!xs || !ys) return;
     const color = (dark.matches ? light : colors)[k % colors.length];
     const about = xs.map((_, i) => `<b>${branch.label}</b> ${branch.what}<br>${x} = ${number(xs[i], 8)}<br>${y} = ${number(ys[i], 8)}<br>` +
-      `${branch.real ? (branch.stable_points[i] ? "stable" : "unstable") : "virtual"}, point ${i}`);
+      `${branch.real ? state_at(branch, i) : "virtual"}, point ${i}`);
     for (let first = 0; first < xs.length; ) {
       let last = first;
-      const state = (i) => branch.stable_points[i] && branch.stable_points[i + 1];
+      const state = (i) => !branch.stable_points || (branch.stable_points[i] && branch.stable_points[i + 1]);
       while (last + 1 < xs.length - 1 && Boolean(state(last + 1)) === Boolean(state(first))) last += 1;
       const stop = Math.min(last + 1, xs.length - 1);
       const part = (v) => v.slice(first, stop + 1);
@@ -66,7 +69,7 @@ function choose(branch, index, label) {
   const shown = sizes.filter(([re]) => re !== null).map(([re, im]) => (Math.abs(im) < 1e-15 ? number(re, 8) : `${number(re, 6)} ${im < 0 ? "−" : "+"} ${number(Math.abs(im), 6)}i`));
   const facts = [`${data.parameter} = ${number(special ? special.value[data.parameter] : value, 12)}`];
   if (about.word !== null) facts.unshift(`word ${about.word || "(stuck)"}`, `k = ${about.periods}`);
-  const stable = special && special.marginal ? "marginal" : about.stable_points[index] ? "stable" : "unstable";
+  const stable = special && special.marginal ? "marginal" : state_at(about, index);
   facts.push(about.real ? stable : "virtual: no machine can follow it");
   if (shown.length) facts.push(`multipliers ${shown.join(", ")}`);
   else if (sizes.length) facts.push("multipliers not defined at a graze");
@@ -106,7 +109,7 @@ const proofs = data.branches.some((b) => b.proof);
 table("branches", ["branch", "what", data.parameter, "stable", ...(proofs ? ["proved"] : []), "points"], data.branches, (b) => {
   const row = cells(element("tr", undefined, { id: `row-${b.label}` }), [b.label,
     [b.what, b.periods === null ? "" : `k=${b.periods}`, b.symmetric ? "symmetric" : "", b.real ? "" : "virtual"].filter(Boolean).join(" "),
-    `${number(b.range[0], 7)} … ${number(b.range[1], 7)}`, b.stable.map(([a, z]) => `${number(a, 7)} … ${number(z, 7)}`).join(", ") || "–", ...(proofs ? [b.proof || ""] : []), String(b.points)]);
+    `${number(b.range[0], 7)} … ${number(b.range[1], 7)}`, b.stable === null ? "not computed" : b.stable.map(([a, z]) => `${number(a, 7)} … ${number(z, 7)}`).join(", ") || "–", ...(proofs ? [b.proof || ""] : []), String(b.points)]);
   if (!b.real) row.className = "virtual";
   return clickable(row, () => jump(b.label, Math.floor(b.points / 2)));
 });
@@ -116,7 +119,7 @@ made([...settled(data.model, "model"), [`${data.parameter} within`, data.within.
 // ------------------------------------------------------------------ the page
 $("title").textContent = `${data.model.name || "problem"}: motions over ${data.names[data.parameter]}`;
 $("about").textContent = `${many(data.branches, "branch", "branches")}, ${many(data.special, "special point", "special points")}` + (data.finished ? "" : ", unfinished") +
-  "; solid lines are stable, dashed unstable, dotted virtual (beyond a border).";
+  (data.branches.some((b) => b.stable_points) ? "; solid lines are stable, dashed unstable" : "; stability is not computed") + ", dotted virtual (beyond a border).";
 for (const id of ["x", "y"]) {
   for (const [name, text] of Object.entries(data.names)) $(id).append(element("option", text, { value: name }));
   $(id).value = data.axes[id];

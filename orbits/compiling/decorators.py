@@ -14,9 +14,11 @@ from typing import Any
 
 from numba import njit
 
+from contvines_ground.parts import part
+
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 
-kernel = njit(forceinline=True, **OPTIONS)
+kernel = part(forceinline=True, **OPTIONS)
 """Decorator of functions that other compiled functions call."""
 
 stored_kernel = njit(cache=True, **OPTIONS)

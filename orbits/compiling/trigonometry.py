@@ -8,8 +8,8 @@ polynomials of the standard libraries on [-pi/4, pi/4]; the doubled angle gives 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from contvines_ground.parts import part
 from orbits.compiling.decorators import OPTIONS
 
 PI_A, PI_B, PI_C = 3.141592651605606, 1.9841871479187034e-09, 1.1442377452219664e-17
@@ -21,7 +21,7 @@ C1, C2, C3 = 4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872
 C4, C5, C6 = -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11
 
 
-@njit(forceinline=True, fastmath={"contract", "nsz"}, **OPTIONS)
+@part(forceinline=True, fastmath={"contract", "nsz"}, **OPTIONS)
 def sines_cosines(phases, stride, count, sines, cosines):
     """Fill `sines` and `cosines` with those of phases[0], phases[stride], .. (`count` of them)."""
     for i in range(count):

@@ -14,8 +14,8 @@ from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
-from numba import njit
 
+from contvines_ground.parts import part
 from orbits.compiling.arguments import Workspace
 from orbits.compiling.decorators import OPTIONS, kernel
 from orbits.elimination import two_unknowns
@@ -83,7 +83,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
     width = 3 * n + 2  # columns x_i | x_0 | x_{i+1} | p | right-hand side
     at_first, at_next, at_p, at_rhs = n, 2 * n, 3 * n, 3 * n + 1
 
-    @njit(forceinline=True, fastmath={"contract", "nsz", "arcp"}, **OPTIONS)
+    @part(forceinline=True, fastmath={"contract", "nsz", "arcp"}, **OPTIONS)
     def triangularise(panel):
         """Householder reflections that clear the first n columns of the 2n rows; returns the sign of the factor."""
         sign = 1.0
@@ -252,7 +252,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         call(listed[1], length, twist, address)
         return sign
 
-    @njit(forceinline=True, **OPTIONS)
+    @part(forceinline=True, **OPTIONS)
     def products(border, solution):
         """Products of a row with the null and with the particular solution."""
         along, across = 0.0, 0.0

@@ -11,15 +11,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba import njit
-
+from contvines_ground.parts import part
 from orbits.compiling.decorators import OPTIONS, kernel
 
 NEVER_ZERO = 1e-290
 FAST: dict[str, Any] = {**OPTIONS, "forceinline": True, "fastmath": {"contract", "nsz", "arcp"}}
 
 
-@njit(**FAST)
+@part(**FAST)
 def reflect(a00, a01, u00, u01, w0, r0, a10, a11, u10, u11, w1, r1, b00, b01, b10, b11, d00, d01, d10, d11, q0, q1, f0, f1):  # fmt: skip
     """Two Householder reflections that clear the first two columns of the lower rows of
 
@@ -169,7 +168,7 @@ def forward(F, A, D, Q, stored):
     return state, sign * two
 
 
-@njit(**FAST)
+@part(**FAST)
 def _back(top, bottom, p, x0, x1, n0, n1):
     """A node from the first node x of its half and the node n after it, for the right-hand side as it is."""
     second = (
@@ -179,7 +178,7 @@ def _back(top, bottom, p, x0, x1, n0, n1):
     return (first - top[1] * second) * top[0], second
 
 
-@njit(**FAST)
+@part(**FAST)
 def _back_null(top, bottom, p, x0, x1, n0, n1):
     """The same for no right-hand side."""
     second = (-bottom[6] * p - bottom[2] * x0 - bottom[3] * x1 - bottom[5] * n1 - bottom[4] * n0) * bottom[1]

@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from contvines_ground.parts import part
 from orbits.compiling.decorators import kernel
 from orbits.elimination.two_unknowns import FAST, reflect
 
@@ -28,7 +28,7 @@ def lanes_size(length: int) -> int:
     return 0 if length < SHORTEST else length // LANES * (PACK + KEEP) + STATE + ENDS
 
 
-@njit(**FAST)
+@part(**FAST)
 def _pack(F, A, D, Q, m, lanes, pack):
     """Copy block s m + b to place b of lane s: A, D, Q, -F as twelve rows."""
     for b in range(m):
@@ -49,7 +49,7 @@ def _pack(F, A, D, Q, m, lanes, pack):
             pack[at + 11 * LANES] = -F[i, 1]
 
 
-@njit(**FAST)
+@part(**FAST)
 def _forward(m, lanes, pack, keep, state):
     """Eliminate the inner nodes of every segment.
 
@@ -130,7 +130,7 @@ def _forward(m, lanes, pack, keep, state):
             state[s + 12 * LANES] *= math.copysign(1.0, row[0] * row[8])
 
 
-@njit(**FAST)
+@part(**FAST)
 def _backward(m, lanes, keep, ends, p, null):
     """Inner nodes of the particular and the null solution from the two ends of every segment.
 

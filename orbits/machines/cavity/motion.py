@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from contvines_ground.parts import part
 from orbits.compiling.digits import remainders
 
 
-@njit(error_model="numpy", forceinline=True)
+@part(error_model="numpy", forceinline=True)
 def sample_with(law, states, ahead, out):
     """w, w', v, v' at given phases after given states; contract, item 4."""
     C = law.amplitude
@@ -39,7 +38,7 @@ def sample_with(law, states, ahead, out):
         out[i, 3] = C * omega * math.cos(psi + x)
 
 
-@njit(error_model="numpy", forceinline=True)
+@part(error_model="numpy", forceinline=True)
 def works_with(law, states, ahead, out):
     """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5.
 
@@ -75,7 +74,7 @@ def works_with(law, states, ahead, out):
         out[i, 2] = friction / square * omega * omega * abs(way)
 
 
-@njit(error_model="numpy", forceinline=True)
+@part(error_model="numpy", forceinline=True)
 def energies_with(law, states, out):
     """Energy of the relative motion per mass of the absorber, w'^2/2 + b w; contract, item 5."""
     for i in range(states.shape[0]):

@@ -21,8 +21,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from contvines_ground.parts import part
 from orbits.compiling.digits import remainders, shift, wrap
 from orbits.machines.cavity.legs import angle_of, directions, fall
 
@@ -35,7 +34,7 @@ _TWO_PI = 2.0 * math.pi
 _TINY = 1e-30
 
 
-@njit(error_model="numpy", forceinline=True)
+@part(error_model="numpy", forceinline=True)
 def advance_with(law, state, until, codes, modes, rows):
     """Run from event to event; see :mod:`orbits.machines.stepping`, item 3.
 

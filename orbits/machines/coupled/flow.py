@@ -25,13 +25,13 @@ Everything here is compiled; quantities are scalars.
 
 import math
 
-from numba import njit
+from contvines_ground.parts import part
 
 TINY = 1e-300
 NEAR = 0.03  # Taylor series to order 8 up to here: relative error below roundoff
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def harmonic(force, excitation, drag, stiffness):
     """Response of an oscillator to a moving base: force (sin Psi + excitation * drag cos Psi) -> X sin Psi + Y cos Psi.
 
@@ -60,7 +60,7 @@ def harmonic(force, excitation, drag, stiffness):
     return scale * (stiffness + excitation * drag * drag), scale * drag * (excitation * stiffness - 1.0)
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def rates(mass, drag):
     """Decay rate alpha and angular frequency beta of mass z'' + drag z' + z = 0; beta is NaN when overdamped."""
     alpha = 0.5 * drag / mass
@@ -70,7 +70,7 @@ def rates(mass, drag):
     return alpha, math.sqrt(square)
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def transition(alpha, beta, duration):
     """Entries of the 2x2 matrix that carries (z, z') over `duration`, and the two functions it is made of.
 
@@ -92,19 +92,19 @@ def transition(alpha, beta, duration):
     )
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def oscillation(alpha, beta, z, z_rate):
     """Coefficients A, B of exp(-alpha tau) (A cos beta tau + B sin beta tau) with the given initial values."""
     return z, (z_rate + alpha * z) / beta
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def derivative(Omega, alpha, beta, P, Q, A, B):
     """Coefficients P, Q, A, B of the derivative of a wave with respect to tau."""
     return -Omega * Q, Omega * P, beta * B - alpha * A, -beta * A - alpha * B
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau):
     """A wave's value and its derivative at time tau after the phase `phase`."""
     Psi = phase + Omega * tau
@@ -117,7 +117,7 @@ def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau):
     return value, slope
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def certain(y, y_rate, bound):
     """Time for which y > 0 stays positive when abs(y'') <= bound: the zero of y + y' h - bound h^2/2."""
     root = math.sqrt(y_rate * y_rate + 2.0 * bound * y)
@@ -126,7 +126,7 @@ def certain(y, y_rate, bound):
     return 2.0 * y / (root - y_rate)
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
     """First zero of a wave in start < tau < end; `end` when there is none.
 
@@ -168,7 +168,7 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
         value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau)
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def ahead(tau, h0, h1, z0, z1, omega, alpha, beta):
     """q1(tau) - q1(0), q1'(tau) - q1'(0), and h'', z'', h''', z''' at tau, for q1 = harmonic h + damped oscillation z + const.
 
@@ -221,7 +221,7 @@ def ahead(tau, h0, h1, z0, z1, omega, alpha, beta):
     )
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def decompose(psi, w, rate, v, v_rate, eps, omega, X, Y, offset):
     """q1's harmonic h and oscillation z with their rates, and q2', of a state."""
     s, c = math.sin(psi), math.cos(psi)
@@ -232,7 +232,7 @@ def decompose(psi, w, rate, v, v_rate, eps, omega, X, Y, offset):
     return h0, h1, q1 - h0 - offset, v_rate - eps * q2_rate - h1, q2_rate
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def leg(state, params):
     """A state's closed form: h, h', z, z' at the start, alpha, beta, q2' and q2'' (q2' is of no use while stuck)."""
     G, omega, lam, eps, mu, g, chi = (

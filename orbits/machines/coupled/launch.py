@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from contvines_ground.parts import part
 from orbits.compiling import digits as _digits
 from orbits.compiling.decorators import stored_with
 from orbits.compiling.digits import wrap
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def _push(state, params):
     """v'' = -q1 - eps lambda q1' + e + eps lambda e' of a state."""
     G, omega, lam, eps, chi = params[0], params[1], params[2], params[3], params[7]
@@ -21,7 +20,7 @@ def _push(state, params):
     return -q1 - drag * q1_rate + eps * G * (math.sin(state[0]) + chi * drag * omega * math.cos(state[0]))
 
 
-@njit(error_model="numpy")
+@part(error_model="numpy")
 def _push_rate(state, params):
     """Third derivative of v of a state without friction and with w' = 0."""
     G, omega, lam, eps, chi = params[0], params[1], params[2], params[3], params[7]

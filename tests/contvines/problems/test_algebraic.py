@@ -1,5 +1,7 @@
 """AlgebraicProblem on textbook cases."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -253,3 +255,25 @@ def test_lemniscate_crosses_itself():
     assert of_kind(graph, "fold") == pytest.approx([-1.0, 1.0], abs=1e-12)
     assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-12)
     assert len(graph) == 1 and graph["B1"].closed
+
+
+@pytest.mark.parametrize(
+    "nested, shape",
+    [(lambda u, p: [[p - u[0], u[1]]], "(1, 2)"), (lambda u, p: [[p - u[0]], [u[1]]], "(2, 1)")],
+)
+def test_numbers_that_do_not_come_in_a_row_are_refused(nested, shape):
+    with pytest.raises(ValueError, match=re.escape(f"F returns numbers in shape {shape}")):
+        cv.AlgebraicProblem(nested, [0.0, 0.0], 1.0)
+
+
+def test_a_long_exception_is_short_in_the_table_and_whole_on_the_branch():
+    words = "the inner iteration has not converged; " * 20 + "\nsee the log"
+
+    def fails(u, p):
+        if p > 1.5:
+            raise RuntimeError(words)
+        return p - u
+
+    graph = cv.diagram(cv.AlgebraicProblem(fails, [1.0], 1.0), within=(0.0, 2.0))
+    assert max(map(len, str(graph).splitlines())) < 200
+    assert words in graph["B1"].ended[1] and words in graph.to_dict()["branches"][0]["ended"][1]

@@ -1,0 +1,77 @@
+"""Compiled functions that only compiled functions call."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+from numba import config, njit
+from numba.core.errors import TypingError
+
+from contvines_ground.parts import part
+
+pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+
+
+@part(error_model="numpy", forceinline=True)
+def hypotenuse(a, b):
+    return math.sqrt(a * a + b * b)
+
+
+@part(error_model="numpy")
+def longest(sides):
+    found = 0.0
+    for i in range(sides.shape[0]):
+        found = max(found, hypotenuse(sides[i, 0], sides[i, 1]))
+    return found
+
+
+@njit(error_model="numpy")
+def twice(sides):
+    return 2.0 * longest(sides)
+
+
+SIDES = np.array([[3.0, 4.0], [5.0, 12.0], [8.0, 15.0]])
+
+
+def test_parts_of_parts_are_linked_into_what_python_calls():
+    assert twice(SIDES) == 34.0
+
+
+def test_of_a_part_there_is_no_machine_code():
+    assert twice(SIDES) == 34.0
+    for function in (hypotenuse, longest):
+        (compiled,) = function.overloads.values()
+        assert not callable(compiled.entry_point)
+    (compiled,) = twice.overloads.values()
+    assert callable(compiled.entry_point)
+
+
+def test_python_may_call_a_part_with_any_types():
+    assert hypotenuse(3.0, 4.0) == 5.0
+    assert hypotenuse(5, 12) == 13.0
+    assert hypotenuse(3.0, 4.0) == 5.0
+    assert longest(SIDES) == 17.0
+    assert longest(SIDES[:, ::-1]) == 17.0
+
+
+def test_what_no_compiler_can_type_is_refused_as_by_numba():
+    with pytest.raises(TypingError):
+        hypotenuse("3", "4")
+
+
+def test_a_part_can_be_sent_to_another_process():
+    assert pickle.loads(pickle.dumps(longest))(SIDES) == 17.0
+
+
+def test_a_part_takes_the_compilers_options():
+    @part(error_model="python")
+    def share(a, b):
+        return a / b
+
+    @njit(error_model="numpy")
+    def caller(a, b):
+        return share(a, b)
+
+    with pytest.raises(ZeroDivisionError):
+        caller(1.0, 0.0)
