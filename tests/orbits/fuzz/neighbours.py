@@ -58,7 +58,7 @@ def _joined(graph: Any, switch: Any, tally: Tally) -> None:
             for i in {0, len(branch) - 1, *(i for i, _ in branch.marks)}
             if abs(branch.values[i] - point.value) < NEAR
         ]
-        if any(apart(point.orbit, branch.orbit(i)) < SAME for i in places):
+        if any(apart(point.orbit, branch.orbit(i)) < max(SAME, _unresolved(point)) for i in places):
             continue
         if not branch.real:
             tally.count("virtual branches that are met where they have no point")
@@ -85,7 +85,7 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
         nearest = gaps[-1] if point.kind in BORDERS or point.kind == "fold" else float(np.nanmin(gaps))
         falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
-            tally.count("ways to special points shorter than the last bit of the parameter")
+            tally.count("ways to special points shorter than what is known of the parameter")
         elif not falls and _comes_home(branch.orbit(i), [orbit for _, orbit in beside], point):
             tally.count("ways to special points followed in many digits")
         elif not falls:
@@ -107,12 +107,15 @@ def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
 
 
 def _unresolved(point: Any) -> float:
-    """How far the motion of a special point goes while the parameter changes by its last bit: no branch can be told to come nearer."""
+    """How far the motion of a special point goes while the parameter changes by as much as leaves open where it is, or by its last bit.
+
+    No branch can be told to come nearer.
+    """
     if point.kind == "fold":  # the parameter stands still there, and points are located in the motion
         return 0.0
     along = np.asarray(point.tangent)
     rate = abs(float(along[-1])) / float(np.abs(along).max())
-    return float(np.spacing(point.value)) / max(rate, 1e-300)
+    return max(float(np.spacing(point.value)), point.location_error) / max(rate, 1e-300)
 
 
 def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
