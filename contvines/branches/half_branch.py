@@ -73,7 +73,10 @@ class HalfBranch:
             for i, e in self.events[::-1]
         ]
         return HalfBranch(
-            [piece._replace(turned=not piece.turned) for piece in self.pieces[::-1]], events, self.status
+            [piece._replace(turned=not piece.turned) for piece in self.pieces[::-1]],
+            events,
+            self.status,
+            self.first,
         )
 
     def extended(self, other: HalfBranch, skip: int = 0) -> HalfBranch:
@@ -108,7 +111,7 @@ class HalfBranch:
             pieces += self._slice(here, i)
             here = i + 1
         events = [(i - int(np.searchsorted(gone, i)), e) for i, e in self.events if i not in gone]
-        return HalfBranch(pieces + self._slice(here, len(self)), events, self.status)
+        return HalfBranch(pieces + self._slice(here, len(self)), events, self.status, self.first)
 
     def joined(self) -> Piece:
         """All points as one piece, in order."""

@@ -119,7 +119,7 @@ def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solv
 
 
 def without_rounding(engine: Engine, origin: Solved, half: HalfBranch) -> HalfBranch:
-    """The half of a branch that leaves a special point without turns of the parameter that are rounding, and solutions up to these.
+    """The half of a branch that leaves a special point (or meets one, reversed) without turns of the parameter that are rounding, and solutions up to these.
 
     The nearer to where p = p0 + a s^2 the more singular the equations, and the less of p is known: where a s^2 is not, tangents and
     multipliers do not tell either.

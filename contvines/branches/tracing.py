@@ -9,12 +9,15 @@ from typing import Any
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
+from ..events.landing import OTHER
 from ..events.located import Role
 from ..events.watch import Watch
 from ..journal import NullJournal
 from .half_branch import HalfBranch, Piece, piece_of, single
 from .opening import SHORTER, opening, without_rounding
 from .records import pack, unpack
+
+AGAIN = {Role.LEAP: SHORTER, Role.LANDING: OTHER}  # parts of the steps that are traced again
 
 
 def trace_half(
@@ -72,11 +75,11 @@ def trace_half(
             events = unpack(known)
         status, count = chunk.status, len(chunk)
         retrace = None
-        if events and events[-1].role is Role.LEAP:
-            i = int(events.pop().position)
+        if events and events[-1].role in AGAIN:
+            part, i = AGAIN[events[-1].role], int(events.pop().position)
             change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
             status, count = Status.RUNNING, i + 1
-            retrace = Retrace(count, SHORTER * engine.norm(engine.join(change[0], float(change[1]))))
+            retrace = Retrace(count, part * engine.norm(engine.join(change[0], float(change[1]))))
         elif events and events[-1].ends_branch:
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:
@@ -104,4 +107,8 @@ def trace_half(
             notice(len(half), half.end)
         if status != Status.RUNNING:
             break
-    return half if origin is None or half.status == Status.CLOSED else without_rounding(engine, origin, half)
+    if half.status == Status.CLOSED:
+        return half
+    if half.events and half.events[-1][1].role is Role.MEETING:
+        half = without_rounding(engine, half.events[-1][1].point, half.reversed()).reversed()
+    return half if origin is None else without_rounding(engine, origin, half)

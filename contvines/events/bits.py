@@ -6,7 +6,11 @@ import numpy as np
 
 FOLD, SINGULAR, MULTIPLIER, BORDER, MEETING, SHALLOW, DAMPED, HUMP = 1, 2, 4, 8, 16, 32, 64, 128
 
+LANDING = 8192  # behind those of `watch`: its end lies next to a meeting
+
 APART = 1e-6  # parts that a symmetry changes below this are zero
+NEXT = 0.1  # part of the distance from a symmetry's fixed space that a step which ends next to a meeting leaves ...
+WITHIN = 1e-4  # ... and the distance below which it is one
 
 
 class Scanned(NamedTuple):

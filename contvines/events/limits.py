@@ -22,6 +22,8 @@ SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
 BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
+INVERSE = 1e-2  # relative difference of the products of a margin and what grows as its inverse ...
+SPREAD = 4.0  # ... at places where it differs by such a factor at least
 VANISHES = 0.1  # of the margin that does at the border: what it seems to be there, from points so near that rounding may stop its fall
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
 PLACES = (1.0, 2.0, 3.0, 4.0)
@@ -64,7 +66,7 @@ def _row(segment: Segment, root: Root) -> np.ndarray:
     m = engine.m
     if not m or engine.problem.spectrum != "map" or not segment.length > 0.0:
         return own
-    limits = _limits(segment, root.position, _characteristic(engine.spectrum(own)))
+    limits = _limits(segment, root.position, own)
     if limits is None:
         return own
     row, roots = own.copy(), _roots(limits)
@@ -72,11 +74,12 @@ def _row(segment: Segment, root: Root) -> np.ndarray:
     return row
 
 
-def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.ndarray] | None:
+def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarray] | None:
     """Limits of the characteristic polynomial times powers of the distance, up to the first that is finite.
 
-    None if none converges, or if they agree with the polynomial computed at the border.
+    None if none converges, or if they agree with the polynomial computed at the border (of the row `own`).
     """
+    computed = _characteristic(segment.engine.spectrum(own))
     best: list[np.ndarray] | None = None
     error = np.inf
     if _plainly(segment, position, computed):
@@ -99,7 +102,29 @@ def _limits(segment: Segment, position: float, computed: np.ndarray) -> list[np.
             break
     if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
         return None
-    return None if best is not None and len(best) > 1 and _bounded(segment, position, computed) else best
+    if best is None:
+        return _by_margin(segment, position, own)
+    return None if len(best) > 1 and _bounded(segment, position, computed) else best
+
+
+def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarray] | None:
+    """The polynomial, and its limit times the margin that vanishes, if that is the same wherever rounding has put the margin."""
+    engine = segment.engine
+    (_, beside), (_, before) = (_rows(segment, position, spacings) for spacings in (NEAREST, DISTANCES))
+    if not (len(beside) and len(before) and engine.problem.n_margins):
+        return None
+    rows = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
+    index = int(np.abs(engine.margins(own)).argmin())
+    margins, polynomials = engine.margins(rows)[:, index], _characteristic(engine.spectrum(rows))
+    products = margins[:, None] * polynomials
+    grown = products[:, 1]
+    if not np.isfinite(products).all() or np.abs(polynomials[0]).argmax() != 1:
+        return None
+    even = float(np.ptp(grown)) < INVERSE * float(np.abs(grown).max())
+    if not (even and float(np.abs(margins).max()) > SPREAD * float(np.abs(margins).min())):
+        return None
+    side = np.sign(engine.margins(before[0, 0])[index])
+    return [polynomials[0], side * np.median(products, axis=0)]
 
 
 def _plainly(segment: Segment, position: float, computed: np.ndarray) -> bool:

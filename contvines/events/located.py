@@ -16,7 +16,8 @@ class Role(StrEnum):
     MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
     STOP = "stop"  # a function at whose zeros the user wants branches to end
     PLAIN = "plain"  # just a point between two special points
-    LEAP = "leap"  # the point before a step to another branch: to be traced again
+    LEAP = "leap"  # the point before a step to another branch: to be traced again with shorter ones
+    LANDING = "landing"  # the same, before a step that ends next to a meeting: with another one
 
 
 class Located(NamedTuple):
@@ -27,7 +28,7 @@ class Located(NamedTuple):
     position : float
         Index of the point before it plus the fraction of the segment.
     kind : str
-        See :mod:`contvines.events.kinds`; of a meeting that of the symmetry. Empty for a plain point and a leap.
+        See :mod:`contvines.events.kinds`; of a meeting that of the symmetry. Empty for a plain point, a leap and a landing.
     index : int
         Which multiplier, margin, symmetry or user function.
     point : Solved

@@ -27,10 +27,13 @@ from .bits import (
     DAMPED,
     FOLD,
     HUMP,
+    LANDING,
     MEETING,
     MULTIPLIER,
+    NEXT,
     SHALLOW,
     SINGULAR,
+    WITHIN,
     Scanned,
     Symmetries,
 )
@@ -39,7 +42,6 @@ from .scan_arrays import mark_segments as with_arrays
 from .symmetry import SymmetryTest
 
 FLAT = 1e-9  # a parameter component of the tangent below this is zero (a vertical branch has no folds)
-COLUMNS = 16  # a cycle is known from any of its nodes: a few unknowns tell whether it is its own image
 
 
 def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, flags, smallest):
@@ -143,6 +145,8 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
                 dot += gaps[0, s, j] * gaps[1, s, j]
             if dot < 0.0 and here > APART and there > APART:
                 found |= MEETING
+            if here < WITHIN and there > APART and here < NEXT * there:
+                found |= LANDING
         flags[i - 1] = found
         square = 0.0
         for j in range(size):
@@ -280,17 +284,17 @@ class Scanner:
         self.engine = engine
         self.kind = KINDS[engine.detection]
         self.mark = _compiled() if engine.problem.kernels.compiled else with_arrays
-        columns = min(COLUMNS, engine.n) if self.kind == MAP else engine.n
+        columns = engine.n
         self.plain = plain = bool((engine.scale[:-1] == 1.0).all())
         affine = [test.affine for test in symmetries if test.affine is not None and plain]
         self.left_out = [test for test in symmetries if test.affine is None or not plain]
         shape = (len(affine), columns)
         shift = symmetries[0].shift if symmetries else None
         self.symmetries = Symmetries(
-            np.array([order[:columns] for order, _, _ in affine], np.int64).reshape(shape),
-            np.array([signs[:columns] for _, signs, _ in affine], float).reshape(shape),
-            np.array([constant[:columns] for _, _, constant in affine], float).reshape(shape),
-            np.zeros(columns) if shift is None else np.array(shift[:columns], float),
+            np.array([order for order, _, _ in affine], np.int64).reshape(shape),
+            np.array([signs for _, signs, _ in affine], float).reshape(shape),
+            np.array([constant for _, _, constant in affine], float).reshape(shape),
+            np.zeros(columns) if shift is None else np.array(shift, float),
             np.zeros((2, *shape)),
         )
 

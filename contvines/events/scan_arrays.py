@@ -16,10 +16,13 @@ from .bits import (
     DAMPED,
     FOLD,
     HUMP,
+    LANDING,
     MEETING,
     MULTIPLIER,
+    NEXT,
     SHALLOW,
     SINGULAR,
+    WITHIN,
     Scanned,
     Symmetries,
 )
@@ -52,7 +55,8 @@ def mark_segments(
         outside = smallest < MARGIN
         flags |= np.where((outside[1:] != outside[:-1]) & (outside[1:] == real), BORDER, 0)
         if len(orders):
-            flags |= np.where(_meet(points, orders, images, constants, shift), MEETING, 0)
+            meets, lands = _meet(points, orders, images, constants, shift)
+            flags |= np.where(meets, MEETING, 0) | np.where(lands, LANDING, 0)
         steps, changes = np.diff(points, axis=0), np.diff(values)
         lengths = np.sqrt(
             metric.of_unknowns * np.einsum("ij,ij->i", steps, steps) + metric.of_parameter * changes**2
@@ -100,17 +104,26 @@ def _past(re: np.ndarray, im: np.ndarray, kind: int) -> tuple[np.ndarray, np.nda
 
 def _meet(
     points: np.ndarray, orders: np.ndarray, images: np.ndarray, constants: np.ndarray, shift: np.ndarray
-) -> np.ndarray:
-    """Where the part that a symmetry changes turns round, modulo shifts by a period."""
-    meets = np.zeros(len(points) - 1, dtype=bool)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Where the part that a symmetry changes turns round, and where it all but vanishes, modulo shifts by a period."""
+    meets, lands = np.zeros((2, len(points) - 1), dtype=bool)
     whole = float(shift @ shift)
     for order, image, constant in zip(orders, images, constants):
-        gap = points[:, : len(shift)] - (image * points[:, order] + constant)
+        gap = points - (image * points[:, order] + constant)
         if whole > 0.0:
             gap = gap - np.outer(np.round((gap @ shift) / whole), shift)
-        far = np.abs(gap).max(axis=1, initial=0.0) > APART
-        meets |= far[1:] & far[:-1] & (np.einsum("ij,ij->i", gap[1:], gap[:-1]) < 0.0)
-    return meets
+        turned, landed = turns_and_landings(gap)
+        meets |= turned
+        lands |= landed
+    return meets, lands
+
+
+def turns_and_landings(part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where a part of the unknowns, of shape (n, N), turns round, and where it all but vanishes: next to where it does."""
+    size = np.abs(part).max(axis=1, initial=0.0)
+    far = size > APART
+    turns = far[1:] & far[:-1] & (np.einsum("ij,ij->i", part[1:], part[:-1]) < 0.0)
+    return turns, far[:-1] & (size[1:] < WITHIN) & (size[1:] < NEXT * size[:-1])
 
 
 def dips(left: np.ndarray, middle: np.ndarray, right: np.ndarray, lengths: np.ndarray) -> np.ndarray:

@@ -15,14 +15,15 @@ from . import pairs
 from .borders import resolved
 from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
+from .landing import again, first_landing
 from .leaps import inexact, leap
 from .located import Located, Role
 from .multipliers import balance, counts, nearest_to_circle
 from .scan import (
-    APART,
     BORDER,
     DAMPED,
     HUMP,
+    LANDING,
     MEETING,
     MULTIPLIER,
     SHALLOW,
@@ -31,6 +32,7 @@ from .scan import (
     Scanner,
     dips,
 )
+from .scan_arrays import turns_and_landings
 from .segment import Segment
 from .windows import passed, real_inside, windows
 
@@ -67,7 +69,7 @@ class Watch(Examiner):
         return Scan(scan.flags[own:], scan.smallest[own:])
 
     def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
-        """All special points on a chunk, in order; what lies behind a border, a meeting or a leap is left out.
+        """All special points on a chunk, in order; what lies behind a border, a meeting, a leap or a landing is left out.
 
         Parameters
         ----------
@@ -84,10 +86,9 @@ class Watch(Examiner):
         if real and scan.smallest[0] < MARGIN and not (scan.smallest[1:] < MARGIN).all():
             flags[scan.smallest[1:] < MARGIN] |= BORDER
         for test in self.scanner.left_out:
-            part = test.part(chunk.points)  # of all unknowns, as in `examine`
-            size = np.abs(part).max(axis=1)
-            far = (size[:-1] > APART) & (size[1:] > APART)
-            flags[far & (np.einsum("ij,ij->i", part[:-1], part[1:]) < 0.0)] |= MEETING
+            turns, lands = turns_and_landings(test.part(chunk.points))
+            flags[turns] |= MEETING
+            flags[lands] |= LANDING
         close: set[int] = set()
         wide = _wide(chunk)
         own = len(wide) - len(chunk)
@@ -108,7 +109,8 @@ class Watch(Examiner):
             flags[changes(values)] |= USER
         signs = without_zeros(chunk.signs)
         events: list[Located] = []
-        for i in np.flatnonzero(flags):
+        landed = first_landing(chunk, flags)
+        for i in np.flatnonzero(flags[:landed]):
             i, bits = int(i), int(flags[i])
             segment = Segment(
                 self.engine, chunk.solved(i, float(signs[i])), chunk.solved(i + 1, float(signs[i + 1]))
@@ -150,8 +152,8 @@ class Watch(Examiner):
                 events = [e for e in events if self._apart(e, stop)]
             events += before_stop(found)
             if stop is not None:
-                break
-        return events
+                return events
+        return events if landed is None else [*events, again(chunk, landed)]
 
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
         """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.

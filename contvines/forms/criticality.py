@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..problems.protocol import Problem
+from ..problems.sparse_loci import large
 from .coefficients import Forms
+from .sparse_pair import sparse_lyapunov
 
 
 class Pitch(NamedTuple):
@@ -47,24 +49,24 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
     u, p
         The point.
     spectrum : ndarray of complex
-        Raw multipliers there (of a flow they are computed here).
+        Raw multipliers there (of a flow with few unknowns they are computed here).
     """
     flow = problem.spectrum == "flow"
     if problem.kernels.matrix is None:
         return Pitch(None, None, "")
     try:
-        forms = Forms(problem, u, p)
-        values: Any = forms.eigenvalues if flow else np.asarray(spectrum, dtype=complex)
-        upper = values[values.imag > 0.0]
-        if not len(upper):
-            return Pitch(None, None, "")
-        critical = complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
-        found, _ = forms.lyapunov(critical)
-    except (ValueError, IndexError, np.linalg.LinAlgError):
-        return Pitch(None, None, "")
+        if large(problem):
+            critical = _critical(np.asarray(problem.to_multipliers(spectrum), dtype=complex), flow)
+            found = sparse_lyapunov(problem, u, p, critical)
+        else:
+            forms = Forms(problem, u, p)
+            critical = _critical(forms.eigenvalues if flow else np.asarray(spectrum, dtype=complex), flow)
+            found, _ = forms.lyapunov(critical)
+    except (ValueError, IndexError, np.linalg.LinAlgError) as error:
+        return Pitch(None, None, f"no first Lyapunov coefficient: {error}")
     value = float(found.value)
     if not np.isfinite(value):
-        return Pitch(None, None, "")
+        return Pitch(None, None, "no first Lyapunov coefficient: it is not finite")
     note = ""
     if not flow:
         resonance = strong_resonance(complex(np.asarray(problem.to_multipliers(np.array([critical])))[0]))
@@ -72,6 +74,20 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
     if found.error > 0.5 * abs(value):
         return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
     return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
+
+
+def _critical(values: np.ndarray, flow: bool) -> complex:
+    """Of the upper half plane the value that is nearest to the boundary of stability.
+
+    Raises
+    ------
+    ValueError
+        If none is there.
+    """
+    upper = values[values.imag > 0.0]
+    if not len(upper):
+        raise ValueError("no pair is known at the point")
+    return complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
 
 
 def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float | None:

@@ -60,7 +60,7 @@ def along_line(
         samples = _sampled(jacobian, u, x, ROUGH * radius, FEW)
         if samples is None:
             return None
-        inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * _nodes(FEW)[i]) for i in (1, 0))
+        inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * nodes(FEW)[i]) for i in (1, 0))
         return Line(
             *_fitted(samples, ROUGH * radius), float(np.abs(inner - outer).max()) / (ROUGH * radius), 0.0
         )
@@ -96,7 +96,7 @@ def _sampled(
 ) -> np.ndarray | None:
     """The Jacobians at the nodes; None where one cannot be evaluated."""
     samples = []
-    for t in _nodes(count):
+    for t in nodes(count):
         found = jacobian(u + radius * t * x)
         if found is None:
             return None
@@ -106,22 +106,22 @@ def _sampled(
 
 def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
     """First and second derivative at the middle."""
-    first, second = _weights(len(samples))
+    first, second = derivative_weights(len(samples))
     shape, flat = samples.shape[1:], samples.reshape(len(samples), -1)
     return (first @ flat).reshape(shape) / radius, (second @ flat).reshape(shape) / radius**2
 
 
 @cache
-def _nodes(count: int) -> np.ndarray:
+def nodes(count: int) -> np.ndarray:
     """The zeros of the Chebyshev polynomial of this degree."""
     return np.cos((2.0 * np.arange(count) + 1.0) * np.pi / (2 * count))
 
 
 @cache
-def _weights(count: int) -> tuple[np.ndarray, np.ndarray]:
+def derivative_weights(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the samples in the first and second derivative at 0 of the polynomial through them, on [-1, 1]."""
     chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(_nodes(count), count - 1))
+    series = np.linalg.inv(chebyshev.chebvander(nodes(count), count - 1))
     unit = np.eye(count)
     first = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row)) for row in unit])
     second = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row, 2)) for row in unit])

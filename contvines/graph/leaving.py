@@ -185,6 +185,8 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     symmetry = met[0].symmetry
     if symmetry.root is not None:
         problem, u = symmetry.root(point.u)
+        # it may be a shorter solution's still: asked here, as singular equations, once solved, repeat nothing exactly
+        problem, u = problem.root(u, point.value) or (problem, u)
         run.queue.append(
             Pending(
                 problem,

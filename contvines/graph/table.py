@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .attractor import Attractor
     from .graph import Graph
 
+PAIRS = ("hopf", "neimark-sacker")  # whose remarks say why nothing is known of what leaves
 AT_END = 1e-9  # part of the interval: special points closer to its end are at it
 
 
@@ -96,7 +97,8 @@ def special_table(graph: Graph) -> Table:
             if switch.point == point.label:
                 arrow = f"{switch.source} -> {switch.target}"
                 targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
-        if not targets and point.kind in BORDERS and point.real and point.remarks:
+        open_end = point.kind in BORDERS and point.real
+        if not targets and (open_end or point.kind in PAIRS) and point.remarks:
             targets.append(f"({'; '.join(point.remarks)})")
         about = " ".join(filter(None, remarks))
         value = number_text(point.value, 12, size_of(graph.within))

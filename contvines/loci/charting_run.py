@@ -267,6 +267,8 @@ class Charting:
         for i, region in enumerate(regions):
             self.tell(f"region {i + 1} of {len(regions)}")
             region.attractors = self.witness(problem, region.at, known)
+            for place in region.elsewhere:
+                place["attractors"] = self.witness(problem, (place["at"][0], place["at"][1]), known)
         self.chart.regions = regions
 
     def witness(
@@ -277,7 +279,8 @@ class Charting:
         known = self.journal.recall(key)
         if known is None:
             there = problem.against(problem.parameter, {self.over: place[1]})
-            known = {"attractors": together(there.witness(place[0]), motions.at(place))}
+            size = 0.0 if problem.scales is None else float(problem.scales.unknowns.max())
+            known = {"attractors": together(there.witness(place[0]), motions.at(place), size)}
             self.journal.record(key, known)
         return list(known["attractors"])
 

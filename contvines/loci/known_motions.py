@@ -134,19 +134,21 @@ def _key(problem: Any, label: str) -> str:
     return f"{about.get('word')} {about.get('periods')} {bool(about.get('symmetric'))}"
 
 
-def together(simulated: list[dict[str, Any]], known: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """What simulation found, and what it missed of the known ones."""
+def together(
+    simulated: list[dict[str, Any]], known: list[dict[str, Any]], size: float = 0.0
+) -> list[dict[str, Any]]:
+    """What simulation found, and what it missed of the known ones; `size` is that of the unknowns, beside which rounding is zero."""
     result = list(simulated)
     for one in known:
-        if not any(_one(one, other) for other in result):
+        if not any(_one(one, other, size) for other in result):
             result.append(one)
     return result
 
 
-def _one(a: dict[str, Any], b: dict[str, Any]) -> bool:
+def _one(a: dict[str, Any], b: dict[str, Any], unit: float) -> bool:
     if (a["word"], a["periods"]) != (b["word"], b["periods"]):
         return False
     if "u" not in a or "u" not in b:
         return True
-    size = 1e-3 * (np.abs(a["u"]) + np.abs(b["u"])).max()
+    size = 1e-3 * max(float((np.abs(a["u"]) + np.abs(b["u"])).max()), unit)
     return bool(np.abs(np.subtract(a["u"], b["u"])).max() <= size)

@@ -11,6 +11,9 @@ import numpy as np
 
 CELLS = 360  # of the raster, each way
 SMALLEST = 60  # cells; smaller regions are slivers between loci
+FEWEST, MOST = 2, 5  # places of a region
+PER_PLACE = 0.05  # of the plane: so much more asks for one more
+INNER = 0.3  # of the largest distance from the loci, at least, is that of every place
 
 
 @dataclass(eq=False)
@@ -25,6 +28,8 @@ class Region:
         Part of the plane that it takes.
     attractors : list of dict
         What simulation found there: "word", "periods" and "kind" of each motion.
+    elsewhere : list of dict
+        Further places of the region, far from one another: "at" and "attractors" of each.
     cells : ndarray of bool
         Its cells in a raster of the plane; rows are values of p, columns of q.
     """
@@ -33,15 +38,18 @@ class Region:
     share: float
     attractors: list[dict[str, Any]] = field(default_factory=list)
     cells: np.ndarray = field(default_factory=lambda: np.zeros((0, 0), bool), repr=False)
+    elsewhere: list[dict[str, Any]] = field(default_factory=list)
 
     @property
     def words(self) -> list[str]:
-        """The words of the motions that are stable there; "chaotic", "modulated" and the like where there is no word."""
-        names = [name_of(found) for found in self.attractors]
-        return [
-            name if names.count(name) == 1 else f"{names.count(name)} x {name}"
-            for name in dict.fromkeys(names)
-        ]
+        """The words of the motions that are stable at the middle place; "chaotic", "modulated" and the like where there is no word."""
+        return words_of(self.attractors)
+
+    @property
+    def others(self) -> list[tuple[tuple[float, float], list[str]]]:
+        """The places at which other motions are stable than at the middle one, and their words: something that no locus shows happens between."""
+        told = [((place["at"][0], place["at"][1]), words_of(place["attractors"])) for place in self.elsewhere]
+        return [(at, words) for at, words in told if sorted(words) != sorted(self.words)]
 
     def to_dict(self, parameters: tuple[str, str]) -> dict[str, Any]:
         """The entry of this region in the JSON of a chart."""
@@ -50,7 +58,24 @@ class Region:
             "share": float(self.share),
             "words": self.words,
             "attractors": self.attractors,
+            "agrees": not self.others,
+            "elsewhere": [
+                {
+                    **place,
+                    "at": dict(zip(parameters, map(float, place["at"]))),
+                    "words": words_of(place["attractors"]),
+                }
+                for place in self.elsewhere
+            ],
         }
+
+
+def words_of(attractors: list[dict[str, Any]]) -> list[str]:
+    """Names of attractors, with their number where several have the same one."""
+    names = [name_of(found) for found in attractors]
+    return [
+        name if names.count(name) == 1 else f"{names.count(name)} x {name}" for name in dict.fromkeys(names)
+    ]
 
 
 def name_of(found: dict[str, Any]) -> str:
@@ -101,7 +126,21 @@ def divide(
         if size < SMALLEST:
             continue
         inner = np.where(own, depth, -1.0)
-        i, j = np.unravel_index(int(np.argmax(inner)), inner.shape)
-        p, q = lows + (np.array([i, j]) + 0.5) / cells * widths
-        regions.append(Region((float(p), float(q)), size / cells**2, [], own))
+        (p, q), *more = lows + (_places(inner, size / cells**2) + 0.5) / cells * widths
+        further = [{"at": [float(a), float(b)], "attractors": []} for a, b in more]
+        regions.append(Region((float(p), float(q)), size / cells**2, [], own, further))
     return sorted(regions, key=lambda region: -region.share)
+
+
+def _places(depth: np.ndarray, share: float) -> np.ndarray:
+    """Cells of a region, shape (n, 2): the one farthest from its edges, then those farthest from the ones before and not near an edge."""
+    count = int(np.clip(FEWEST + share / PER_PLACE, FEWEST, MOST))
+    inner = np.argwhere(depth >= max(INNER * depth.max(), 1.0))
+    chosen = [np.array(np.unravel_index(int(np.argmax(depth)), depth.shape))]
+    away = np.full(len(inner), np.inf)
+    while len(chosen) < count:
+        away = np.minimum(away, np.hypot(*(inner - chosen[-1]).T))
+        if not away.max() > 0.0:
+            break
+        chosen.append(inner[int(np.argmax(away))])
+    return np.array(chosen)

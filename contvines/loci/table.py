@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..graph.shortening import short_word
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from .chart import Chart
     from .locus import Locus
     from .plane_point import PlanePoint
+    from .regions import Region
 
 
 def table(chart: Chart, width: int | None = None) -> str:
@@ -95,13 +97,25 @@ def _tables(chart: Chart) -> list[Table]:
             at(region.at, 1, 4),
             at(region.at, 0, 4),
             f"{100.0 * region.share:.1f} %",
-            ", ".join(map(short_word, region.words)) or "-",
+            _stable(region, at),
         )
         for region in chart.regions
     ]
     found += [Table(("point", "kind", q, p, "on", "coefficients"), points)] if points else []
-    head = (f"region at {q}", p, "share", "stable there (simulated)")
+    head = (f"region at {q}", p, "share", "stable (simulated)")
     return [*found, *([Table(head, regions)] if regions else [])]
+
+
+def _stable(region: Region, at: Callable[..., str]) -> str:
+    """What is stable in a region; where its places disagree, what is stable elsewhere in it."""
+    told = ", ".join(map(short_word, region.words)) or "-"
+    if not region.others:
+        return told
+    apart = [
+        f"{', '.join(map(short_word, words)) or '-'} at {at(place, 1, 4)}, {at(place, 0, 4)}"
+        for place, words in region.others
+    ]
+    return f"{told}; not all over it: {'; '.join(apart)}"
 
 
 def _word(locus: Locus) -> str:

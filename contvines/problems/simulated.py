@@ -126,6 +126,8 @@ class SimulatedFlow:
                 return np.full(len(x), np.nan)
 
         with np.errstate(all="ignore"):
+            if not rate(0.0, u).any():  # at rest to the last bit, stable or not
+                u = u + BESIDE * size * (-1.0) ** np.arange(len(u))
             speed = float((np.abs(rate(0.0, u)) / size).max())
             span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
             small: Any = 1e-10 * size
@@ -146,6 +148,7 @@ class SimulatedFlow:
 PATIENCE = 4000  # steps of the integration of one start
 SPREAD = 2.0  # of the starts, in sizes of the unknowns
 LARGEST = 60  # unknowns of equations that are integrated
+BESIDE = 1e-3  # of its size: so far beside an equilibrium a motion begins that would begin on it
 FAR = 1e4  # times its size: escaped
 STILL = 1e-5  # distance, relative to the size, that counts as rest
 

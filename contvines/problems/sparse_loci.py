@@ -24,8 +24,14 @@ def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
     other.derivative[:] = column
 
 
+def large(problem: Any) -> bool:
+    """Whether F_u is sparse and no dense matrix of it is made."""
+    functions = getattr(problem, "functions", None)
+    return getattr(functions, "structure", "dense") == "sparse" and problem.dimension > LARGEST
+
+
 def matrix(data: Any, work: Any) -> np.ndarray:
     """F_u as it stands in a workspace, dense."""
     if len(work.residual) > LARGEST or not sp.issparse(work.jacobian):
-        raise ValueError(f"normal forms of sparse problems are computed up to {LARGEST} unknowns")
+        raise ValueError(f"it needs the matrix of F_u, of up to {LARGEST} unknowns")
     return work.jacobian.toarray()

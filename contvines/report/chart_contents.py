@@ -87,6 +87,9 @@ def _region(region: Any, parameters: tuple[str, str]) -> dict[str, Any]:
     name = ", ".join(region.words) or "nothing was simulated here"
     short = "<br>".join(short_word(word, 16) for word in region.words[:4])
     told = region.to_dict(parameters)
+    if region.others:
+        apart = dict.fromkeys(", ".join(words) or "nothing" for _, words in region.others)
+        name, short = f"{name}; elsewhere in it {', or '.join(apart)}", f"{short}<br>(not all over)"
     return {"at": told["at"], "share": told["share"], "name": name, "short": short}
 
 

@@ -295,8 +295,10 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
     residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10:
         return None
-    found = None
-    for away in (1e-8, 1e-7, 1e-6):
+    # where the branch turns back, or its period halves, close by, solutions at a given value may be those of another one
+    steep = np.abs(tangent).max() * unit > STEEP
+    found = _along(other, at_border, p, tangent) if steep else None
+    for away in (1e-8, 1e-7, 1e-6) if found is None else ():
         sides = []
         for side in (1.0, -1.0):
             q = p + side * away * unit
@@ -311,8 +313,6 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, s
             if margin > GROWING * away:  # not one that vanishes all along, as at a wall touched without speed
                 found = Grown(other, u, q, along)
                 break
-    if found is None and np.abs(tangent).max() * unit > STEEP:
-        found = _along(other, at_border, p, tangent)
     if found is None or (steady and not stable_at(other, found.u, found.p)):
         return None
     if not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):

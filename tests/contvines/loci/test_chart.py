@@ -7,6 +7,7 @@ import pytest
 
 import contvines as cv
 from contvines.command.cli import app
+from contvines.continuation.settings import Settings
 from contvines.journal import MemoryJournal
 from contvines.loci.table import table
 
@@ -43,6 +44,28 @@ def test_the_wedge_of_the_cusp_is_a_region_of_its_own(chart):
     assert len(shares) == 2
     assert shares[0] == pytest.approx(area, abs=0.01)
     assert sorted(region.words for region in chart.regions) == [["2 x equilibrium"], ["equilibrium"]]
+    for region in chart.regions:  # several places of each, on the right side of the cusp's curve, which agree
+        places = [region.at, *(place["at"] for place in region.elsewhere)]
+        assert len({tuple(place) for place in places}) >= 3 and not region.others
+        inside = [b > 0.0 and abs(a) < 2.0 * (b / 3.0) ** 1.5 for a, b in places]
+        assert all(inside) if region.words == ["2 x equilibrium"] else not any(inside)
+
+
+def test_what_no_locus_shows_is_seen_as_a_disagreement():
+    """u' = u (p - u^2) of which only a fold elsewhere has a locus: on one side of p = 0 there is one equilibrium, on the other there are two."""
+    from contvines.loci.charting_run import Charting
+    from contvines.loci.regions import divide
+
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u * (p.p - u**2), [0.0], {"p": -1.0, "q": 0.0}, spectrum="flow"
+    )
+    graph = cv.diagram(problem, within=(-1.0, 0.6), depth=1)
+    run = Charting(graph, "q", (-1.0, 1.0), (-1.0, 0.6), False, Settings.of(None), None, None)
+    run.divide()  # no locus has been traced
+    (region,) = run.chart.regions
+    for place, words in [(region.at, region.words), *region.others]:
+        assert words == (["2 x equilibrium"] if place[0] > 0.0 else ["equilibrium"])
+    assert region.others and len(divide([], run.chart.within)[0].elsewhere) == 4
 
 
 def test_json_is_the_documented_one(chart):

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from contvines.loci.regions import Region
 from contvines.loci.table import table
 
 
@@ -26,7 +27,9 @@ def chart():
         real=True,
         note="",
     )
-    region = SimpleNamespace(at=(3e-15, 5e-4), share=1.0, words=["LR"])
+    found, other = ({"word": word, "periods": 1, "kind": "periodic"} for word in ("LR", "LRt"))
+    elsewhere = [{"at": [0.5, 2e-4], "attractors": [found]}, {"at": [-0.5, 2e-4], "attractors": [other]}]
+    region = Region((3e-15, 5e-4), 1.0, [found], elsewhere=elsewhere)
     return SimpleNamespace(
         parameters=("p", "q"), units={"q": "mm"}, within=((-1.0, 1.0), (-1e-3, 1e-3)), loci={"LP1": locus}, points={"CP1": point},
         regions=[region], message="",
@@ -49,3 +52,12 @@ def test_units_stand_in_the_title_and_the_heads():
 def test_every_line_fits():
     for width in (40, 60, 80):
         assert all(len(line) <= width for line in table(chart(), width).split("\n"))
+
+
+def test_places_that_disagree_are_told():
+    """Of three places of the region one has another motion: it, and it alone, is named with its place."""
+    text = table(chart())
+    assert "LR; not all over it: LRt at 0.0002, -0.5" in text and "0.0002, 0.5" not in text
+    (region,) = chart().regions
+    told = region.to_dict(("p", "q"))
+    assert not told["agrees"] and [place["words"] for place in told["elsewhere"]] == [["LR"], ["LRt"]]

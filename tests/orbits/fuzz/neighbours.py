@@ -102,7 +102,7 @@ def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
         len(beside) > 1
         and apart(end, point.orbit) < SAME
         and all(shortest(orbit) == orbit.periods for orbit in beside[:2])
-        and comes_to(beside[0], beside[1], end)
+        and comes_to(beside[0], beside[1], end, point.location_error)
     )
 
 

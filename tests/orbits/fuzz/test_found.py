@@ -279,6 +279,17 @@ def test_beyond_a_border_a_doubled_solution_is_not_taken_for_the_shorter_one_it_
     assert rounds_apart(border.orbit, 1) > 1e-7
 
 
+def test_just_before_its_doubling_the_shorter_solution_is_not_taken_for_the_doubled_one():
+    """A doubled branch 5e-9 long in the frequency: its border joins motions of two periods, whose halves differ."""
+    graph = diagram("coupled", 460, 418)
+    doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 0.9921650219774604) < 1e-13)
+    border = next(p for p in graph.of_kind("stick") if abs(p.value - 0.9921650266373829) < 1e-13)
+    joined = [graph[end] for s in graph.switches if s.point == border.label for end in (s.source, s.target)]
+    assert {branch.problem.periods for branch in joined} == {2}
+    assert any(branch.seed == doubling.label for branch in joined)
+    assert rounds_apart(border.orbit, 1) > 1e-4
+
+
 def test_a_steep_branch_comes_to_its_period_doubling_in_many_digits():
     """In doubles what is solved for 3e-8 beside it lies on the shorter orbits, whose motion changes 2e5 times as fast as the amplitude."""
     graph = diagram("absorber", 169, 416)

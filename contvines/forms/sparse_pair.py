@@ -1,0 +1,181 @@
+"""The first Lyapunov coefficient of equations with a sparse Jacobian, from sparse solves and derivatives along lines.
+
+With A q = i omega q and w A = i omega w, B and C the second and third derivatives,
+
+    c = w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.q),   A h11 = -B(q, q*),  (A - 2 i omega) h20 = -B(q, q);   l1 = Re c / omega
+
+as in :mod:`.coefficients`. Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., section 5.4, (5.34). The derivatives are
+taken from F_u at Chebyshev nodes on the lines along the real and the imaginary part of q, of which only products with vectors are kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from .coefficients import Coefficient
+from .taylor import ENOUGH, NODES, RADIUS, SMALLER, derivative_weights, nodes
+
+RADII = 14  # at most
+WORSE = 8.0  # growth of the change from one radius to the next at which rounding has taken over
+SWEEPS = 12  # of inverse iteration, at most
+
+Products = Callable[[np.ndarray, np.ndarray], "np.ndarray | None"]
+
+
+def sparse_lyapunov(problem: Any, u: np.ndarray, p: float, critical: complex) -> Coefficient:
+    """l1 of an equilibrium whose F_u is sparse.
+
+    Parameters
+    ----------
+    problem : Problem
+        A flow with sparse kernels.
+    u, p
+        The Hopf point.
+    critical : complex
+        The eigenvalue with positive imaginary part, as the user's equations have it.
+
+    Raises
+    ------
+    ValueError
+        If the equations cannot be evaluated near the point, or F_u has no factors; with the reason.
+    """
+    scales = problem.scales
+    units = np.ones(len(u)) if scales is None else np.asarray(scales.unknowns, dtype=float)
+    rate = 1.0 if scales is None else float(scales.rate)
+    work, data = problem.workspace(), problem.data
+
+    def jacobian(v: np.ndarray) -> Any:
+        known = problem.kernels.linearise(data, v * units, p, work) < 1e300
+        return work.jacobian if known else None
+
+    here = u / units
+    base = jacobian(here)
+    if base is None:
+        raise ValueError("the equations cannot be evaluated here")
+    base = base.copy()
+
+    def changes(v: np.ndarray, vectors: np.ndarray) -> np.ndarray | None:
+        """Change of F_u between the point and v, times vectors; what is large and constant drops out before it is rounded."""
+        there = jacobian(v)
+        return (
+            None if there is None else ((there - base) @ (units[:, None] * vectors)) / (rate * units)[:, None]
+        )
+
+    matrix = (sp.diags_array(1.0 / (rate * units)) @ base @ sp.diags_array(units)).tocsc()
+    value, q, w = _null(matrix, critical / rate)
+    q = q / problem.amplitude(q * units)
+    q = q * np.exp(-0.5j * np.angle(np.sum(q * q)))  # real and imaginary part are orthogonal now
+    omega = value.imag
+    solve = _factors(matrix), _factors(matrix - 2j * omega * sp.eye_array(len(u)))
+    reach = max(float(np.sqrt(np.mean(here**2))), 1.0)
+    return _coefficient(changes, here, (q, w), omega, solve, reach)
+
+
+def _coefficient(
+    changes: Products,
+    u: np.ndarray,
+    pair: tuple[np.ndarray, np.ndarray],
+    omega: float,
+    solve: tuple[Any, Any],
+    reach: float,
+) -> Coefficient:
+    """l1 from the radius of the samples at which it is known best, and its change to the next one."""
+    q, w = pair
+    radius = RADIUS * reach / float(np.abs(q).max())
+    best, before = Coefficient(np.nan, np.inf), None
+    for _ in range(RADII):
+        now = _at_radius(changes, u, q, w, solve, radius)
+        if now is not None and before is not None:
+            change = abs(now - before) / omega
+            if change < best.error:
+                best = Coefficient(before / omega, change)
+            elif change > WORSE * best.error:
+                break
+            if change <= ENOUGH * abs(best.value):
+                break
+        before, radius = now, SMALLER * radius
+    if not np.isfinite(best.error):
+        raise ValueError("the equations cannot be evaluated near the point")
+    return best
+
+
+def _at_radius(
+    changes: Products, u: np.ndarray, q: np.ndarray, w: np.ndarray, solve: tuple[Any, Any], radius: float
+) -> float | None:
+    """Re c from samples up to a radius; None where the equations cannot be evaluated there."""
+    parts = np.column_stack([q.real, q.imag])
+    found = [_derivatives(changes, u, part, parts, radius) for part in parts.T]
+    if found[0] is None or found[1] is None:
+        return None
+    (along_a, twice_a), (along_b, twice_b) = found
+    mixed = along_a[:, 0] + along_b[:, 1]  # B(q, q*)
+    square = along_a[:, 0] - along_b[:, 1] + 1j * (along_a[:, 1] + along_b[:, 0])  # B(q, q)
+    total = twice_a @ [1.0, 1j] + twice_b @ [1.0, 1j]  # C(q, q, q*)
+    h11, h20 = np.real(solve[0](-mixed)), solve[1](-square)
+    bent = np.column_stack([h11, h20.real, h20.imag])
+    found = [_derivatives(changes, u, part, bent, radius) for part in parts.T]
+    if found[0] is None or found[1] is None:
+        return None
+    (along_a, _), (along_b, _) = found
+    total = total + 2.0 * (along_a[:, 0] + 1j * along_b[:, 0])
+    total = total + (along_a - 1j * along_b)[:, 1:] @ [1.0, 1j]
+    return float(np.real(0.5 * (w @ total) / (w @ q)))
+
+
+def _derivatives(
+    changes: Products, u: np.ndarray, x: np.ndarray, vectors: np.ndarray, radius: float
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """B(x, v) and C(x, x, v) for some vectors v, columns as they are."""
+    first, second = derivative_weights(NODES)
+    one, two = np.zeros_like(vectors), np.zeros_like(vectors)
+    for t, a, b in zip(nodes(NODES), first, second, strict=True):
+        sample = changes(u + radius * t * x, vectors)
+        if sample is None:
+            return None
+        one += a * sample
+        two += b * sample
+    return one / radius, two / radius**2
+
+
+def _factors(matrix: Any) -> Callable[[np.ndarray], np.ndarray]:
+    """What solves with a sparse matrix, real or complex sides."""
+    try:
+        factors = splu(matrix.tocsc().astype(complex))
+    except RuntimeError as error:
+        raise ValueError("F_u is singular, at zero or at twice the frequency") from error
+    return lambda side: factors.solve(np.asarray(side, dtype=complex))
+
+
+def _null(matrix: Any, value: complex) -> tuple[complex, np.ndarray, np.ndarray]:
+    """An eigenvalue that is nearly known, its right and its left eigenvector, by inverse iteration."""
+    n, size = matrix.shape[0], float(abs(matrix).max())
+    one = sp.eye_array(n)
+    for offset in (0.0, 1e-14 * size * (1.0 + 0.3j)):
+        try:
+            factors = splu((matrix - (value + offset) * one).tocsc().astype(complex))
+            break
+        except RuntimeError:
+            continue
+    else:
+        raise ValueError("F_u has no factors at the critical eigenvalue")
+    found = []
+    for transposed, product in (("N", matrix), ("T", matrix.T)):
+        vector, rest = np.random.default_rng(6).standard_normal(n).astype(complex), np.inf
+        for _ in range(SWEEPS):
+            vector = factors.solve(vector, transposed)
+            vector = vector / np.linalg.norm(vector)
+            image = product @ vector
+            now = float(np.linalg.norm(image - (vector.conj() @ image) * vector))
+            if not now < 0.5 * rest:
+                break
+            rest = now
+        if not np.isfinite(vector).all():
+            raise ValueError("F_u has no eigenvector at the critical eigenvalue")
+        found.append(vector)
+    right, left = found
+    return complex((left @ (matrix @ right)) / (left @ right)), right, left
