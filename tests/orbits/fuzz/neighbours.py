@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from contvines.events.kinds import BORDERS
+from orbits.starts.find import polish
 from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact
@@ -62,10 +63,29 @@ def _joined(graph: Any, switch: Any, tally: Tally) -> None:
             continue
         if not branch.real:
             tally.count("virtual branches that are met where they have no point")
+        elif _passes(branch, point):
+            tally.count("branches that are met between their points, at a border known to half its digits")
         else:
             tally.find(
                 "link", f"{switch.point} joins {switch.source} and {switch.target}, but is not on {end}"
             )
+
+
+def _passes(branch: Any, point: Any) -> bool:
+    """Whether a branch has the motion of a border at its value, though no point: where margins are flat, what is told on both sides
+
+    of a border differs by up to the told errors.
+    """
+    values, value = branch.values, point.value
+    if point.kind not in BORDERS or not np.abs(values[[0, -1]] - value).min() <= point.location_error:
+        return False
+    for i in np.flatnonzero((values[:-1] - value) * (values[1:] - value) < 0.0):
+        share = (value - values[i]) / (values[i + 1] - values[i])
+        guess = (1.0 - share) * branch.points[i] + share * branch.points[i + 1]
+        solved = polish(branch.problem.orbit(guess, value))
+        if solved is not None and apart(point.orbit, solved) < SAME:
+            return True
+    return False
 
 
 def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
