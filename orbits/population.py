@@ -20,6 +20,7 @@ from orbits.attractors.returning import returning_cycles
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
 from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip
+from orbits.starts.closed import closed_orbits
 
 TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
 LONGEST = 24  # forcing periods of the longest recurrence looked for
@@ -149,7 +150,9 @@ class Population:
         return distinct((cycle.orbit.root() for cycle in cycles), self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
-        """Cycles, stable or not, to which Newton's method leads from starts, each once; see `orbits.attractors.returning`.
+        """Cycles, stable or not, that are known in closed form or to which Newton's method leads from starts, each once.
+
+        Rest and sliding between the walls are in closed form: their mean position is free, so no start leads Newton's method to them.
 
         Parameters
         ----------
@@ -160,7 +163,8 @@ class Population:
         cycles = returning_cycles(
             self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED
         )
-        return distinct((cycle.orbit.root() for cycle in cycles), self.parameter, p)
+        closed = closed_orbits(self.model, params, Orbit)
+        return distinct((*closed, *(cycle.orbit.root() for cycle in cycles)), self.parameter, p)
 
     def _states(self, starts: np.ndarray) -> np.ndarray:
         """States of the simulation, shape (m, S)."""

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST = 4_000_000  # points of a picture
+PER_START = (
+    30  # periods simulated for manifolds, for each start of the usual picture: they take no longer than it
+)
 CONFIDENCE = 1.96  # standard errors of a 95 % interval
 
 
@@ -213,7 +216,9 @@ def basins(
     if saddles is not None:
         others = {name: given.get(name, 0.0) for name in names if name not in (across, up)}
         check_plane(saddles, population.parameter, (across, up), others)
-        curves = stable_manifolds(saddles, float(at), np.array([limits[across], limits[up]]))
+        most = PER_START * max(population.across**2, columns * rows)
+        window = np.array([limits[across], limits[up]])
+        curves = stable_manifolds(saddles, float(at), window, most=most)
     motions, index, mirrored = population.settle(starts, float(at))
     attractors = [
         Attractor(

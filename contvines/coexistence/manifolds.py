@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from ..circles.section import Section, Walled, section_of
 from ..graph.graph import Graph
+from .circle_step import TURN, next_point
 from .solutions import solutions_at
 
 FIRST = (
@@ -26,18 +26,14 @@ FIRST = (
 )  # of the plane's size: distances of the first point from the saddle, the next where
 LINEAR = 0.1  # images are further, in such distances, from where the derivative has them: a saddle beside a grazing impact is bent
 LARGEST, SMALLEST = 0.01, 1e-6  # of the plane's size: radii of the circles
-TURN, STRAIGHT = (
-    0.3,
-    0.05,
-)  # angles between two steps beyond which the radius shrinks, and below which it grows
+STRAIGHT = 0.05  # angle between two steps below which the radius grows
 CORNER = 1e-3  # of the plane's size: radius below which the curve may have a corner, as where an impact begins to be missed
 BENT = 2.6  # largest angle of a corner
 INWARD = 1.55  # largest angle to the inward normal at which a curve comes out of a wall
 PIECES = 40  # of a curve between walls, at most
-ARCS = 12  # candidates on the part of a circle that is searched
-REFINED = 40  # halvings of an angle
 DIFFERENCE = 0.01  # of the first point's distance: for the derivative at the saddle
 LENGTH = 20.0  # sizes of the plane: a curve ends when it is so long
+MOST = 1_200_000  # periods simulated for all curves
 
 
 @dataclass(frozen=True)
@@ -52,8 +48,8 @@ class Manifold:
     points : float array (n, 2)
         From the saddle outwards, or from a wall on at which the one before it ends.
     ended : str
-        ``leaves`` the plane, comes to a ``wall`` and goes on in the next one, is ``long``, or ``breaks``: cannot be followed further, as
-        where the motion is not continuous.
+        ``leaves`` the plane, comes to a ``wall`` and goes on in the next one, is ``long`` (in length, or in the time spent on it), or
+        ``breaks``: cannot be followed further, as where the motion is not continuous.
     """
 
     branch: str
@@ -72,7 +68,7 @@ class Manifold:
 
 
 def stable_manifolds(
-    graph: Graph, at: float, limits: np.ndarray, *, longest: float = LENGTH
+    graph: Graph, at: float, limits: np.ndarray, *, longest: float = LENGTH, most: int = MOST
 ) -> list[Manifold]:
     """Both halves of the stable manifolds of all real saddles, and their images, that a graph has at a value of its parameter.
 
@@ -84,13 +80,15 @@ def stable_manifolds(
         Smallest and largest coordinates of the plane.
     longest : float
         Sizes of the plane.
+    most : int
+        Periods that are simulated for all curves together, of which those that are left have equal parts: many saddles have short curves.
 
     Returns
     -------
     list of Manifold
         None for saddles of motions with more than two states.
     """
-    found: list[Manifold] = []
+    wanted: list[tuple[str, str, Section, np.ndarray, int]] = []
     for branch in graph.branches.values():
         if not branch.real or branch.problem is None:
             continue
@@ -99,9 +97,17 @@ def stable_manifolds(
             if len(section.names) != 2:
                 continue
             word = str(branch.description.get("word", branch.label))
-            for place in _places(branch.problem, section, u):
-                for points, ended in _halves(section, place, limits, longest):
-                    found.append(Manifold(branch.label, word, points, ended))
+            periods = len(section.rounds(u))
+            wanted += [
+                (branch.label, word, section, place, periods) for place in _places(branch.problem, section, u)
+            ]
+    wanted.sort(key=lambda entry: entry[-1])  # those of few periods separate wide basins
+    found: list[Manifold] = []
+    for k, (label, word, section, place, periods) in enumerate(wanted):
+        counted = _Counted(section.step, most // (len(wanted) - k) // periods)
+        for points, ended in _halves(section, counted, place, limits, longest):
+            found.append(Manifold(label, word, points, ended))
+        most -= counted.steps * periods
     return found
 
 
@@ -132,6 +138,17 @@ def check_plane(graph: Graph, parameter: str, plane: tuple[str, str], others: Ma
         raise ValueError(f"saddles: choose the plane {names[0]}, {names[1]}, with all other coordinates zero")
 
 
+class _Counted:
+    """A section's step, and how often it has been taken of at most so many times."""
+
+    def __init__(self, step: Callable[[np.ndarray], np.ndarray], most: int) -> None:
+        self.step, self.most, self.steps = step, most, 0
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        self.steps += 1
+        return self.step(x)
+
+
 def _places(problem: Any, section: Any, u: np.ndarray) -> list[np.ndarray]:
     """Where a solution and its images under the problem's symmetries meet the section, each point once."""
     found: list[np.ndarray] = []
@@ -149,22 +166,22 @@ def _saddles(branch: Any, at: float) -> list[np.ndarray]:
 
 
 def _halves(
-    section: Section, place: np.ndarray, limits: np.ndarray, longest: float
+    section: Section, step: _Counted, place: np.ndarray, limits: np.ndarray, longest: float
 ) -> list[tuple[np.ndarray, str]]:
     """The pieces of both halves, and how each ends."""
     size = float(np.ptp(limits, axis=1).max())
-    found = [saddle for first in FIRST if (saddle := _linear(section.step, place, first * size)) is not None]
+    found = [saddle for first in FIRST if (saddle := _linear(step, place, first * size)) is not None]
     if not found:
         return []
     first, ray, slow, _ = next((saddle for saddle in found if saddle[-1] < LINEAR), found[0])
-    step = section.step
     image = (
         (lambda x: step(step(x))) if slow < 0.0 else step
     )  # the two halves change places: every second image stays on one
     struck = section.struck if isinstance(section, Walled) else None
     pieces = []
-    for side in (1.0, -1.0):
-        pieces += _Half(image, struck, place, side * ray, first, limits).grown(longest)
+    for side, most in ((1.0, (step.most + step.steps) // 2), (-1.0, step.most)):
+        half = _Half(image, struck, place, side * ray, first, limits)
+        pieces += half.grown(longest, lambda most=most: step.steps < most)
     return pieces
 
 
@@ -212,8 +229,9 @@ class _Half:
         self.heading, self.at, self.length = ray, 0, first
         self.smallest = min(SMALLEST * self.size, 0.01 * first)
 
-    def grown(self, longest: float) -> list[tuple[np.ndarray, str]]:
+    def grown(self, longest: float, more: Callable[[], bool]) -> list[tuple[np.ndarray, str]]:
         """The pieces, and how each ends."""
+        self.more = more
         ends = [self._on(self.length, TURN, longest * self.size)]
         while ends[-1] == "leaves" and self._through():
             ended = self._on(CORNER * self.size, INWARD, longest * self.size)
@@ -227,12 +245,12 @@ class _Half:
     def _on(self, radius: float, widest: float, longest: float) -> str:
         """Grow the last piece as far as it goes."""
         points, size, limits = self.pieces[-1], self.size, self.limits
-        while self.length < longest:
+        while self.length < longest and self.more():
             starts, ends = self._segments()
             known = (starts, ends, self.at)
-            found = _next(self.image, known, points[-1], self.heading, radius, widest)
+            found = next_point(self.image, known, points[-1], self.heading, radius, widest)
             if found is None and widest == TURN and radius < CORNER * size:
-                found = _next(self.image, known, points[-1], self.heading, radius, BENT)
+                found = next_point(self.image, known, points[-1], self.heading, radius, BENT)
             if found is None:
                 radius *= 0.5
                 if radius < self.smallest:
@@ -269,70 +287,3 @@ class _Half:
         """Where the segments of all pieces begin and end."""
         pieces = [np.array(points) for points in self.pieces]
         return np.concatenate([x[:-1] for x in pieces]), np.concatenate([x[1:] for x in pieces])
-
-
-def _next(
-    image: Callable[[np.ndarray], np.ndarray],
-    known: tuple[np.ndarray, np.ndarray, int],
-    last: np.ndarray,
-    heading: np.ndarray,
-    radius: float,
-    widest: float,
-) -> tuple[np.ndarray, int, float] | None:
-    """The point on the circle whose image lies on the known segments, from `known[2]` on, the segment on which it lies, and the angle turned by."""
-    middle = np.arctan2(heading[1], heading[0])
-
-    def offset(angle: float) -> tuple[float, int, bool]:
-        return _beside(*known, image(last + radius * np.array([np.cos(angle), np.sin(angle)])))
-
-    count = int(np.ceil(ARCS * max(1.0, widest))) if widest > TURN else ARCS
-    turns = [float(turn) for turn in widest * np.linspace(-1.0, 1.0, count + 1)]
-    order = sorted(pairwise(turns), key=lambda ends: abs(ends[0] + ends[1]))
-    sides: dict[float, tuple[float, int, bool]] = {}
-    for low, high in order:
-        for turn in (low, high):
-            if turn not in sides:
-                sides[turn] = offset(middle + turn)
-        a, b = sides[low][0], sides[high][0]
-        if not (np.isfinite(a) and np.isfinite(b)) or a * b > 0.0:
-            continue
-        segment, beyond = known[2], False
-        for _ in range(REFINED):
-            half = 0.5 * (low + high)
-            value, segment, beyond = offset(middle + half)
-            if not np.isfinite(value):
-                return None
-            if value * a > 0.0:
-                low = half
-            else:
-                high = half
-        if beyond or abs(value) > 1e-3 * radius:  # a jump of the motion, not a crossing of the curve
-            continue
-        angle = middle + 0.5 * (low + high)
-        return (
-            last + radius * np.array([np.cos(angle), np.sin(angle)]),
-            segment,
-            abs(0.5 * (low + high)),
-        )
-    return None
-
-
-def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int, bool]:
-    """Signed distance of a point to known segments near that numbered `at` or later ones, the nearest segment, and whether the point is
-
-    beyond what is known: then the distance is that to the last segment's line, whose side still tells where a saddle throws it.
-    """
-    if not np.all(np.isfinite(point)):
-        return float("nan"), at, False
-    first = max(at - 2, 0)
-    starts, ends = starts[first:], ends[first:]
-    along = ends - starts
-    lengths = np.maximum((along * along).sum(axis=1), 1e-300)
-    part = ((point - starts) * along).sum(axis=1) / lengths
-    inside = np.clip(part, 0.0, 1.0)
-    gaps = np.linalg.norm(point - (starts + inside[:, None] * along), axis=1)
-    k = int(gaps.argmin())
-    across = along[k, 0] * (point - starts[k])[1] - along[k, 1] * (point - starts[k])[0]
-    if k == len(gaps) - 1 and part[k] > 1.0:
-        return float(across / np.sqrt(lengths[k])), at, True
-    return float(np.sign(across) * gaps[k]), first + k, False

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 ENDS = {
     "leaves": "leaves the plane",
-    "long": "cut where it was very long",
+    "long": "cut, though it goes on",
     "breaks": "cut where it cannot be followed",
 }
 

@@ -44,6 +44,7 @@ def robustness(
     With a branch alone, both against its parameter: an erosion curve.
     """
     import contvines
+    from contvines.problems.registry import without_problem
     from contvines.store import load
 
     if plot is not None:
@@ -57,6 +58,8 @@ def robustness(
     if name not in branches:
         raise ValueError(f"{file}: {name} is no branch of it; it has {', '.join(branches) or 'none'}.")
     branch = branches[name]
+    if branch.problem is None:
+        raise ValueError(without_problem(name, branch.description))
     value = None if at is None else amount("--at", at, graph.parameter, graph.units)
     if place:
         if not place.isdigit() or int(place) >= len(branch):

@@ -34,6 +34,7 @@ COLORS = (
     "#4d4d4d",
     "#8fcf8a",
 )
+NAMED = 3  # words of manifolds in the legend
 IMAGE = 0.45  # how much lighter the basin of a mirror image is
 START = {
     "w": "position $w$ of the start",
@@ -101,10 +102,10 @@ def plot_basins(
                 if 0.0 < about.mirror_share < about.share:
                     entries.append(Patch(color=light[k], label=f"{name}, mirror image"))
             if basins.manifolds:
-                words = dict.fromkeys(short_word(curve.word, 20) for curve in basins.manifolds)
-                entries.append(
-                    Line2D([], [], color="black", linewidth=0.8, label=f"manifolds of {', '.join(words)}")
-                )
+                words = list(dict.fromkeys(short_word(curve.word, 20) for curve in basins.manifolds))
+                few, left = ", ".join(words[:NAMED]), len(words) - NAMED
+                label = f"manifolds of {few}" + (f"\nand {left} more" if left > 0 else "")
+                entries.append(Line2D([], [], color="black", linewidth=0.8, label=label))
             place_legend(axes, entries, legend, own, usual="beside")
         settle(figure)
         if own:

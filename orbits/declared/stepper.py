@@ -18,6 +18,7 @@ OFF = 1e-5  # clock after a slip or a release in which the quantity that starts 
 TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the depth is roundoff
 NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
 SLOW = 1e-6  # squared approach speed below which impacts may be piling up
+HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
 FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
 
 
@@ -42,6 +43,8 @@ class Stepper:
         self.machine, self.params = machine, np.asarray(params, dtype=float)
         self.compiled, self.equations = machine.compiled, machine.equations
         self.absent = machine.absent(self.params)
+        rate = machine.phase_rate
+        self._clock_rate = 1.0 if rate is None else float(self.params[machine.parameter_names.index(rate)])
         self.state = np.zeros(machine.size)
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
@@ -52,6 +55,7 @@ class Stepper:
             if isinstance(contact, Wall)
         }
         self._fresh = False  # something starts from rest: leave the surface before looking for events
+        self._hop = 0.0  # time to the top of a short hop from a wall
 
     # ------------------------------------------------------------------ beginning
     def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
@@ -157,6 +161,8 @@ class Stepper:
             push = self._push_back(wall)
             if push < 0.0 and before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
                 return self._hold(wall)
+            if push < 0.0:
+                self._hop = -self._gap_rate(wall) / push
         return HIT
 
     def _push_back(self, wall: int) -> float:
@@ -201,6 +207,9 @@ class Stepper:
             if self._fresh:
                 self._fresh = False
                 self._leave(watch, numbers, min(self.clock + OFF, end))
+            elif self._hop:
+                self._rise(watch, numbers, end)
+            self._hop = 0.0
             if not end > self.clock:
                 self._rebase()
                 return None
@@ -236,6 +245,19 @@ class Stepper:
             if value < 0.0 and guard.kind == HIT:
                 self.state, self.clock = before, begin
                 return
+
+    def _rise(self, watch: Any, numbers: np.ndarray, end: float) -> None:
+        """Go to the top of a short hop: its end is then looked for from there, for beside a zero at the very beginning another one may be lost."""
+        before, begin = self.state.copy(), self.clock
+        for _ in range(HALVINGS):
+            there = begin + self._hop * self._clock_rate
+            if begin < there < end:
+                watch.move(self.state, begin, there, numbers)
+                self.clock = there
+                if np.all(self._guards(self.modes)[0] > 0.0):
+                    return
+                self.state[:], self.clock = before, begin
+            self._hop *= 0.5
 
     def _settle_touches(self) -> None:
         """A start on the surface of a switch that is only touched is on the side to which the flow leads."""

@@ -53,6 +53,8 @@ class Model(Varying):
     """The parameter that drives the machine: an orbit must have it, a machine need not."""
     patience: ClassVar[int] = 0
     """How often a start that is looked for by simulation may be simulated four times longer."""
+    closed_words: ClassVar[tuple[str, ...]] = ()
+    """Words of one forcing period of whose orbits `start_nodes` has closed forms."""
     rest: ClassVar[Rest]
     moving_cavity: ClassVar[bool] = False
     """Whether the cavity has a motion of its own, v and v' in the state; else it moves as prescribed."""

@@ -52,6 +52,7 @@ class Absorber(Shaken):
 
     name: ClassVar[str] = "absorber"
     rest: ClassVar[Rest] = LevelRest()
+    closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt", "susu")
     table: ClassVar[tuple[Parameter, ...]] = (
         Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),
         Parameter("restitution", "Newton's coefficient of the walls", RESTITUTION, "r", "", 0.76),

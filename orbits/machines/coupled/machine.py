@@ -87,6 +87,7 @@ class Coupled(Model):
     swept_measure: ClassVar[str] = "max_abs_q1"  # what a frequency response shows
     patience: ClassVar[int] = 2  # a light absorber's oscillator settles over thousands of periods
     rest: ClassVar[Rest] = DrivenRest()
+    closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt")
     table: ClassVar[tuple[Parameter, ...]] = (
         Parameter("forcing", "amplitude of the base over eps b", NOT_NEGATIVE, "G", "", 3.3),
         Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0),

@@ -6,6 +6,7 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity, Coupled
+from tests.contvines.coexistence.drawn import drawn
 from tests.contvines.coexistence.truth import listed_twice, on_atlas, shares, witness
 
 pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is needed")
@@ -33,3 +34,10 @@ def test_everything_that_brute_force_meets_is_on_the_atlas(machine, over, within
     assert not listed_twice(graph)
     counted = shares(machine.population(over), met, starts, not isinstance(machine, Cavity), said.append)
     assert counted.compared and not counted.apart, said
+
+
+def test_brute_force_tells_no_saddle_that_it_passes_for_an_attractor():
+    """At a fifth of the starts it once told three impacts in a period: those of the second period of the motion of six in two."""
+    machine, over, _ = drawn("coupled", 19)
+    (here,) = witness(machine, over, [0.99522273], 60, tries=4)
+    assert sorted((periods, hits) for periods, hits, *_ in here.attractors) == [(1, 2), (2, 6)]

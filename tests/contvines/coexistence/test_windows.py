@@ -7,6 +7,7 @@ import contvines as cv
 from contvines.journal import MemoryJournal
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
+from tests.contvines.coexistence.drawn import drawn
 from tests.contvines.coexistence.isolas import window
 
 LOGISTIC = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
@@ -143,3 +144,14 @@ def test_a_motion_that_hardly_any_start_meets_is_reached_from_afar():
         problem.canonical(*orbit.seed(problem))[0]
         == rare[0].problem.canonical(rare[0].points[0], rare[0].values[0])[0]
     )
+
+
+def test_sliding_that_hardly_any_start_reaches_is_on_the_atlas():
+    """One of 200 starts of `witness.c` slides at 0.97269; none of these four does, and none leads Newton's method to it."""
+    machine, over, _ = drawn("coupled", 15)
+    graph = cv.atlas(machine, over=over, within=(0.9715, 0.974), values=[0.97269], starts=4, depth=0, scan=1)
+    assert not any("R" not in found.word for found in graph.attractors if found.starts)
+    (sliding,) = [branch for branch in graph if branch.real and branch.description.get("word") == "tt"]
+    assert sliding.stable_intervals() == [(0.9715, 0.974)]
+    for row, value in zip(sliding.points[::8], sliding.values[::8], strict=True):
+        assert sliding.problem.orbit(row, float(value)).replay() < 1e-7

@@ -2,13 +2,19 @@
 
 ``python -m tests.contvines.coexistence.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
 ``python -m tests.contvines.coexistence.truth frequency 200``  the coupled machine, 40 frequencies, two forcings, so many starts at each (2000)
+``python -m tests.contvines.coexistence.truth frequency 2000 3.3``  one forcing alone
 ``python -m tests.contvines.coexistence.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``, ``declared``)
 ``python -m tests.contvines.coexistence.truth absorber 5 10``  five of them, from the tenth on; the sum so far is told after each
+
+What the witness tells is kept in the directory that the environment variable ``CONTVINES_WITNESS`` names: a run that was stopped goes on there,
+and after a change of the package its time is not spent again.
 """
 
 from __future__ import annotations
 
+import hashlib
 import math
+import os
 import subprocess
 import sys
 import tempfile
@@ -33,6 +39,7 @@ from tests.contvines.coexistence.impacts import impacts_of, kind_of, same
 SIGMAS = 3.0
 ENOUGH = 1000  # starts of our own for shares
 FEW_OF_A_PAGE = 100  # starts for shares: those of a page are followed one by one
+SOURCE = Path(__file__).with_name("witness.c")
 PAGE = Path(__file__).resolve().parents[3] / "examples" / "machines" / "absorber.py"
 NAMED = {"chaotic", "quasi-periodic", "slow", "chatter"}  # what is told of motions that do not recur
 PILED = 1000  # events of a recurrence in which impacts pile up, as the witness counts them
@@ -79,9 +86,23 @@ class Tally:
 def compiled() -> str:
     """Path of the compiled witness."""
     target = Path(tempfile.mkdtemp()) / "witness"
-    source = Path(__file__).with_name("witness.c")
-    subprocess.run(["gcc", "-O3", "-o", str(target), str(source), "-lm"], check=True)
+    subprocess.run(["gcc", "-O3", "-o", str(target), str(SOURCE), "-lm"], check=True)
     return str(target)
+
+
+def _told(program: str, arguments: Sequence[str], lines: str) -> str:
+    """What the witness prints; kept in the directory `CONTVINES_WITNESS`, if there is one, until the witness or its input changes."""
+    kept = os.environ.get("CONTVINES_WITNESS")
+    key = hashlib.sha256("\n".join((SOURCE.read_text(), *arguments, lines)).encode()).hexdigest()
+    file = Path(kept, key[:32]) if kept else None
+    if file is not None and file.exists():
+        return file.read_text()
+    done = subprocess.run([program, *arguments], input=lines, capture_output=True, text=True, check=True)
+    if file is not None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.with_suffix(".part").write_text(done.stdout)
+        file.with_suffix(".part").replace(file)
+    return done.stdout
 
 
 def witness(
@@ -94,16 +115,16 @@ def witness(
     tries: int = 5,
 ) -> list[Met]:
     """Starts drawn at random from the box of the machine's own, simulated until they recur."""
-    lines = [f"{int(isinstance(machine, Coupled))} {starts} {seed}"]
-    box = machine.population(over).box
-    lines += [" ".join(map(repr, _numbers(machine, over, float(p), box(p)))) for p in values]
-    text = subprocess.run(
-        [compiled(), str(transient), "1e-8", str(tries)],
-        input="\n".join(lines),
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
+    first = f"{int(isinstance(machine, Coupled))} {starts} {seed}"
+    box, program = machine.population(over).box, compiled()
+    text = "".join(
+        _told(
+            program,
+            (str(transient), "1e-8", str(tries)),
+            f"{first}\n{' '.join(map(repr, _numbers(machine, over, float(p), box(p))))}",
+        )
+        for p in values
+    )
     rows = iter(text.splitlines())
     met = []
     for row, p in zip(rows, values, strict=False):
@@ -300,7 +321,7 @@ def main() -> None:
             tally += studied(machine, "amplitude", (0.2, 1.3), list(middles), 2000)
     elif what == "frequency":
         starts = int(sys.argv[2]) if len(sys.argv) > 2 else 2000
-        for forcing in (2.47, 3.3):
+        for forcing in map(float, sys.argv[3:]) if len(sys.argv) > 3 else (2.47, 3.3):
             machine = Coupled(
                 forcing=forcing, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
             )

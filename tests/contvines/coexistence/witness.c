@@ -16,6 +16,7 @@
 #define KINDS 400  /* attractors at one value */
 #define HITS 400   /* impacts of a cycle that are told */
 #define PATIENCE 20000 /* forcing periods for which a motion that returns nearly is watched */
+#define LEFT 1e-6      /* difference from the last return of a motion that has left where it seemed to settle */
 #define FULL 6     /* starts that do not recur and are given all transients; later ones are given two */
 
 static int model;
@@ -273,7 +274,8 @@ static int known(const State *s, int count, int *image) {
   return -1;
 }
 
-/* beside a bifurcation a motion returns nearly long before it has settled: on until it returns to rounding */
+/* beside a bifurcation a motion returns nearly long before it has settled: on until it returns to rounding. One that passed a saddle
+   returns ever less: -2 */
 static int settled(State *s, int periods, int count, int *image, State *seen) {
   int j = -1;
   for (double run = 0, gap = 1; run < PATIENCE && gap > 1e-12 && j < 0; run += periods) {
@@ -281,6 +283,7 @@ static int settled(State *s, int periods, int count, int *image, State *seen) {
     before.psi = s->psi = s->hits = s->events = 0;
     for (int q = 0; q < periods; q++) seen[q] = *s, s->psi = 0, advance(s, 1);
     gap = apart(s, &before), j = known(s, count, image);
+    if (j < 0 && gap > LEFT) return -2;
   }
   return j;
 }
@@ -343,7 +346,9 @@ int main(int argc, char **argv) {
         for (j = 0; j < count; j++)
           if (!s.hits && kinds[j].free && kinds[j].periods == k && kinds[j].events == s.events) break;
         if (j == count && s.hits) {
-          if ((one = settled(&s, k, count, &image, seen)) >= 0) kinds[one].mirrored += image, j = one;
+          one = settled(&s, k, count, &image, seen);
+          if (one == -2) { found = 0; continue; }
+          if (one >= 0) kinds[one].mirrored += image, j = one;
           else k = shortest(&s, k, seen);
         }
         if (j < count) kinds[j].count++;

@@ -108,8 +108,12 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     assert "does not hold" not in str(done.exception)
 
 
-def test_robustness_of_a_page(study):
+def test_robustness_of_a_page(study, monkeypatch):
     run("diagram", study, "-q", "--no-look")
+    with monkeypatch.context() as patch:
+        patch.setattr("orbits.declared.stored.loaded", lambda settings: None)  # as in another process
+        done = run("robustness", "stop.vines", "B1", "--at", "2.3")
+    assert done.exit_code != 0 and "--trust" in str(done.exception)
     graph = cv.load("stop.vines", trust=True)
     branch = next(b for b in graph if b.real and b.stable_intervals())
     low, high = branch.stable_intervals()[0]

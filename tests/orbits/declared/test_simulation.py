@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from orbits import DryFriction, Machine, Wall
+from orbits.declared.stepper import Stepper
 from orbits.symbols import sin
 from tests.orbits.declared.independent import deviation
 from tests.orbits.declared.pages import page
@@ -19,6 +20,27 @@ def test_a_dropped_ball_comes_to_rest_when_its_chatter_ends():
     assert run.clocks[-1] == pytest.approx(t0 + 2 * t0 * e / (1 - e), abs=1e-4)
     assert np.abs(run.states[-1]).max() < 1e-9
     assert run.ended == "the requested time was reached; impacts piled up and a wall held the body once"
+
+
+def test_no_short_hop_is_lost():
+    """One lasts 2 v/a, as long as the acceleration a hardly changes; where its end was lost the body passed the wall."""
+    machine = Machine(
+        name="idler",
+        states=("x", "v"),
+        parameters={"shaking": 0.5, "frequency": 1.0, "restitution": 0.7},
+        phase_rate="frequency",
+        motion=lambda state, phase, p, contact: (state.v, p.shaking * sin(phase) - 0.2 - 0.06 * state.v),
+        contacts=[Wall("B", lambda state, phase, p: state.x + 0.5, {"v": 1.0}, "restitution")],
+    )
+    stepper = Stepper(machine, np.array([0.5, 1.0, 0.7]))
+    generator = np.random.default_rng(0)
+    for speed, phase in zip(10.0 ** generator.uniform(-5.2, -4.3, 400), generator.uniform(3.4, 5.2, 400)):
+        stepper.start(np.array([-0.5, -2.0 * speed]), phase)
+        assert stepper.advance(phase + 1.0) is not None
+        begin, speed = stepper.base + stepper.clock, stepper.state[1]
+        assert stepper.advance(phase + 1.0) is not None
+        lasts = 2.0 * speed / (0.2 - 0.5 * np.sin(begin))
+        assert stepper.base + stepper.clock - begin == pytest.approx(lasts, rel=2e-3)
 
 
 def test_a_resting_ball_is_thrown_off_when_the_table_falls_away_faster():
