@@ -11,78 +11,16 @@ from collections.abc import Callable
 from typing import Any
 
 from numba import njit
-from numba.core import config, types
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
-from numba.core.compiler_machinery import register_pass
-from numba.core.registry import CPUDispatcher
-from numba.core.typed_passes import NativeLowering
+from numba.core import config
 
-
-class _Library(JITCodeLibrary):
-    """Code that is linked into other libraries: optimised as any, but not handed to the engine, which would make machine code of it."""
-
-    def _finalize_final_module(self) -> None:
-        self._finalized = True
-
-
-class _Nobody:
-    """Stands for the function by which Python would call a part; numba keeps what it knows of a function under it."""
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _Lowering(NativeLowering):
-    _name = "lowering_of_a_part"
-
-    def run_pass(self, state: Any) -> bool:
-        target, flags = state.targetctx, state.flags
-        state.library = _Library(target.codegen(), state.func_id.func_qualname)
-        flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
-        super().run_pass(state)
-        state.library.finalize()
-        nobody = _Nobody()
-        target.insert_user_function(nobody, state.cr.fndesc, [state.library])
-        state.cr = state.cr._replace(cfunc=nobody)
-        return True
-
-
-class _Compiler(CompilerBase):
-    def define_pipelines(self) -> list[Any]:
-        manager = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        manager.passes = [
-            (_Lowering if step is NativeLowering else step, name) for step, name in manager.passes
-        ]
-        manager.finalize()
-        return [manager]
-
-
-class _Part(CPUDispatcher):
-    """What the decorator `part` makes of a function."""
-
-    def __init__(
-        self,
-        function: Callable[..., Any],
-        locals: dict[str, Any] | None = None,  # in the order in which numba makes copies
-        options: dict[str, Any] | None = None,
-    ) -> None:
-        super().__init__(function, locals or {}, {**(options or {}), "nopython": True}, _Compiler)
-        self._whole: Any = None
-
-    def get_call_template(self, args: Any, kws: Any) -> Any:
-        # one compilation for all numbers of a type, be they written out or not: inlined, those written out are known all the same
-        return super().get_call_template([types.unliteral(kind) for kind in args], kws)
-
-    def add_overload(self, cres: Any) -> None:
-        self.overloads[tuple(cres.signature.args)] = cres  # where Python does not find it
-
-    def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
-        itself: Any = self
-        if self._whole is None:
-            options = {name: value for name, value in self.targetoptions.items() if name != "nopython"}
-            self._whole = njit(**options)(self.py_func)
-        found = self._whole._compile_for_args(*args, **kws)
-        itself._insert([itself.typeof_pyval(value)._code for value in args], found, False)
-        return found
+Part: Any
+try:
+    from contvines_ground.linked import Part
+except (
+    ImportError,
+    AttributeError,
+):  # a numba with other inner rooms: parts are functions like any, and take longer to compile
+    Part = None
 
 
 def part(**options: Any) -> Callable[[Any], Any]:
@@ -95,6 +33,8 @@ def part(**options: Any) -> Callable[[Any], Any]:
     """
 
     def decorate(function: Any) -> Any:
-        return function if getattr(config, "DISABLE_JIT", False) else _Part(function, None, options)
+        if getattr(config, "DISABLE_JIT", False):
+            return function
+        return njit(**options)(function) if Part is None else Part(function, None, options)
 
     return decorate

@@ -8,6 +8,7 @@ import pytest
 from numba import config, njit
 from numba.core.errors import TypingError
 
+from contvines_ground import parts
 from contvines_ground.parts import part
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
@@ -75,3 +76,18 @@ def test_a_part_takes_the_compilers_options():
 
     with pytest.raises(ZeroDivisionError):
         caller(1.0, 0.0)
+
+
+def test_with_another_numba_a_part_is_a_function_like_any(monkeypatch):
+    monkeypatch.setattr(parts, "Part", None)
+
+    @part(error_model="numpy")
+    def half(a):
+        return 0.5 * a
+
+    @njit(error_model="numpy")
+    def caller(a):
+        return half(a) + 1.0
+
+    assert half(3.0) == 1.5
+    assert caller(3.0) == 2.5
