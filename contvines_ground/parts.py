@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from numba import njit
-from numba.core import config
+from numba.core import config, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
@@ -67,6 +67,10 @@ class _Part(CPUDispatcher):
     ) -> None:
         super().__init__(function, locals or {}, {**(options or {}), "nopython": True}, _Compiler)
         self._whole: Any = None
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        # one compilation for all numbers of a type, be they written out or not: inlined, those written out are known all the same
+        return super().get_call_template([types.unliteral(kind) for kind in args], kws)
 
     def add_overload(self, cres: Any) -> None:
         self.overloads[tuple(cres.signature.args)] = cres  # where Python does not find it

@@ -80,6 +80,9 @@ def trace_half(
             change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
             status, count = Status.RUNNING, i + 1
             retrace = Retrace(count, part * engine.norm(engine.join(change[0], float(change[1]))))
+        elif events and events[-1].role is Role.LEFT:
+            status, count = Status.LEFT_INTERVAL, int(events[-1].position) + 1
+            events[-1] = events[-1]._replace(role=Role.PLAIN)
         elif events and events[-1].ends_branch:
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:

@@ -13,6 +13,7 @@ from .located import Located
 from .segment import Segment
 
 ENTRY = 2.0**-50  # relative error of an entry: of several roundings, half a unit in the last place each
+BENT = 1e6  # condition of the second derivatives from which a step says nothing
 ALONG = 1e-4  # way along the tangent (in the metric) over which the change of a matrix is looked at
 
 
@@ -51,6 +52,59 @@ def singular_within(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray
     doubts = problem.doubts(engine.work, ENTRY)
     if doubts is None:
         return 0.0
+    right, left = _null_vectors(engine, u, p, tangent)
+    with np.errstate(all="ignore"):
+        error = float(np.abs(left) @ (doubts @ np.abs(right)))
+        change = abs(_slope(engine, u, p, tangent, left, right))
+        found = error * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
+    return found if math.isfinite(found) else 0.0
+
+
+def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> float:
+    """By how much the value of a branch point seems to be wrong: one Newton step for what is zero there.
+
+    The derivatives of y.F along both directions of the kernel, the tangent t and the null vector x of M (y as for `singular_within`),
+    vanish at a branch point: y F'' [t, t] a + y F'' [t, x] c = -y F' t and the same with x. Zero where the step cannot be had.
+    """
+    if not isinstance(engine.problem, Doubtful):
+        return 0.0
+    engine.residual(u, p)
+    if engine.problem.doubts(engine.work, ENTRY) is None:
+        return 0.0
+    right, left = _null_vectors(engine, u, p, tangent)
+    ways = (tangent, right / (engine.norm(right) or math.nan))
+    with np.errstate(all="ignore"):
+        engine.residual(u, p)
+        rest = np.array([_image(engine, left, way) for way in ways])
+        bent = np.array([[_slope(engine, u, p, way, left, other) for other in ways] for way in ways])
+        if not (np.isfinite(bent).all() and np.linalg.cond(bent) < BENT):
+            return 0.0
+        step = np.linalg.solve(bent.T, -rest)
+    found = abs(float(step @ [way[-1] for way in ways]))
+    return found if math.isfinite(found) else 0.0
+
+
+def _image(engine: Engine, left: np.ndarray, way: np.ndarray) -> float:
+    """y (F_u, F_p) times a direction, as linearised last."""
+    return float(left @ (engine.work.jacobian @ way[:-1] + engine.work.derivative * way[-1]))
+
+
+def _slope(
+    engine: Engine, u: np.ndarray, p: float, way: np.ndarray, left: np.ndarray, vector: np.ndarray
+) -> float:
+    """How y (F_u, F_p) x changes along a direction of length one in the metric."""
+    values = []
+    for side in (-ALONG, ALONG):
+        engine.residual(u + side * way[:-1], p + side * float(way[-1]))
+        values.append(_image(engine, left, vector))
+    return (values[1] - values[0]) / (2.0 * ALONG)
+
+
+def _null_vectors(
+    engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Right and left null vector of [[F_u, F_p], [tangent]], the left one without the last entry, both with largest entry one."""
+    problem = engine.problem
     n, border = engine.n, engine.weights * tangent
     side = np.append(engine.row_sizes * np.random.default_rng(4).standard_normal(n), 0.0)
     right = engine.apply_inverse(border, side)
@@ -61,13 +115,4 @@ def singular_within(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray
     turned = np.append(engine.work.derivative, border[-1])
     with np.errstate(all="ignore"):
         problem.kernels.bordered(problem.data, other, turned, 0.0, left, unused)
-        right, left = right / np.abs(right).max(), left[:-1] / np.abs(left[:-1]).max()
-        error = float(np.abs(left) @ (doubts @ np.abs(right)))
-        values = []
-        for way in (-ALONG, ALONG):
-            engine.residual(u + way * tangent[:-1], p + way * float(tangent[-1]))
-            image = engine.work.jacobian @ right[:-1] + engine.work.derivative * right[-1]
-            values.append(float(left @ image))
-    change = abs(values[1] - values[0])
-    found = error * 2.0 * ALONG * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
-    return found if math.isfinite(found) else 0.0
+        return right / np.abs(right).max(), left[:-1] / np.abs(left[:-1]).max()

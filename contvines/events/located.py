@@ -15,6 +15,7 @@ class Role(StrEnum):
     BORDER = "border"  # a margin vanishes: the branch ends
     MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
     STOP = "stop"  # a function at whose zeros the user wants branches to end
+    LEFT = "left"  # the branch leaves the interval between two points that lie in it
     PLAIN = "plain"  # just a point between two special points
     LEAP = "leap"  # the point before a step to another branch: to be traced again with shorter ones
     LANDING = "landing"  # the same, before a step that ends next to a meeting: with another one
@@ -28,7 +29,7 @@ class Located(NamedTuple):
     position : float
         Index of the point before it plus the fraction of the segment.
     kind : str
-        See :mod:`contvines.events.kinds`; of a meeting that of the symmetry. Empty for a plain point, a leap and a landing.
+        See :mod:`contvines.events.kinds`; of a meeting that of the symmetry. Empty for a plain point, a leap, a landing and where the interval is left.
     index : int
         Which multiplier, margin, symmetry or user function.
     point : Solved
@@ -52,4 +53,4 @@ class Located(NamedTuple):
     @property
     def ends_branch(self) -> bool:
         """Whether what lies behind it is left out."""
-        return self.role in (Role.BORDER, Role.MEETING, Role.STOP)
+        return self.role in (Role.BORDER, Role.MEETING, Role.STOP, Role.LEFT)

@@ -121,7 +121,7 @@ def mark_segments(chunk, first_margin, kind, real, flat, metric, symmetries, fla
                 gaps[now, s, j] = gap
                 dot += gap * shift[j]
             if dot != 0.0:
-                turns = np.round(dot / whole)
+                turns = np.rint(dot / whole)
                 for j in range(columns):
                     gaps[now, s, j] -= turns * shift[j]
         if i == 0:

@@ -15,6 +15,7 @@ from . import pairs
 from .borders import resolved
 from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
+from .excursion import left_between
 from .landing import again, first_landing
 from .leaps import inexact, leap
 from .located import Located, Role
@@ -143,6 +144,9 @@ class Watch(Examiner):
                 return [*events, leaping._replace(position=float(i))]
             found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
             found = [resolved(segment, e) if e.role is Role.BORDER else e for e in found]
+            outside = left_between(segment, found)
+            if outside is not None:
+                found = [*(e for e in found if e.position < outside.position), outside]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)

@@ -84,10 +84,10 @@ def _critical(values: np.ndarray, flow: bool) -> complex:
     ValueError
         If none is there.
     """
-    upper = values[values.imag > 0.0]
+    upper = values[np.imag(values) > 0.0]
     if not len(upper):
         raise ValueError("no pair is known at the point")
-    return complex(upper[np.argmin(np.abs(upper.real) if flow else np.abs(np.abs(upper) - 1.0))])
+    return complex(upper[np.argmin(np.abs(np.real(upper)) if flow else np.abs(np.abs(upper) - 1.0))])
 
 
 def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float | None:

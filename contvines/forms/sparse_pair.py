@@ -108,20 +108,20 @@ def _at_radius(
     changes: Products, u: np.ndarray, q: np.ndarray, w: np.ndarray, solve: tuple[Any, Any], radius: float
 ) -> float | None:
     """Re c from samples up to a radius; None where the equations cannot be evaluated there."""
-    parts = np.column_stack([q.real, q.imag])
-    found = [_derivatives(changes, u, part, parts, radius) for part in parts.T]
-    if found[0] is None or found[1] is None:
+    parts = np.column_stack([np.real(q), np.imag(q)])
+    a, b = (_derivatives(changes, u, part, parts, radius) for part in parts.T)
+    if a is None or b is None:
         return None
-    (along_a, twice_a), (along_b, twice_b) = found
+    (along_a, twice_a), (along_b, twice_b) = a, b
     mixed = along_a[:, 0] + along_b[:, 1]  # B(q, q*)
     square = along_a[:, 0] - along_b[:, 1] + 1j * (along_a[:, 1] + along_b[:, 0])  # B(q, q)
     total = twice_a @ [1.0, 1j] + twice_b @ [1.0, 1j]  # C(q, q, q*)
     h11, h20 = np.real(solve[0](-mixed)), solve[1](-square)
-    bent = np.column_stack([h11, h20.real, h20.imag])
-    found = [_derivatives(changes, u, part, bent, radius) for part in parts.T]
-    if found[0] is None or found[1] is None:
+    bent = np.column_stack([h11, np.real(h20), np.imag(h20)])
+    a, b = (_derivatives(changes, u, part, bent, radius) for part in parts.T)
+    if a is None or b is None:
         return None
-    (along_a, _), (along_b, _) = found
+    (along_a, _), (along_b, _) = a, b
     total = total + 2.0 * (along_a[:, 0] + 1j * along_b[:, 0])
     total = total + (along_a - 1j * along_b)[:, 1:] @ [1.0, 1j]
     return float(np.real(0.5 * (w @ total) / (w @ q)))

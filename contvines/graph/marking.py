@@ -14,7 +14,7 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
-from ..events.blur import singular_within
+from ..events.blur import missed, singular_within
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
 from ..forms.criticality import pair_form
@@ -231,7 +231,8 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
     if special.kind == "branch-point":
-        within = singular_within(engine, special.u, special.value, special.tangent)
+        where = engine, special.u, special.value, special.tangent
+        within = max(singular_within(*where), 2.0 * missed(*where))
         special.location_error = max(special.location_error, within)
     wrong = problem.check(special.u, special.value)
     if wrong is not None:

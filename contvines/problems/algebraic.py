@@ -226,7 +226,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
 
     def _eigenvalues(self, work: Any) -> np.ndarray:
         if self.functions.structure != "dense":
-            return sparse.leading(work, self.n_multipliers, self.shift)
+            return sparse.leading(self, work, self.n_multipliers, self.shift)
         if self.conditions is not None:
             return self.conditions.eigenvalues(work.jacobian)
         return without_roundoff(np.linalg.eigvals(work.jacobian))

@@ -344,6 +344,6 @@ class CallableProblem(ProblemDefaults):
 
     def _structure_at(self, u: np.ndarray) -> str:
         try:
-            return self.functions.find_structure(u)
+            return self.functions.find_structure(u, self.given.get("preconditioner") is not None)
         except NotEvaluable as error:
             raise ValueError(str(error)) from error

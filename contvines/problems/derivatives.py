@@ -15,6 +15,7 @@ from .differences import Difference, along, bend, noise_of, roughness
 from .extents import measured, of_parameter
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
+from .written_out import worth_it, written_out
 
 COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
@@ -141,13 +142,18 @@ class Differentiated:
         other._bind()
         return other
 
-    def find_structure(self, u: np.ndarray) -> str:
-        """ "dense", "sparse" or "operator": what a given Jacobian is at the start; remembered as ``structure``."""
+    def find_structure(self, u: np.ndarray, preconditioned: bool = False) -> str:
+        """ "dense", "sparse" or "operator": what a given Jacobian is at the start; remembered as ``structure``.
+
+        An operator without a preconditioner is "sparse" where it is worth being written out.
+        """
         if self.given_matrix is not None:
             matrix = as_matrix(self.given_matrix.raw(u, self.parameters.start), len(u))
             self.structure = (
                 "sparse" if hasattr(matrix, "tocsc") else "operator" if hasattr(matrix, "matvec") else "dense"
             )
+            if self.structure == "operator" and not preconditioned and worth_it(matrix, len(u)):
+                self.structure = "sparse"
         elif self.sparsity is not None:
             self.structure = "sparse"
         return self.structure
@@ -186,7 +192,9 @@ class Differentiated:
         n = len(u)
         if self.given_matrix is not None:
             self.errors = self.exact
-            return as_matrix(self.given_matrix.raw(u, p), n)
+            given = as_matrix(self.given_matrix.raw(u, p), n)
+            written = self.structure == "sparse" and hasattr(given, "matvec")
+            return written_out(given, n) if written else given
         if self.sparsity is not None and not self.rows:
             return self._coloured(self.sparsity, u, p)
         result, worst = np.empty((self.rows or n, n)), np.zeros(n)

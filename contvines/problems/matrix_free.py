@@ -184,11 +184,12 @@ def distance_to_singular(data: Any, work: Any) -> float | None:
 
 
 class Inverse:
-    """(F_u - shift)^-1, the shift in units of rows and unknowns, by GMRES, in the place of factors."""
+    """(F_u - shift)^-1, by GMRES, in the place of factors; the shift in units of rows and unknowns, or as eigenvalues of F_u have it."""
 
-    def __init__(self, data: Any, work: Any, shift: float) -> None:
+    def __init__(self, data: Any, work: Any, shift: float, plain: bool = False) -> None:
         self.rows, self.columns = data.sizes()
-        self.jacobian, self.inverse, self.shift = work.jacobian, data.preconditioner_at(), shift
+        self.jacobian, self.inverse = work.jacobian, data.preconditioner_at()
+        self.shift = shift * (self.columns if plain else self.rows)
 
     def _precondition(self, side: np.ndarray) -> np.ndarray:
         if self.inverse is None:
@@ -196,7 +197,7 @@ class Inverse:
         return np.ravel(self.inverse @ side) / self.columns
 
     def _product(self, x: np.ndarray) -> np.ndarray:
-        return np.ravel(self.jacobian @ (x * self.columns)) - self.shift * self.rows * x
+        return np.ravel(self.jacobian @ (x * self.columns)) - self.shift * x
 
     def solve(self, side: np.ndarray) -> np.ndarray:
         """The inverse applied to a vector."""

@@ -252,11 +252,14 @@ def nearest_eigenvalues(data: Any, work: SparseWork) -> np.ndarray:
     return nearest_sparse(_factorise(work), data.reference)
 
 
-def leading(work: SparseWork, count: int, shift: float) -> np.ndarray:
+def leading(data: Any, work: SparseWork, count: int, shift: float) -> np.ndarray:
     """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
+
+    Without a matrix they are had by solving with the preconditioner; without that, too, the rightmost ones are looked for.
 
     Parameters
     ----------
+    data : AlgebraicProblem
     work : SparseWork
     count : int
     shift : float
@@ -281,6 +284,9 @@ def leading(work: SparseWork, count: int, shift: float) -> np.ndarray:
         options["sigma"] = shift if shift != 0.0 or factors is not None else 1e-12 * abs(matrix).max()
         if factors is not None:
             options["OPinv"] = LinearOperator((n, n), matvec=factors.solve, dtype=float)  # type: ignore[call-arg]
+    elif data.preconditioner_at() is not None:
+        inverse = matrix_free.Inverse(data, work, shift, plain=True)
+        options["OPinv"], options["sigma"] = LinearOperator((n, n), matvec=inverse.solve, dtype=float), shift  # type: ignore[call-arg]
     else:
         options["which"] = "LR"
     with warnings.catch_warnings(), np.errstate(all="ignore"):

@@ -37,3 +37,15 @@ def test_stiff_fields_on_a_line(m):
     (point,) = graph.of_kind("branch-point")
     assert abs(point.value - exact) <= point.location_error
     assert point.location_error < 2e-11 + 1e-13 * m**2
+
+
+@pytest.mark.parametrize("start", [-1.7, -0.6, 0.3, 0.9, 1.2, 1.5, 1.9])
+def test_errors_of_branch_points_where_all_entries_cancel_are_bounds(start):
+    """x (x + 1) (3 p + 2 x - 3), multiplied out: at the crossings, p = 1 and 5/3, both derivatives are sums that cancel, so that their size does not tell their rounding."""
+    problem = cv.AlgebraicProblem(
+        lambda x, p: 3 * p * x**2 + 3 * p * x + 2 * x**3 - x**2 - 3 * x, [1.5 * (1.0 - start)], start
+    )
+    points = cv.diagram(problem, within=(-2.0, 2.0), depth=0).of_kind("branch-point")
+    assert len(points) == 2
+    for point, true in zip(sorted(points, key=lambda point: point.value), (1.0, 5.0 / 3.0), strict=True):
+        assert abs(point.value - true) <= point.location_error < 1e-9

@@ -270,8 +270,8 @@ def test_a_preconditioner_is_worth_it_whatever_the_size():
 
 
 def test_a_matrix_free_problem_that_gmres_cannot_solve_says_so():
-    """A cyclic shift of 400 unknowns: nothing is gained before the 400th product, and 80 vectors are kept."""
-    n = 400
+    """A cyclic shift of 2500 unknowns: nothing is gained before the 2500th product, and 80 vectors are kept."""
+    n = 2500
     before, push = np.roll(np.arange(n), 1), np.random.default_rng(0).standard_normal(n)
     problem = cv.AlgebraicProblem(
         lambda u, p: u[before] - p * push,
@@ -282,3 +282,43 @@ def test_a_matrix_free_problem_that_gmres_cannot_solve_says_so():
     )
     with pytest.raises(ValueError, match="GMRES does not solve .* a preconditioner= would help"):
         cv.diagram(problem, within=(0.0, 1.0))
+
+
+@pytest.mark.parametrize("spectrum", ["none", "flow"])
+def test_double_points_without_a_matrix_and_without_a_preconditioner(spectrum):
+    """lap u + p (u - u^3) = 0 on a square: simple at p = 2 l_1, double at l_1 + l_2, with l_k = 4 (m + 1)^2 sin(k pi / 2 (m + 1))^2."""
+    m = 6
+    line = (second_difference(m) * (m + 1.0) ** 2).tocsc()
+    square = (sp.kron(line, sp.eye_array(m)) + sp.kron(sp.eye_array(m), line)).tocsc()
+    problem = cv.AlgebraicProblem(
+        lambda u, p: square @ u + p * (u - u**3),
+        np.zeros(m * m),
+        15.0,
+        jacobian=matrix_free(lambda u, p: square + sp.diags_array(p * (1.0 - 3.0 * u**2)), m * m),
+        derivative=lambda u, p: u - u**3,
+        spectrum=spectrum,
+        leading=4,
+    )
+    graph = cv.diagram(problem, within=(15.0, 60.0), depth=0)
+    one, two = (4.0 * (m + 1) ** 2 * np.sin(0.5 * k * np.pi / (m + 1)) ** 2 for k in (1, 2))
+    points = graph.of_kind("branch-point")
+    assert [point.value for point in points] == pytest.approx([2.0 * one, one + two], rel=1e-10)
+    if spectrum == "flow":
+        np.testing.assert_allclose(graph["B1"].stable_intervals(), [(15.0, 2.0 * one)], rtol=1e-10)
+
+
+def test_an_operator_is_written_out_where_solving_with_it_is_more_work():
+    """Of 600 unknowns GMRES solves with 1 + a sum in two products, and with a cyclic shift in 600; up to 300 a matrix is never more work."""
+    from contvines.problems.written_out import worth_it, written_out
+
+    draw = np.random.default_rng(2)
+    easy = lambda x: x + np.sum(x) / 600.0  # noqa: E731
+    hard = lambda x: np.roll(x, 1)  # noqa: E731
+    for n, product, wanted in ((600, easy, False), (600, hard, True), (300, easy, True), (2500, hard, False)):
+        assert (
+            worth_it(LinearOperator((n, n), matvec=lambda x, f=product: f(np.ravel(x)), dtype=float), n)
+            is wanted
+        )
+    matrix = draw.standard_normal((230, 230))
+    written = written_out(LinearOperator((230, 230), matvec=lambda x: matrix @ np.ravel(x), dtype=float), 230)
+    np.testing.assert_array_equal(written.toarray(), np.column_stack([matrix @ e for e in np.eye(230)]))

@@ -46,10 +46,9 @@ def grow_without_bound(one: Any, nearer: Any, error: float) -> bool:
         if before is None or here is None:
             return False
         moved = max(abs(x - y) for row, own in zip(here.nodes, nearer.nodes) for x, y in zip(row, own))
-        near = max(
-            NEAR, min(KNOWN, here.steepness * error)
-        )  # the motion changes by so much where the border may be
-        return bool(moved < near and abs(here.value - value) < PLACE * max(1, abs(value)) + error)
+        # the motion changes by so much where the border may be
+        near = max(NEAR, min(KNOWN, here.steepness * error))
+        return bool(moved < near and abs(here.value - value) < PLACE * max(1.0, abs(float(value))) + error)
 
 
 def _nearer(motion: Motion, before: Exact, here: Exact) -> Exact | None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from contvines.events.kinds import BORDERS
+from orbits.starts.find import polish
 from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact
@@ -58,14 +59,47 @@ def _joined(graph: Any, switch: Any, tally: Tally) -> None:
             for i in {0, len(branch) - 1, *(i for i, _ in branch.marks)}
             if abs(branch.values[i] - point.value) < NEAR
         ]
-        if any(apart(point.orbit, branch.orbit(i)) < SAME for i in places):
+        if any(apart(point.orbit, branch.orbit(i)) < max(SAME, _unresolved(point)) for i in places):
             continue
         if not branch.real:
             tally.count("virtual branches that are met where they have no point")
+        elif point.kind in BORDERS and _between(branch, point):
+            tally.count("branches that are met between their points, at a border known to half its digits")
+        elif not graph.within[0] <= point.value <= graph.within[1] and _beyond(branch, point):
+            tally.count(
+                "branches that are met beyond the interval, where a turn of another one just leaves it"
+            )
         else:
             tally.find(
                 "link", f"{switch.point} joins {switch.source} and {switch.target}, but is not on {end}"
             )
+
+
+def _between(branch: Any, point: Any) -> bool:
+    """Whether a branch has the motion of a border at its value, though no point: where margins are flat, what is told on both sides
+
+    of a border differs by up to the told errors.
+    """
+    values, value = branch.values, point.value
+    if not np.abs(values[[0, -1]] - value).min() <= point.location_error:
+        return False
+    for i in np.flatnonzero((values[:-1] - value) * (values[1:] - value) < 0.0):
+        share = (value - values[i]) / (values[i + 1] - values[i])
+        if _has(branch, (1.0 - share) * branch.points[i] + share * branch.points[i + 1], point):
+            return True
+    return False
+
+
+def _beyond(branch: Any, point: Any) -> bool:
+    """Whether a branch that ends with the interval has the motion of a point beyond that, followed to its value."""
+    end = int(np.abs(branch.values - point.value).argmin())
+    return end in (0, len(branch) - 1) and _has(branch, branch.points[end], point)
+
+
+def _has(branch: Any, guess: np.ndarray, point: Any) -> bool:
+    """Whether the solution next to a guess, at the point's value, is its motion."""
+    solved = polish(branch.problem.orbit(guess, point.value))
+    return solved is not None and apart(point.orbit, solved) < SAME
 
 
 def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
@@ -85,7 +119,7 @@ def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:
         nearest = gaps[-1] if point.kind in BORDERS or point.kind == "fold" else float(np.nanmin(gaps))
         falls = nearest < SAME or (gaps[-1] < SHRINKS * gaps[-2] and gaps[-1] < 0.05)
         if not falls and gaps[-1] < _unresolved(point):
-            tally.count("ways to special points shorter than the last bit of the parameter")
+            tally.count("ways to special points shorter than what is known of the parameter")
         elif not falls and _comes_home(branch.orbit(i), [orbit for _, orbit in beside], point):
             tally.count("ways to special points followed in many digits")
         elif not falls:
@@ -107,12 +141,15 @@ def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
 
 
 def _unresolved(point: Any) -> float:
-    """How far the motion of a special point goes while the parameter changes by its last bit: no branch can be told to come nearer."""
+    """How far the motion of a special point goes while the parameter changes by as much as leaves open where it is, or by its last bit.
+
+    No branch can be told to come nearer.
+    """
     if point.kind == "fold":  # the parameter stands still there, and points are located in the motion
         return 0.0
     along = np.asarray(point.tangent)
     rate = abs(float(along[-1])) / float(np.abs(along).max())
-    return float(np.spacing(point.value)) / max(rate, 1e-300)
+    return max(float(np.spacing(point.value)), point.location_error) / max(rate, 1e-300)
 
 
 def _limits(between: Between, i: int, point: Any, tally: Tally) -> None:
