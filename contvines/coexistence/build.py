@@ -67,8 +67,9 @@ def atlas(
     seed : int
         Of the starts and the further values; equal seeds give equal graphs.
     scan : int, optional
-        So many further values in a row must meet nothing new, with 16 starts each; 0 leaves them, and the unstable cycles, out. By
-        default they have as many starts as the given values together.
+        So many further values in a row must meet nothing new, with 16 starts each. By default they have as many starts as the given values
+        together. 0 leaves them out and all else that looks beyond the given values: unstable cycles, ends of stability that are followed to what
+        comes after them, stretches between two changes.
     depth, virtual, user_functions, journal, progress, settings
         As for :func:`contvines.diagram`.
 

@@ -18,7 +18,8 @@ PAST = 0.01  # of a stable stretch's width: so far past its end a motion is foll
 BEYOND_CASCADE = 1.0  # ... and so far, for a cascade of doublings is over after 0.27 of the stretch before it (Feigenbaum's 1 / (4.669 - 1)), ...
 FARTHEST = 1e-3  # ... but no farther than this, of the interval
 FARTHER = 4.0  # times as far again where all that was met is too slow
-NARROWEST = 1e-3  # of the interval: the ends of narrower stretches are left, for a cascade has no last one
+NARROWEST = 1e-3  # of the interval: where stretches that meet, as those of a cascade, are narrower together, their ends are left, ...
+SHORTEST = 1e-5  # ... and likewise those of single ones, for a cascade has no last one
 MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet
 ASIDE = 1e-3  # of the box of starts: so far to either side of the motion it starts, for what is symmetric stays so
 
@@ -110,9 +111,11 @@ def loose_ends(graph: Graph) -> list[End]:
     low, high = graph.within
     size = high - low
     stretches = [stretch for b in graph.branches.values() if b.real for stretch in _stretches(b)]
-    stretches = [s for s in stretches if s[1].value - s[0].value > NARROWEST * size]
+    stretches = [s for s in stretches if s[1].value - s[0].value > SHORTEST * size]
     firsts = np.array([first.value for first, _ in stretches])
     lasts = np.array([last.value for _, last in stretches])
+    wide = _together(firsts, lasts, MEETING * size) > NARROWEST * size
+    stretches = [s for s, enough in zip(stretches, wide, strict=True) if enough]
     found: dict[tuple[str, float, float], End] = {}
     for first, last in stretches:
         for end, others in ((first, lasts), (last, firsts)):
@@ -120,6 +123,21 @@ def loose_ends(graph: Graph) -> list[End]:
             if inside and not np.any(np.abs(others - end.value) <= MEETING * size):
                 found.setdefault(_key(end), end)
     return list(found.values())
+
+
+def _together(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
+    """Width of what each stretch forms with those that it meets, and these with theirs, shape (n,)."""
+    low, high = firsts.copy(), lasts.copy()
+    meets = [np.flatnonzero(np.abs(firsts - last) <= near) for last in lasts]
+    for _ in range(len(firsts)):
+        before = low.sum() - high.sum()
+        for k, others in enumerate(meets):
+            for j in others:
+                low[k] = low[j] = min(low[k], low[j])
+                high[k] = high[j] = max(high[k], high[j])
+        if low.sum() - high.sum() == before:
+            break
+    return high - low
 
 
 def _stretches(branch: Branch) -> Iterator[tuple[End, End]]:
