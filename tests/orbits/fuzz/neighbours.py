@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from contvines.events.kinds import BORDERS
-from orbits.starts.find import polish
 from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact
@@ -63,43 +62,10 @@ def _joined(graph: Any, switch: Any, tally: Tally) -> None:
             continue
         if not branch.real:
             tally.count("virtual branches that are met where they have no point")
-        elif point.kind in BORDERS and _between(branch, point):
-            tally.count("branches that are met between their points, at a border known to half its digits")
-        elif not graph.within[0] <= point.value <= graph.within[1] and _beyond(branch, point):
-            tally.count(
-                "branches that are met beyond the interval, where a turn of another one just leaves it"
-            )
         else:
             tally.find(
                 "link", f"{switch.point} joins {switch.source} and {switch.target}, but is not on {end}"
             )
-
-
-def _between(branch: Any, point: Any) -> bool:
-    """Whether a branch has the motion of a border at its value, though no point: where margins are flat, what is told on both sides
-
-    of a border differs by up to the told errors.
-    """
-    values, value = branch.values, point.value
-    if not np.abs(values[[0, -1]] - value).min() <= point.location_error:
-        return False
-    for i in np.flatnonzero((values[:-1] - value) * (values[1:] - value) < 0.0):
-        share = (value - values[i]) / (values[i + 1] - values[i])
-        if _has(branch, (1.0 - share) * branch.points[i] + share * branch.points[i + 1], point):
-            return True
-    return False
-
-
-def _beyond(branch: Any, point: Any) -> bool:
-    """Whether a branch that ends with the interval has the motion of a point beyond that, followed to its value."""
-    end = int(np.abs(branch.values - point.value).argmin())
-    return end in (0, len(branch) - 1) and _has(branch, branch.points[end], point)
-
-
-def _has(branch: Any, guess: np.ndarray, point: Any) -> bool:
-    """Whether the solution next to a guess, at the point's value, is its motion."""
-    solved = polish(branch.problem.orbit(guess, point.value))
-    return solved is not None and apart(point.orbit, solved) < SAME
 
 
 def _tends(between: Between, i: int, point: Any, tally: Tally) -> None:

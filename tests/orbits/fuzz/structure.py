@@ -93,6 +93,9 @@ def _point(graph: Any, point: Any, tally: Tally) -> None:
     size = max(1.0, float(np.abs(point.u).max(initial=0.0)))
     if not point.residual < ROUNDOFF * size:
         tally.find("residual", f"{where}: {point.residual:.1e}")
+    low, high = graph.within
+    if not max(low - point.value, point.value - high) <= point.location_error + ROUNDOFF:
+        tally.find("outside", f"{where} ({point.kind}) lies outside the interval")
     branch = graph[point.branch]
     if not (point.real and branch.real):
         return
