@@ -105,6 +105,7 @@ def compile_now(name: str, *more: str) -> None:
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
+    compiled.examine.compile(arguments)
     compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
     if n == 2:
         by_address.functions()

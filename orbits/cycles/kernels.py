@@ -1,7 +1,7 @@
 """The compiled functions of each model, put together once: maps, elimination, multipliers, margins.
 
-`assemble(model)` returns the kernels that a continuation loop calls (`linearise`, `bordered`, `inspect`) and what this package
-calls itself (`newton`, `examine`). numba keeps `linearise`, `inspect` and `newton` on disk.
+`assemble(model)` returns the kernels that a continuation loop calls (`linearise`, `bordered`, `inspect`) and the two
+entry points that this package calls itself (`newton`, `examine`). numba keeps `inspect` and the entry points on disk.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ linearise: Any = None
 bordered: Any = None
 margins: Any = None
 unpin: Any = None
+inspect: Any = None
 multipliers: Any = None
 
 
@@ -107,6 +108,13 @@ def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
     return np.inf, limit, p
 
 
+def _examine(data, u, p, work, row):
+    """Residual, and the row of `inspect`, of one solution."""
+    residual = linearise(data, u, p, work)
+    inspect(data, u, p, work, row)
+    return residual
+
+
 class Kernels:
     """The compiled functions of one model.
 
@@ -115,8 +123,8 @@ class Kernels:
     linearise, bordered, inspect : compiled functions
         What a continuation loop calls: `linearise(data, u, p, work)`, `bordered(data, work, border, target, step,
         tangent)`, `inspect(data, u, p, work, row)`.
-    newton, examine : functions
-        `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, compiled; `examine(data, u, p, work, row)`.
+    newton, examine : compiled functions
+        `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, `examine(data, u, p, work, row)`.
     assign, flip, transpose : compiled functions
         What loci against a second parameter need: `assign(data, other, value)` of `orbits.machines.path`, `flip(data, work,
         sign)` and `transpose(data, work, column, other)` of `orbits.elimination.rearranged`.
@@ -141,6 +149,7 @@ class Kernels:
         self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
         self.assign, self._flip, self.transpose = path.assign, flip, transpose
         self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
+        self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
 
     @property
     def inspect(self) -> Any:
@@ -149,11 +158,12 @@ class Kernels:
             wait_for(self.name, self._inspect)
         return self._inspect
 
-    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
+    @property
+    def examine(self) -> Any:
         """Residual, and the row of `inspect`, of one solution."""
-        residual = self.linearise(data, u, p, work)
-        self.inspect(data, u, p, work, row)
-        return residual
+        if not self._examine.overloads:
+            wait_for(self.name, self._examine)
+        return self._examine
 
     @property
     def flip(self) -> Any:

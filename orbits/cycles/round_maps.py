@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from orbits.compiling.decorators import kernel, stored_kernel
-from orbits.compiling.seldom import Seldom
 
 
 @kernel
@@ -70,7 +69,7 @@ def _eliminated(matrix, side):
 
 
 @stored_kernel
-def _through_flights(A, D, whole, sizes, room):
+def through_flights(A, D, whole, sizes, room):
     """The product of -D_i^-1 A_i over all flights, and that of their absolute values; False where one cannot be solved for.
 
     Parameters
@@ -104,7 +103,7 @@ def _through_flights(A, D, whole, sizes, room):
 
 
 @stored_kernel
-def _sides_of_cycles(maps, keys, sides, products, room):
+def sides_of_cycles(maps, keys, sides, products, room):
     """For each cycle of some rounds the least and the largest distance of its points from the border, and the product of its rounds.
 
     Parameters
@@ -149,19 +148,3 @@ def _sides_of_cycles(maps, keys, sides, products, room):
                 low = high = np.nan
                 break
         sides[c, 0], sides[c, 1] = low, high
-
-
-MOST = 1_000_000  # passes through loops before these are compiled
-_inner = {"_unit": _unit, "_copied": _copied, "_eliminated": _eliminated, "_multiplied": _multiplied}
-
-
-def _flights(A, D, whole, sizes, room) -> int:
-    return 4 * A.size * A.shape[1]
-
-
-def _rounds(maps, keys, sides, products, room) -> int:
-    return 2 * int((keys[:, 0] ** 2).sum()) * maps.shape[1] ** 3
-
-
-through_flights = Seldom(_through_flights, _flights, MOST, **_inner)
-sides_of_cycles = Seldom(_sides_of_cycles, _rounds, MOST, **_inner)

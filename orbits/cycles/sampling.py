@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 
+from orbits.compiling.decorators import specialise
 from orbits.cycles.cycle import Cycle
 from orbits.machines.catalogue import stepper
-from orbits.machines.states import state_of, states_of
+from orbits.machines.states import placed, state_of, states_of
+from orbits.machines.stepping import RATE
 
 PER_PERIOD = 200  # instants of a forcing period at which motions are compared
 
@@ -76,14 +81,51 @@ def positions(orbit: Cycle) -> np.ndarray:
     count = PER_PERIOD * orbit.periods
     if not len(orbit.word):
         return np.zeros(count)
-    engine, nodes = stepper(orbit.model.name), orbit.nodes
-    starts = states_of(engine, orbit.params, orbit.word.codes, orbit.word.mode_codes, nodes)
-    begins = np.maximum.accumulate(nodes[:, 0] - nodes[0, 0])
-    wanted = (np.arange(count) * (2.0 * np.pi / PER_PERIOD) - nodes[0, 0]) % (2.0 * np.pi * orbit.periods)
-    segment = begins.searchsorted(wanted, side="right") - 1
-    out = np.empty((count, 4))
-    engine.sample(starts[segment], orbit.params, wanted - begins[segment], out)
-    return out[:, 0]
+    engine, length = stepper(orbit.model.name), len(orbit.word)
+    left, right = engine.walls(orbit.params)
+    starts, states = np.zeros((length, engine.state)), np.empty((count, engine.state))
+    ahead, out = np.zeros(max(count, length)), np.empty((max(count, length), 4))
+    nodes = np.ascontiguousarray(orbit.nodes, dtype=float)
+    codes, modes, whole = orbit.word.codes, orbit.word.mode_codes, 2.0 * np.pi * orbit.periods
+    _tracer(orbit.model.name)(
+        codes, modes, nodes, orbit.params, float(left), float(right), whole, starts, states, ahead, out
+    )
+    return out[:count, 0]
+
+
+@cache
+def _tracer(name: str) -> Any:
+    """What samples a motion of the machine called `name` at equal phases, compiled; numbers as `states_of` and `sample` give them."""
+    sample = stepper(name).sample
+    options = {"error_model": "numpy"}
+    return specialise(_track, sample.py_func.__qualname__ + f"_{name}", options=options, between=sample)
+
+
+def between(states, params, ahead, out):
+    """Placeholder for a machine's `sample`."""
+    raise TypeError("put in by `_tracer`")
+
+
+def _track(codes, modes, nodes, params, left, right, whole, starts, states, ahead, out):
+    """Sample a cycle of `whole` radians at equal phases into `out`; the other arrays are room, `ahead` has zeros."""
+    count, length = states.shape[0], nodes.shape[0]
+    if placed(codes, modes, nodes, left, right, starts):
+        between(starts, params, ahead[:length], out[:length])
+        for i in range(length):
+            starts[i, RATE] = out[i, 3] - nodes[i, 1] if codes[i] < 2 else 0.0
+    first, segment, before, begins = nodes[0, 0], 0, -1.0, 0.0
+    for i in range(count):
+        wanted = (i * (2.0 * np.pi / PER_PERIOD) - first) % whole
+        if wanted < before:
+            segment, begins = 0, 0.0
+        before = wanted
+        while segment + 1 < length and max(begins, nodes[segment + 1, 0] - first) <= wanted:
+            segment += 1
+            begins = max(begins, nodes[segment, 0] - first)
+        for j in range(states.shape[1]):
+            states[i, j] = starts[segment, j]
+        ahead[i] = wanted - begins
+    between(states, params, ahead[:count], out[:count])
 
 
 def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:
