@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST = 4_000_000  # points of a picture
-PER_START = (
-    30  # periods simulated for manifolds, for each start of the usual picture: they take no longer than it
-)
+# periods simulated for manifolds, for each start of the usual picture: they take no longer than it
+PER_START = 30
 CONFIDENCE = 1.96  # standard errors of a 95 % interval
 
 
