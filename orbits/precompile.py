@@ -46,7 +46,8 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         return None
     digest = kernels.assemble(usual(name)[0]).digest
     program = "import gc; gc.set_threshold(200_000, 20, 100)\n"  # compiling makes many objects that stay
-    program += f"from orbits.precompile import compile_as; compile_as({digest!r}, {name!r}, *{more!r})"
+    program += "from contvines_ground.stack import with_room; from orbits.precompile import compile_as\n"
+    program += f"with_room(compile_as, {digest!r}, {name!r}, *{more!r})"
     # the very modules and the very cache of this process, wherever it was started
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     place = getattr(config, "CACHE_DIR", "")

@@ -8,8 +8,9 @@ def main() -> None:
     sys.unraisablehook = _unraisable
     try:
         from contvines.command.cli import main as run
+        from contvines_ground.stack import with_room
 
-        run()
+        with_room(run)
     except KeyboardInterrupt:
         print("contvines: stopped; the same command begins again, or goes on.", file=sys.stderr)
         sys.exit(130)
