@@ -51,8 +51,10 @@ class Engine(Rows):
         self.lower, self.upper = float(within[0]), float(within[1])
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
-        self.bound = bind(problem.kernels, settings.step_rule)
-        self.section = HELD if problem.kernels.compiled else OPEN
+        kernels = problem.kernels
+        self.compiled = bool(kernels.compiled)
+        self.bound = bind(kernels, settings.step_rule)
+        self.section = HELD if self.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
@@ -260,7 +262,7 @@ class Engine(Rows):
             if found is not None and self.lower <= found.p <= self.upper:
                 return found
         found = None
-        if tangent is None and not self.problem.kernels.compiled and isinstance(self.problem, Rough):
+        if tangent is None and not self.compiled and isinstance(self.problem, Rough):
             near = approach(self.problem, np.asarray(u, dtype=float), p)
             found = None if near is None else self.at_value(near, p)
         if found is None:
