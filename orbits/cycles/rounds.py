@@ -62,17 +62,17 @@ class Rounds(NamedTuple):
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
         rounds, changed = table.T
         with np.errstate(all="ignore"):
-            largest = own ** (rounds - changed) * other**changed  # entries of the products, at most
-            errors = rounds * self.error * largest
-            blurs = (self.maps.shape[1] * errors * largest ** (self.maps.shape[1] - 1)).tolist()
+            errors = (rounds * self.error * own ** (rounds - changed) * other**changed).tolist()
+            sizes = np.abs(products).max(axis=(1, 2)).tolist()
         hopeless = set()
-        for key, (low, high), before, radius, error, blur in zip(
-            keys, sides.tolist(), beside.tolist(), _radii(products), errors.tolist(), blurs
+        for key, (low, high), before, radius, error, size in zip(
+            keys, sides.tolist(), beside.tolist(), _radii(products), errors, sizes
         ):
             if self.linear:
                 torn = low < -DECIDED * high and high > -DECIDED * low
             else:
-                torn = _lasts(-low, -before[0], blur) and _lasts(high, before[1], blur)
+                sure = key[0] * self.error * max(size, own * other) < SURE
+                torn = sure and _lasts(-low, -before[0]) and _lasts(high, before[1])
             if torn or (key[0] > 2 and radius > UNSTABLE + error):
                 hopeless.add(key)
         return hopeless
@@ -86,9 +86,9 @@ def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     return sides, products
 
 
-def _lasts(near: float, further: float, blur: float) -> bool:
+def _lasts(near: float, further: float) -> bool:
     """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
-    return near > DECIDED + blur and further - near <= DECIDED * near
+    return near > DECIDED and further - near <= DECIDED * near
 
 
 def _radii(products: np.ndarray) -> list[float]:
