@@ -90,9 +90,7 @@ def positions(orbit: Cycle) -> np.ndarray:
     codes, modes, whole = orbit.word.codes, orbit.word.mode_codes, 2.0 * np.pi * orbit.periods
     tracer = _tracer(orbit.model.name)
     wait_for(orbit.model.name, tracer)
-    tracer(
-        codes, modes, nodes, orbit.params, float(left), float(right), whole, starts, states, ahead, out
-    )
+    tracer(codes, modes, nodes, orbit.params, float(left), float(right), whole, starts, states, ahead, out)
     return out[:count, 0]
 
 
