@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -88,16 +89,17 @@ class Keeper:
         context: Any = cpu_target.target_context
         size = -(-context.get_abi_sizeof(context.get_data_type(kind)) // 8)
 
-        writes: Any = _save
-
-        def save(address, frame):
-            return writes(address, frame)
-
         mark = "_" + hashlib.blake2b(str(kind).encode(), digest_size=4).hexdigest()
-        save.__qualname__ = f"save_{self.suffix}{mark}"
+        # a copy, as numba would take a closure over an intrinsic for another function in every process
+        save: Any = FunctionType(_write.__code__, _write.__globals__, f"save_{self.suffix}{mark}")
+        save.__qualname__, save.__module__ = save.__name__, __name__
         compiled: Any = njit(types.int64(types.int64, kind), cache=True, **self.options)
         self.known.append((size, compiled(save), self.make(_loader(kind), mark)))
         return self.keep(frame)
+
+
+def _write(address, frame):
+    return _save(address, frame)  # pyright: ignore[reportCallIssue]
 
 
 def _itself(frame):
