@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orbits.compiling.waiting import wait_for
 from orbits.cycles.round_maps import sides_of_cycles, through_flights
 
 MOST = 8  # up to so many rounds of a cycle are joined to one at a border
@@ -54,6 +55,7 @@ class Rounds(NamedTuple):
         keys, n = choices(most), self.maps.shape[1]
         table = _table(most)
         sides, products = np.empty((len(keys), 2)), np.empty((len(keys), n, n))
+        wait_for(sides_of_cycles.__name__, sides_of_cycles)
         sides_of_cycles(np.ascontiguousarray(self.maps), table, sides, products, np.empty((3, n, n)))
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
         rounds, changed = table.T
@@ -135,6 +137,7 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     n = A.shape[1]
     whole, sizes = np.empty((2, n, n))
     after = np.empty((0, n, n)) if D is None else D
+    wait_for(through_flights.__name__, through_flights)
     if not through_flights(np.ascontiguousarray(A), after, whole, sizes, np.empty((3, n, n))):
         return None
     error = ROUNDING * float(sizes.max())

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from orbits.compiling.decorators import specialise
+from orbits.compiling.waiting import wait_for
 from orbits.cycles.cycle import Cycle
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import placed, state_of, states_of
@@ -87,9 +88,9 @@ def positions(orbit: Cycle) -> np.ndarray:
     ahead, out = np.zeros(max(count, length)), np.empty((max(count, length), 4))
     nodes = np.ascontiguousarray(orbit.nodes, dtype=float)
     codes, modes, whole = orbit.word.codes, orbit.word.mode_codes, 2.0 * np.pi * orbit.periods
-    _tracer(orbit.model.name)(
-        codes, modes, nodes, orbit.params, float(left), float(right), whole, starts, states, ahead, out
-    )
+    tracer = _tracer(orbit.model.name)
+    wait_for(orbit.model.name, tracer)
+    tracer(codes, modes, nodes, orbit.params, float(left), float(right), whole, starts, states, ahead, out)
     return out[:count, 0]
 
 
