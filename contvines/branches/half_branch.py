@@ -47,7 +47,7 @@ def piece_of(engine: Engine, point: Solved) -> Piece:
         np.array([point.p]),
         point.tangent[None, :],
         point.row[None, : 2 * engine.m],
-        np.array([float(engine.smallest_margin(point.row))]),
+        engine.smallest_margin(point.row)[None],
     )
 
 
@@ -124,7 +124,8 @@ class HalfBranch:
         """All points as one piece, in order."""
         if len(self.pieces) == 1 and not self.pieces[0].turned:
             return self.pieces[0]
-        whole = Piece(*map(np.concatenate, zip(*(piece.in_order() for piece in self.pieces))))
+        arrays = zip(*(piece.in_order() for piece in self.pieces))
+        whole = Piece(*[np.concatenate(parts) for parts in arrays], turned=False)
         self.pieces = [whole]
         return whole
 

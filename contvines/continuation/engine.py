@@ -21,7 +21,7 @@ from .rows import Rows
 from .settings import Settings
 from .solved import Hit as Hit
 from .solved import Solved as Solved
-from .solved import solved_points
+from .solved import solved_point
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 ONE = np.zeros(1)  # a single place: the chord's first end
@@ -171,7 +171,7 @@ class Engine(Rows):
         along: np.ndarray | None,
     ) -> Solved | None:
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return solved_points(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0])[0]
+        return solved_point(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0], 0)
 
     def on_chord(
         self,
@@ -211,7 +211,7 @@ class Engine(Rows):
         found, outcome = self._run(chord, (start, length), ONE, border, along, 40, aim)
         if outcome == corrector.NOWHERE:
             return None
-        point = solved_points(found)[0]
+        point = solved_point(found, 0)
         one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
         if outcome == corrector.AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
