@@ -1,8 +1,9 @@
 """Compiling beside other work: what a first run needs later is compiled by a second process meanwhile.
 
 numba compiles one function at a time in a process. On a machine with a second core another process compiles the
-kernel `inspect`, the simulator, its loop over many starts and the elimination of long words, while this one compiles
-Newton's method and the continuation loop; both find each other's results in numba's cache on disk.
+kernel `inspect`, the simulator, what looks beyond borders, and at last what only other runs need: its loop over many starts and
+the elimination of long words. Meanwhile this one compiles Newton's method and the continuation loop; both find each other's
+results in numba's cache on disk.
 """
 
 from __future__ import annotations
@@ -17,7 +18,12 @@ from numba import config, typeof
 
 from orbits.compiling.waiting import cached, processes
 from orbits.cycles import kernels
+from orbits.cycles.cycle import Cycle
+from orbits.cycles.round_maps import sides_of_cycles, through_flights
+from orbits.cycles.rounds import MOST, Rounds, derived
+from orbits.cycles.sampling import positions
 from orbits.elimination import by_address
+from orbits.elimination.vectorised import condense, expand
 from orbits.machines.catalogue import model_class, usual
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
@@ -66,8 +72,11 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
     except OSError:
         return None
     processes[name] = process
-    if _is_slow(usual(name)[0].node):
-        processes[periodic_multipliers.__name__] = process
+    node = usual(name)[0].node
+    shared = [through_flights, sides_of_cycles]
+    shared += [periodic_multipliers] if _is_slow(node) else []
+    shared += [condense, expand] if node == 2 else []
+    processes.update({function.__name__: process for function in shared})
     return process
 
 
@@ -106,10 +115,13 @@ def compile_now(name: str, *more: str) -> None:
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
+    positions(Cycle(model, problem.word, 1, np.zeros((2, n)), problem.params))
+    derived(np.ones((1, n, n)), np.ones((1, n, n)))
+    Rounds(np.ones((2, n, n)), 0.0, True).hopeless(MOST)
     compiled.examine.compile(arguments)
-    compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
     if n == 2:
         by_address.functions()
+    compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
     settle_all(
         name,
         motion.start[None].copy(),

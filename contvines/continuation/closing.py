@@ -16,47 +16,42 @@ class Closing:
 
     def __init__(self, engine: Engine, start: Solved) -> None:
         self.engine, self.start = engine, start
-        self.z = engine.join(start.u, start.p)
-        self.border = engine.weights * start.tangent
-        shift = engine.problem.period_shift
-        self.shift = (
-            None if shift is None or not np.any(shift) else np.append(np.asarray(shift, dtype=float), 0.0)
-        )
 
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
         engine = self.engine
         if chunk.values[0] == self.start.p:
-            rises = chunk.values[1:] > chunk.values[:-1]
-            if rises.all() or (chunk.values[1:] < chunk.values[:-1]).all():
+            changes = chunk.values[1:] - chunk.values[:-1]
+            if (changes > 0.0).all() or (changes < 0.0).all():
                 return None  # from the start on the parameter only rises, or only falls
         far = NEAR * apart * (engine.upper - engine.lower)
         if self.start.p < chunk.values.min() - far or self.start.p > chunk.values.max() + far:
             return None
-        along = chunk.points @ self.border[:-1] + chunk.values * self.border[-1] - self.border @ self.z
+        z, border = engine.join(self.start.u, self.start.p), engine.weights * self.start.tangent
+        along = chunk.points @ border[:-1] + chunk.values * border[-1] - border @ z
         turns = np.zeros(len(chunk))
-        if self.shift is not None:
-            shift = self.shift[:-1]
-            turns = np.round((chunk.points @ shift - self.z[:-1] @ shift) / (shift @ shift))
-            along -= turns * (shift @ self.border[:-1])
-        along[np.abs(along) <= 1e-13 * (1.0 + abs(self.border) @ abs(self.z))] = 0.0  # the start itself
+        shift = engine.shift
+        if shift is not None:
+            turns = np.round((chunk.points @ shift - z[:-1] @ shift) / (shift @ shift))
+            along -= turns * (shift @ border[:-1])
+        along[np.abs(along) <= 1e-13 * (1.0 + abs(border) @ abs(z))] = 0.0  # the start itself
         passed = np.flatnonzero((along[:-1] < 0.0) & (along[1:] >= 0.0))
-        for i in passed[np.array(chunk.tangents[passed + 1] @ self.border) > 0.0]:
+        for i in passed[np.array(chunk.tangents[passed + 1] @ border) > 0.0]:
             pair = slice(i, i + 2)
-            gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - self.z
-            if self.shift is not None:
-                gaps = gaps - turns[pair, None] * self.shift
+            gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - z
+            if shift is not None:
+                gaps[:, :-1] -= turns[pair, None] * shift
             if np.sqrt((gaps**2) @ engine.weights).min() > NEAR * engine.norm(gaps[1] - gaps[0]):
                 continue
             share = along[i] / (along[i] - along[i + 1])
-            guess = self.z + gaps[0] + share * (gaps[1] - gaps[0])
-            found = engine.solve(guess[:-1], guess[-1], self.border, float(np.dot(self.border, self.z)))
+            guess = z + gaps[0] + share * (gaps[1] - gaps[0])
+            found = engine.solve(guess[:-1], guess[-1], border, float(border @ z))
             if found is None:
                 continue
-            gap = np.abs(engine.join(found.u, found.p) - self.z) / (engine.scale + np.abs(self.z))
+            gap = np.abs(engine.join(found.u, found.p) - z) / (engine.scale + np.abs(z))
             if gap.max() <= 1e-7 and engine.inner(found.tangent, self.start.tangent) > 0.0:
                 points, rest = chunk.cut(int(i) + 1), self.start
-                end = rest.u if self.shift is None else rest.u + turns[i] * self.shift[:-1]
+                end = rest.u if shift is None else rest.u + turns[i] * shift
                 return Chunk(
                     np.vstack([points.points, end]),
                     np.append(points.values, rest.p),

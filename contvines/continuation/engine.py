@@ -59,6 +59,10 @@ class Engine(Rows):
         self.detection = problem.detection or problem.spectrum
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem.scale_within(self.within), float(problem.noise)
+        self.plain = bool((self.scale[:-1] == 1.0).all())  # unknowns have no scales of their own
+        shift = problem.period_shift
+        # what a period adds to the unknowns, if anything
+        self.shift = None if shift is None or not np.any(shift) else np.asarray(shift, dtype=float)
         scales = problem.scales
         self.rate = (
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
@@ -106,11 +110,11 @@ class Engine(Rows):
     # ------------------------------------------------------------------ metric
     def inner(self, a: np.ndarray, b: np.ndarray) -> float:
         """<a, b>."""
-        return float(np.dot(self.weights * a, b))
+        return float((self.weights * a).dot(b))
 
     def norm(self, a: np.ndarray) -> float:
         """Length of a vector."""
-        return math.sqrt(max(self.inner(a, a), 0.0))
+        return math.sqrt((self.weights * a).dot(a))
 
     def distance(self, a: Solved, b: Solved) -> float:
         """Length of the way from one point to another."""

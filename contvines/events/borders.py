@@ -40,21 +40,21 @@ def find_border(segment: Segment, real: bool) -> Border | None:
         Whether its beginning has positive margins: the border is where the first one vanishes; else where all are positive again.
     """
     engine = segment.engine
-    a, b = engine.margins(segment.a.row), engine.margins(segment.b.row)
-    if not len(a):
-        return None
+    a, b = (end.row[2 * engine.m :] < MARGIN for end in (segment.a, segment.b))  # not of what is no number
     if real:
-        falling = ((b < MARGIN) & (a >= MARGIN)).nonzero()[0]
+        falling = (b & ~a).nonzero()[0]
     else:
-        falling = np.arange(len(a)) if (a < MARGIN).any() and not (b < MARGIN).any() else np.zeros(0, int)
+        falling = np.arange(len(a) if a.any() and not b.any() else 0)
     if not len(falling):
         return None
     root = first_zero(segment, falling, real)
     if root is None:
         return None
+    if len(falling) == 1:
+        return Border(root, int(falling[0]))
     if real:
         passing = _passing(segment, root, falling)
-        if 0 < len(passing) < len(falling):
+        if len(passing) < len(falling):
             again = first_zero(segment, passing, real)
             if again is not None and engine.margins(again.point.row)[falling].min() >= MARGIN:
                 root, falling = again, passing

@@ -63,17 +63,18 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
     if not 0.0 < position < 1.0:
         return None
     margins = segment.engine.margins
-    left, middle, right = (margins(point.row) for point in (segment.a, border, segment.b))
+    left, middle, right = values = margins(np.array([segment.a.row, border.row, segment.b.row]))
     if middle.min() < MARGIN:  # one of a flight, say, that is over before the segment is
         return position, border
     rows, found = segment.rows(position * SHARES)
-    for share in SHARES[found & (segment.engine.smallest_margin(rows) < MARGIN)].tolist():
+    for share in SHARES[found & (margins(rows).min(axis=1) < MARGIN)].tolist():
         point = segment.at(share * position)
         if point is not None:
             return share * position, point
-    convex = np.flatnonzero(middle < (1.0 - position) * left + position * right)
+    convex = (middle < (1.0 - position) * left + position * right).nonzero()[0]
     parts = (position * segment.length, (1.0 - position) * segment.length)
-    suspects = [j for j in convex if dips(left[j], middle[j], right[j], *parts)]
+    sides = values[:, convex].T.tolist()
+    suspects = [j for j, side in zip(convex.tolist(), sides) if dips(*side, *parts)]
     if not suspects:
         return None
     part = Segment(segment.engine, segment.a, border)

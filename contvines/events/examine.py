@@ -66,9 +66,8 @@ class Examiner:
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
         self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
         self.signed = bool(getattr(problem, "signed", True))
-        self.symmetries = [
-            SymmetryTest(s, engine.n, problem.period_shift, engine.scale[:-1]) for s in problem.symmetries
-        ]
+        scale = None if engine.plain else engine.scale[:-1]
+        self.symmetries = [SymmetryTest(s, engine.n, engine.shift, scale) for s in problem.symmetries]
         self.users = {name: user_function(engine, f) for name, f in (user_functions or {}).items()}
 
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
@@ -96,20 +95,19 @@ class Examiner:
         folds = self._fold(segment, met)
         counted, discarded = 0, False
         crossings: list[Located] = []
-        before, after = (counts(self.engine.spectrum(row[None, :]), self.kind)[0] for row in (a.row, b.row))
+        before, after = self._counts(a, b)
         # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
-        odd, side = int(after[0] - before[0]) % 2, turned(a, b)
+        odd, side = (after[0] - before[0]) % 2, turned(a, b)
         rounded = self.scaled and self.signed and odd != side
         # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes: the ends do not tell
         infinite = not self.scaled and self.kind == "map" and side is not None and odd != side
-        if abs(int(after[0] - before[0])) == 1 and self.scaled:
+        if abs(after[0] - before[0]) == 1 and self.scaled:
             # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
             one_fold = len(folds) == 1 and a.sign * b.sign > 0.0
             if one_fold or (rounded and not passes(segment, 0.5, 0.5 + BESIDE)):
-                after = np.array([before[0], *after[1:]])
-        for column, name in enumerate(NAMES):
-            low, high = sorted((int(before[column]), int(after[column])))
-            for k in range(low + 1, high + 1):
+                after = [before[0], *after[1:]]
+        for name, one, other in zip(NAMES, before, after):
+            for k in range(min(one, other) + 1, max(one, other) + 1):
                 test = self._multiplier(name, k)
                 root = locate(segment, test, jump=0.05)
                 if root is None or not root.continuous:
@@ -131,8 +129,8 @@ class Examiner:
         for fold in folds:
             crossings += self._around(segment, fold, before, after)
         # real multipliers come from one side of the axis to the other as pairs: of an odd number one has passed the circle
-        change = after - before
-        passed = change @ np.array([1, 1, 2]) != 0 or bool(change[0] % 2)
+        plus, minus, pairs = (other - one for one, other in zip(before, after))
+        passed = plus + minus + 2 * pairs != 0 or plus % 2 == 1
         if (infinite or (discarded and passed)) and depth < DEEPEST:
             middle = segment.at(0.5)
             if middle is not None:
@@ -166,8 +164,8 @@ class Examiner:
         rough = locate(segment, test, tolerance=1e-6)
         if rough is None:
             return None
-        count = counts(self.engine.spectrum(rough.point.row[None, :]), self.kind)[0, 0]
-        inner = abs(self._multiplier("plus", max(int(count), 1))(rough.point))
+        ((count, _, _),) = self._counts(rough.point)
+        inner = abs(self._multiplier("plus", max(count, 1))(rough.point))
         if abs(test(rough.point)) > REACHED or (self.kind != "real" and inner > REACHED):
             return None
         if self._complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
@@ -176,16 +174,15 @@ class Examiner:
         return self._located(root, "branch-point", 0)
 
     def _around(
-        self, segment: Segment, fold: Located, before: np.ndarray, after: np.ndarray
+        self, segment: Segment, fold: Located, before: list[int], after: list[int]
     ) -> list[Located]:
         """Multipliers that pass the circle before a fold and come back behind it, so that the ends of the segment do not tell."""
-        here = counts(self.engine.spectrum(fold.point.row[None, :]), self.kind)[0]
+        (here,) = self._counts(fold.point)
         found: list[Located] = []
-        for column, name in enumerate(NAMES):
-            if name == "plus" or before[column] != after[column]:
+        for name, one, same, there in zip(NAMES, before, after, here):
+            if name == "plus" or one != same:
                 continue
-            low, high = sorted((int(before[column]), int(here[column])))
-            for k in range(low + 1, high + 1):
+            for k in range(min(one, there) + 1, max(one, there) + 1):
                 for first, second, start, length in (
                     (segment.a, fold.point, 0.0, fold.position),
                     (fold.point, segment.b, fold.position, 1.0 - fold.position),
@@ -209,6 +206,10 @@ class Examiner:
         unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
         return bool(abs(one) > REACHED * unit)
 
+    def _counts(self, *points: Solved) -> list[list[int]]:
+        """How many multipliers are past the circle at each of some points; see :func:`counts`."""
+        return counts(self.engine.spectrum(np.array([point.row for point in points])), self.kind).tolist()
+
     def _kind(self, name: str) -> str:
         if name == "minus":
             return self.engine.problem.flip_kind
@@ -223,8 +224,9 @@ class Examiner:
         return Located(root.position, kind, index, root.point, (np.nan, np.nan), root.error, role, name)
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
-        ends = np.array([segment.a.tangent[-1], segment.b.tangent[-1]])
-        if not changes(ends)[0] or np.abs(ends).max() <= FLAT * self.engine.parameter_unit(segment.a.p):
+        one, other = float(segment.a.tangent[-1]), float(segment.b.tangent[-1])
+        flat = max(abs(one), abs(other)) <= FLAT * self.engine.parameter_unit(segment.a.p)
+        if flat or (one >= 0.0) == (other >= 0.0):
             return []
         root = locate(segment, AT_FOLDS)
         if root is None or not root.continuous:
@@ -281,8 +283,7 @@ class Examiner:
         events = []
         for index, test in enumerate(self.symmetries):
             ends = test.part(np.array([segment.a.u, segment.b.u]))
-            sizes = np.abs(ends).max(axis=1)
-            if not (ends[0] @ ends[1] < 0.0 and sizes.min() > 1e-6):
+            if not (ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > 1e-6):
                 continue
             scale = float(np.sqrt(ends[0] @ ends[0]))
 

@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..continuation.engine import Solved
+from ..continuation.engine import Engine, Solved
 from .locate import Root
 from .segment import Segment
 
@@ -43,35 +43,41 @@ UNBOUNDED = 1e15  # stands for a multiplier that does
 
 def one_sided(segment: Segment, root: Root) -> Solved:
     """The point at a border, its tangent and multipliers replaced by their limits where they are rounding."""
-    point = root.point
-    return point._replace(tangent=_tangent(segment, root), row=_row(segment, root))
+    engine, point, position = segment.engine, root.point, root.position
+    reach = min(BESIDE, position / 3.0)
+    beside = [position - k * reach for k in (1.0, 2.0) if reach > 0.0]
+    tells = engine.m > 0 and engine.problem.spectrum == "map" and segment.length > 0.0
+    spacings = [distance / segment.length for distance in DISTANCES] if tells else []
+    widest = next((step for step in spacings if position - PLACES[-1] * step >= -1.0), None)
+    before = [] if widest is None else [position - k * widest for k in PLACES]
+    tangent, row, rows = point.tangent, point.row, point.row[:0]
+    if beside or before:
+        found = segment.found(beside + before)
+        known, split = found.numbers[:, 1] >= 0.0, len(beside)
+        if beside and known[:split].all():
+            tangent = _tangent(engine, tangent, *found.tangents[:split])
+        if known[split:].all():
+            rows = found.rows[split:]
+    if tells and not _plainly(engine, row, rows):
+        limits = _limits(segment, position, row)
+        if limits is not None:
+            m, roots, row = engine.m, _roots(limits), row.copy()
+            row[0 : 2 * m : 2], row[1 : 2 * m : 2] = roots.real, roots.imag
+    return point._replace(tangent=tangent, row=row)
 
 
-def _tangent(segment: Segment, root: Root) -> np.ndarray:
-    """The tangent, extrapolated where the one solved for is something else."""
-    engine, own = segment.engine, root.point.tangent
-    reach = min(BESIDE, root.position / 3.0)
-    if not reach > 0.0:
-        return own
-    near, far = segment.several([root.position - k * reach for k in (1.0, 2.0)])
-    if near is None or far is None:
-        return own
-    ahead = engine.unit(2.0 * near.tangent - far.tangent)
+def _tangent(engine: Engine, own: np.ndarray, near: np.ndarray, far: np.ndarray) -> np.ndarray:
+    """The tangent, extrapolated from two before it where the one solved for is something else."""
+    ahead = engine.unit(2.0 * near - far)
     return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
 
 
-def _row(segment: Segment, root: Root) -> np.ndarray:
-    """The row of multipliers and margins, with extrapolated multipliers where those computed are something else."""
-    engine, own = segment.engine, root.point.row
-    m = engine.m
-    if not m or engine.problem.spectrum != "map" or not segment.length > 0.0:
-        return own
-    limits = _limits(segment, root.position, own)
-    if limits is None:
-        return own
-    row, roots = own.copy(), _roots(limits)
-    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = roots.real, roots.imag
-    return row
+def _plainly(engine: Engine, own: np.ndarray, rows: np.ndarray) -> bool:
+    """Whether the polynomial tends to the one computed at the border by the first points (4, columns) already, as at most borders."""
+    if not len(rows):
+        return False
+    polynomials = _characteristic(engine.spectrum(np.concatenate([own[None, :], rows])))
+    return bool(_apart(CUBIC @ polynomials[1:], polynomials[0]) < AGREEING)
 
 
 def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarray] | None:
@@ -79,17 +85,18 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarr
 
     None if none converges, or if they agree with the polynomial computed at the border (of the row `own`).
     """
+    spacings, rows = _rows(segment, position, (*DISTANCES, *NEAREST))
     computed = _characteristic(segment.engine.spectrum(own))
-    best: list[np.ndarray] | None = None
-    error = np.inf
-    if _plainly(segment, position, computed):
-        return None
-    limits = _extrapolated(segment, position)
+    polynomials = _characteristic(segment.engine.spectrum(rows))
+    split = int(np.count_nonzero(spacings >= DISTANCES[-1]))
+    limits = _extrapolated(spacings[:split], polynomials[:split])
     if not len(limits):
         return None
-    agree = _apart(limits[:, 0], computed)
+    best: list[np.ndarray] | None = None
+    error = np.inf
+    agree = _apart(limits[:, 0], computed).tolist()
     changes = _apart(limits[1:], limits[:-1]).tolist()
-    for i, agreed in enumerate(agree.tolist()):
+    for i, agreed in enumerate(agree):
         if agreed < AGREEING:
             return None
         if i > 0:  # compared with the spacing before
@@ -100,22 +107,21 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarr
                 best, error = list(limits[i, : poles + 1]), changed[poles]
         if best is not None and len(best) == 1 and error < SURELY:
             break
-    if best is not None and len(best) == 1 and _apart(best[0], computed) < AGREEING + 10.0 * error:
-        return None
     if best is None:
-        return _by_margin(segment, position, own)
-    return None if len(best) > 1 and _bounded(segment, position, computed) else best
+        return _by_margin(segment.engine, own, rows, split)
+    if len(best) == 1:
+        return None if _apart(best[0], computed) < AGREEING + 10.0 * error else best
+    return None if _bounded(segment.engine, rows[split:], polynomials[split:], computed) else best
 
 
-def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarray] | None:
+def _by_margin(engine: Engine, own: np.ndarray, rows: np.ndarray, split: int) -> list[np.ndarray] | None:
     """The polynomial, and its limit times the margin that vanishes, if that is the same wherever rounding has put the margin."""
-    engine = segment.engine
-    (_, beside), (_, before) = (_rows(segment, position, spacings) for spacings in (NEAREST, DISTANCES))
+    before, beside = rows[:split], rows[split:]
     if not (len(beside) and len(before) and engine.problem.n_margins):
         return None
-    rows = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
+    near = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
     index = int(np.abs(engine.margins(own)).argmin())
-    margins, polynomials = engine.margins(rows)[:, index], _characteristic(engine.spectrum(rows))
+    margins, polynomials = engine.margins(near)[:, index], _characteristic(engine.spectrum(near))
     products = margins[:, None] * polynomials
     grown = products[:, 1]
     if not np.isfinite(products).all() or np.abs(polynomials[0]).argmax() != 1:
@@ -127,39 +133,21 @@ def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[np.nd
     return [polynomials[0], side * np.median(products, axis=0)]
 
 
-def _plainly(segment: Segment, position: float, computed: np.ndarray) -> bool:
-    """Whether the polynomial tends to the one computed at the border by the first points already, as at most borders."""
-    step = DISTANCES[0] / segment.length
-    places = [position - k * step for k in PLACES]
-    if places[-1] < -1.0:
-        return False
-    rows, found = segment.rows(places)
-    if not found.all():
-        return False
-    return bool(_apart(CUBIC @ _characteristic(segment.engine.spectrum(rows)), computed) < AGREEING)
-
-
-def _extrapolated(segment: Segment, position: float) -> np.ndarray:
+def _extrapolated(spacings: np.ndarray, polynomials: np.ndarray) -> np.ndarray:
     """The polynomials times each power of the distance, extrapolated to the border from each spacing that tells, (k, powers, m + 1)."""
-    spacings, rows = _rows(segment, position, DISTANCES)
-    values = _characteristic(segment.engine.spectrum(rows))
-    sure = np.isfinite(values).all(axis=(1, 2))
+    sure = np.isfinite(polynomials).all(axis=(1, 2))
     powers = np.power.outer(spacings[sure], np.arange(POLES + 1))
-    return powers[:, :, None] * (EXTRAPOLATION @ values[sure])
+    return powers[:, :, None] * (EXTRAPOLATION @ polynomials[sure])
 
 
-def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
+def _bounded(engine: Engine, rows: np.ndarray, polynomials: np.ndarray, computed: np.ndarray) -> bool:
     """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
 
     As where another impact, before the one that is about to graze, is almost as slow. Nearer than rounding lets the vanishing margin
     come to zero nothing grows any more, and nothing can be told.
     """
     largest = float(np.abs(computed).max())
-    _, rows = _rows(segment, position, NEAREST)
-    if not len(rows):
-        return False
-    polynomials = _characteristic(segment.engine.spectrum(rows))
-    for margins, values in zip(segment.engine.smallest_margin(rows), polynomials):
+    for margins, values in zip(engine.smallest_margin(rows), polynomials):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
         if not np.isfinite(values).all():
@@ -173,9 +161,10 @@ def _bounded(segment: Segment, position: float, computed: np.ndarray) -> bool:
 
 def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Largest differences of polynomials (..., m + 1), as parts of their largest coefficients."""
+    most = np.maximum.reduce
     with np.errstate(all="ignore"):
-        gap = np.abs(one - other).max(axis=-1)
-        largest = np.maximum(np.abs(one).max(axis=-1), np.abs(other).max(axis=-1))
+        gap = most(np.abs(one - other), axis=-1)
+        largest = np.maximum(most(np.abs(one), axis=-1), most(np.abs(other), axis=-1))
         part = np.where(gap > 0.0, gap / largest, 0.0)
     return np.where(gap < np.inf, part, np.inf)
 
@@ -184,7 +173,7 @@ def _rows(segment: Segment, position: float, spacings: tuple[float, ...]) -> tup
     """Rows of multipliers and margins at four points before the border, and the spacings (k,) for which all are found, (k, 4, columns)."""
     wanted = np.array(spacings)
     places = position - np.outer(wanted / segment.length, PLACES)
-    rows, found = segment.rows(places.ravel())
+    rows, found = segment.rows(places.reshape(-1))
     rows, found = rows.reshape(*places.shape, -1), found.reshape(places.shape)
     for i, j in np.argwhere(places < -1.0).tolist():
         point = _before(segment, float(places[i, j]))
@@ -214,7 +203,7 @@ def _characteristic(spectrum: np.ndarray) -> np.ndarray:
     coefficients[..., 0] = 1.0
     for k in range(m):
         coefficients[..., 1 : k + 2] -= spectrum[..., k : k + 1] * coefficients[..., : k + 1]
-    return np.real(coefficients)
+    return coefficients.real
 
 
 def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:

@@ -285,16 +285,15 @@ class Scanner:
         self.kind = KINDS[engine.detection]
         self.mark = _compiled() if engine.problem.kernels.compiled else with_arrays
         columns = engine.n
-        self.plain = plain = bool((engine.scale[:-1] == 1.0).all())
+        self.plain = plain = engine.plain
         affine = [test.affine for test in symmetries if test.affine is not None and plain]
         self.left_out = [test for test in symmetries if test.affine is None or not plain]
         shape = (len(affine), columns)
-        shift = symmetries[0].shift if symmetries else None
         self.symmetries = Symmetries(
             np.array([order for order, _, _ in affine], np.int64).reshape(shape),
             np.array([signs for _, signs, _ in affine], float).reshape(shape),
             np.array([constant for _, _, constant in affine], float).reshape(shape),
-            np.zeros(columns) if shift is None else np.array(shift, float),
+            np.zeros(columns) if engine.shift is None else engine.shift,
             np.zeros((2, *shape)),
         )
 

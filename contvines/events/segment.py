@@ -42,14 +42,15 @@ class Segment:
 
     def several(self, places: Sequence[float] | np.ndarray) -> list[Solved | None]:
         """The points of the branch at some places, each as by `at`."""
-        return solved_points(self._found(places))
+        return solved_points(self.found(places))
 
     def rows(self, places: Sequence[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Rows of multipliers and margins at some places, (k, columns), and which of them are of points of the branch, (k,)."""
-        found = self._found(places)
+        found = self.found(places)
         return found.rows, found.numbers[:, 1] >= 0.0
 
-    def _found(self, places: Sequence[float] | np.ndarray) -> Found:
+    def found(self, places: Sequence[float] | np.ndarray) -> Found:
+        """All that is found at some places, as arrays."""
         return self.engine.on_chord(
             self.chord, np.array(places, dtype=float), self.start, self.length, self.border, self.direction
         )

@@ -18,17 +18,15 @@ def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 class SymmetryTest:
     """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 
-    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks.
+    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks. ``shift`` is not zero,
+    ``scale`` not one all over: else they are None.
     """
 
     def __init__(
-        self, symmetry: Any, n: int, period_shift: np.ndarray | None, scale: np.ndarray | None = None
+        self, symmetry: Any, n: int, shift: np.ndarray | None, scale: np.ndarray | None = None
     ) -> None:
-        self.scale = None if scale is None or (scale == 1.0).all() else scale
         self.symmetry, self.kind = symmetry, symmetry.kind
-        self.shift = (
-            None if period_shift is None or not np.any(period_shift) else np.asarray(period_shift, float)
-        )
+        self.shift, self.scale = shift, scale
         probe, check, places = _patternless(n)
         self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         try:
@@ -51,8 +49,9 @@ class SymmetryTest:
         else:
             gap = points - np.array([self.symmetry.apply(u) for u in points])
         if self.shift is not None:
-            turns = np.round(gap @ self.shift / (self.shift @ self.shift))
-            gap = gap - turns[:, None] * self.shift
+            turns = np.rint(gap @ self.shift / (self.shift @ self.shift))
+            if turns.any():
+                gap = gap - turns[:, None] * self.shift
         return gap if self.scale is None else gap / self.scale
 
     def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:

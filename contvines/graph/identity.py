@@ -44,7 +44,7 @@ class Register:
             engine.problem.canonical(branch.points[i], float(branch.values[i]))[0]
             for i in {len(branch) // 2, len(branch) // 3, (2 * len(branch)) // 3}
         }
-        for key in sorted(keys, key=repr):
+        for key in keys:
             self.by_key.setdefault(key, []).append((branch, engine))
 
     def find(self, problem: Problem, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:

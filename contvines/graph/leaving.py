@@ -152,6 +152,9 @@ def _is_image(part: np.ndarray) -> bool:
 
 
 def _row(run: Run, engine: Engine, point: SpecialPoint) -> np.ndarray:
+    event = run.events.get(point.label)
+    if event is not None:  # else the graph was loaded
+        return event.point.row
     border = engine.weights * point.tangent
     solved = engine.polish(
         point.u, point.value, border, float(border @ engine.join(point.u, point.value)), point.tangent

@@ -8,7 +8,9 @@ M_{n-1} + M_{n-1} M_{n-2} + ... + M_{n-1} ... M_1 when the cycle is read from it
 (2009) 795, lemma 2: s_i = det(P_i) rho.b / det(1 - M)). So a cycle is real, on one side of the border, only where these have one
 sign in all unchanged rounds and the other one in all changed ones.
 
-At an impact of vanishing speed the derivatives grow without bound; there only the multipliers tell.
+At an impact of vanishing speed s one of the derivatives grows as 1/s, since a touch displaces x by g s along some vector g, with s^2 the
+distance beyond the border (Nordmark, J. Sound Vib. 145 (1991) 279): to first order in s the cycle has s_i = 0 in a changed round, as if
+that round were linear with a slope without bound. So the signs of det P_i that count are those for s to 0, told from two sizes of s.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orbits.compiling.waiting import wait_for
 from orbits.cycles.round_maps import sides_of_cycles, through_flights
 
 MOST = 8  # up to so many rounds of a cycle are joined to one at a border
@@ -41,30 +44,53 @@ class Rounds(NamedTuple):
         Of both, relative to their largest entries.
     linear : bool
         Whether they have limits at the border, which agree on it.
+    further : ndarray, shape (2, m, m)
+        The same derivatives further from the border.
     """
 
     maps: np.ndarray
     error: float
     linear: bool
+    further: np.ndarray
 
     def hopeless(self, most: int) -> set[tuple[int, int]]:
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
-        keys, n = choices(most), self.maps.shape[1]
-        table = _table(most)
-        sides, products = np.empty((len(keys), 2)), np.empty((len(keys), n, n))
-        sides_of_cycles(np.ascontiguousarray(self.maps), table, sides, products, np.empty((3, n, n)))
+        keys, table = choices(most), _table(most)
+        sides, products = _sides(self.maps, most)
+        beside = sides if self.linear else _sides(self.further, most)[0]
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
         rounds, changed = table.T
         with np.errstate(all="ignore"):
             errors = (rounds * self.error * own ** (rounds - changed) * other**changed).tolist()
+            sizes = np.abs(products).max(axis=(1, 2)).tolist()
         hopeless = set()
-        for key, (low, high), radius, error in zip(keys, sides.tolist(), _radii(products), errors):
-            torn = self.linear and low < -DECIDED * high and high > -DECIDED * low
+        for key, (low, high), before, radius, error, size in zip(
+            keys, sides.tolist(), beside.tolist(), _radii(products), errors, sizes
+        ):
+            if self.linear:
+                torn = low < -DECIDED * high and high > -DECIDED * low
+            else:
+                sure = key[0] * self.error * max(size, own * other) < SURE
+                torn = sure and _lasts(-low, -before[0]) and _lasts(high, before[1])
             if torn or (key[0] > 2 and radius > UNSTABLE + error):
                 hopeless.add(key)
         return hopeless
+
+
+def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Sides and products of the cycles of up to `most` rounds; see `orbits.cycles.round_maps.sides_of_cycles`."""
+    table, n = _table(most), maps.shape[1]
+    sides, products = np.empty((len(table), 2)), np.empty((len(table), n, n))
+    wait_for(sides_of_cycles.__name__, sides_of_cycles)
+    sides_of_cycles(np.ascontiguousarray(maps), table, sides, products, np.empty((3, n, n)))
+    return sides, products
+
+
+def _lasts(near: float, further: float) -> bool:
+    """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
+    return near > DECIDED and further - near <= DECIDED * near
 
 
 def _radii(products: np.ndarray) -> list[float]:
@@ -101,19 +127,20 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
     """Rounds from the derivatives, with their errors, of unchanged and of changed ones, from far to near the border; None where they
     cannot be told.
     """
-    found, error, bounded = [], 0.0, True
+    found, further, error, bounded = [], [], 0.0, True
     for maps in kinds:
         if not maps or any(m is None for m in maps):
             return None
         far, near = maps[0], maps[-1]
         assert far is not None and near is not None
         found.append(near[0])
+        further.append(far[0])
         size = float(np.abs(near[0]).max())
         error = max(error, near[1] / size if size > 0.0 else 0.0)
         bounded = bounded and bool(np.abs(far[0] - near[0]).max() <= BOUNDED * max(size, 1.0))
     if not error <= SURE:
         return None
-    return Rounds(np.array(found), error, bounded and _agree(*found))
+    return Rounds(np.array(found), error, bounded and _agree(*found), np.array(further))
 
 
 def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:
@@ -135,6 +162,7 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     n = A.shape[1]
     whole, sizes = np.empty((2, n, n))
     after = np.empty((0, n, n)) if D is None else D
+    wait_for(through_flights.__name__, through_flights)
     if not through_flights(np.ascontiguousarray(A), after, whole, sizes, np.empty((3, n, n))):
         return None
     error = ROUNDING * float(sizes.max())

@@ -15,6 +15,7 @@ from numba import carray, cfunc, types  # pyright: ignore[reportPrivateImportUsa
 from numba.extending import intrinsic
 
 from orbits.compiling.decorators import digest_of
+from orbits.compiling.waiting import Kept, wait_for
 from orbits.elimination import two_unknowns, vectorised
 from orbits.elimination.vectorised import ENDS, KEEP, LANES, PACK, SHORTEST, STATE, condense, expand
 
@@ -77,8 +78,9 @@ def functions() -> tuple[Any, Any]:
     # numba looks at this file only, not at those whose functions are called
     digest = digest_of(two_unknowns, vectorised)
     compile_ = cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)
-    for function in (_condense, _expand):
+    for function, inner in ((_condense, condense), (_expand, expand)):
         function.__qualname__ = f"{function.__name__.strip('_')}_{digest}"
+        wait_for(inner.__name__, Kept(function))
     return compile_(_condense), compile_(_expand)
 
 
