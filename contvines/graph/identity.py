@@ -20,16 +20,15 @@ def same_vector(
     a: np.ndarray, b: np.ndarray, tolerance: float = SAME, scale: np.ndarray | None = None
 ) -> bool:
     """Equal up to the tolerance, relative to 1 + largest entry, in units of a scale of the entries."""
-    if a.shape == b.shape:
-        a, b = _in_units(a, scale), _in_units(b, scale)
-    return a.shape == b.shape and bool(
-        np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0))
-    )
+    if a.shape != b.shape:
+        return False
+    apart, size = np.abs(_in_units(np.array([a - b, b]), scale)).max(axis=1, initial=0.0).tolist()
+    return apart <= tolerance * (1.0 + size)
 
 
-def _in_units(vector: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
-    """A canonical vector in units of the unknowns. Where all of these are 1 it may have more entries than there are unknowns: a whole cycle's."""
-    return vector if scale is None or (scale[:-1] == 1.0).all() else vector / scale[: len(vector)]
+def _in_units(vectors: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
+    """Canonical vectors in units of the unknowns. Where all of these are 1 it may have more entries than there are unknowns: a whole cycle's."""
+    return vectors if scale is None or (scale[:-1] == 1.0).all() else vectors / scale[: vectors.shape[-1]]
 
 
 class Register:
@@ -165,7 +164,7 @@ def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
     # only the parameter's cubic has to be solved
     a, b, c, e = float(za[-1]), float(d * ta[-1]), float(zb[-1]), float(d * tb[-1])
     low, high, flow = 0.0, 1.0, a - p
-    for _ in range(50):
+    for _ in range(30):
         middle = 0.5 * (low + high)
         t, rest = middle, 1.0 - middle
         value = rest * rest * ((1.0 + 2.0 * t) * a + t * b) + t * t * ((3.0 - 2.0 * t) * c - rest * e) - p
