@@ -82,14 +82,14 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
         return rest
     border = placed(problem, u, p, int(point.margin_index))
     index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)
-    nearby = [_real_part(problem, u, p, tangent_here, index, length) for length in BESIDE]
+    nearby = _real_part(problem, u, p, tangent_here, index)
     old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
     seeds = []
     # the simulator is asked only where no proposal stands
     for candidate in chain(proposals(border), _simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
-        if not _followed(other, v, q, orbit):
+        if not _followed(orbit):
             continue
         smallest, v, tangent = _simplest(other, orbit, v, tangent)
         persistence = bool(np.sign(q - p) != old_side)
@@ -105,8 +105,9 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
     return [read_alike(seed, before) for seed in seeds]
 
 
-def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Solution) -> bool:
-    return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < FOLLOWED
+def _followed(orbit: Solution) -> bool:
+    """Whether the simulator goes through an orbit whose margins say that it is real."""
+    return orbit.replay() < FOLLOWED
 
 
 def _simplest(
@@ -127,7 +128,7 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
-        if _followed(other, v, q, other.orbit(v, q)):
+        if _followed(other.orbit(v, q)):
             text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
@@ -164,7 +165,7 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
             there = other.orbit(v, q)
             if there.root().periods != other.periods or (there.symmetric and not other.symmetric):
                 continue
-            if not _followed(other, v, q, there):
+            if not _followed(there):
                 continue
             what = escape(problem.symmetric, rounds)
             yield Seed(
@@ -200,33 +201,31 @@ def _grown_in(
     return None
 
 
-def _sides(
-    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, length: float
-) -> list[tuple[np.ndarray, float]]:
-    """Solutions with the old word a little ahead of the border and behind it, as (u, p)."""
-    kernels, work = problem.equations.kernels, problem.scratch
-    step, along = np.empty(u.size + 1), np.empty(u.size + 1)
-    length /= max(float(np.abs(tangent).max()), 1e-12)
-    found = []
-    for sign in (1.0, -1.0):
-        there = u + sign * length * tangent[:-1]
-        q = p + sign * length * float(tangent[-1])
-        residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
-        if residual < 1e-10:
-            found.append((there, float(q)))
-    return found
-
-
 def _real_part(
-    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int, length: float
-) -> tuple[np.ndarray, float] | None:
-    """A solution in the branch's real part, close to the border.
+    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int
+) -> list[tuple[np.ndarray, float] | None]:
+    """Solutions (u, p) in the branch's real part, close to the border at each of the distances `BESIDE`; None where there is none.
 
     Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
     border, so its tangent does not tell.
     """
-    sides = _sides(problem, u, p, tangent, length)
-    return max(sides, key=lambda side: float(margins_of(problem, *side)[index]), default=None)
+    kernels, work = problem.equations.kernels, problem.scratch
+    step, along = np.empty(u.size + 1), np.empty(u.size + 1)
+    tangent = tangent / max(float(np.abs(tangent).max()), 1e-12)
+    sides, found = (1.0, -1.0), []
+    for distance in BESIDE:
+        best = None
+        for side in sides:
+            there = u + side * distance * tangent[:-1]
+            q = p + side * distance * float(tangent[-1])
+            residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
+            if residual < 1e-10:
+                margin = float(margins_of(problem, there, q)[index])
+                if best is None or margin > best[0]:
+                    best = margin, side, (there, float(q))
+        found.append(best and best[2])
+        sides = sides if best is None else (best[1],)
+    return found
 
 
 def _simulated(
@@ -263,7 +262,7 @@ def _simulated(
         other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
         nearer = _nearer(other, v, q, p)
-        if nearer is None or not tends_to(orbit, nearer, found):
+        if nearer is None or margins_of(other, v, q).min() < REAL or not tends_to(orbit, nearer, found):
             continue  # an attractor somewhere else: nothing joins it to the border
         yield other, v, q, None, "the simulator goes on"
 

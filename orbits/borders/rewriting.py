@@ -134,7 +134,8 @@ def _at(orbit: Solution, place: int, spot: Spot, touch: _Touch | None) -> tuple[
         row[0] = nodes[spot.clock, 0]
     if spot.between:
         row[0] = 0.5 * (row[0] + nodes[spot.node + 1, 0])
-    return row, float(orbit.events.v_rate[spot.node]), orbit.word.letter(spot.node).kind == HIT
+    _, speed = orbit.model.cavity_motion(nodes[None, spot.node : spot.node + 1], orbit.params[None])
+    return row, float(speed[0, 0]), orbit.word.letter(spot.node).kind == HIT
 
 
 def rewritten(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
