@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Collection, Hashable
+from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
@@ -31,29 +33,49 @@ def _in_units(vectors: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
     return vectors if scale is None or (scale[:-1] == 1.0).all() else vectors / scale[: vectors.shape[-1]]
 
 
+class Known:
+    """A branch that is known, with its engine; what its solutions are is worked out when the first is looked for where it lies."""
+
+    def __init__(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
+        self.branch, self.engine, self.special = branch, engine, special
+        self.low, self.high = float(branch.values.min()), float(branch.values.max())
+
+    @cached_property
+    def keys(self) -> set[Hashable]:
+        """The key of its inner points, which one of them tells; where all are special points, and so may repeat shorter solutions, those of all points."""
+        branch, problem, count = self.branch, self.engine.problem, len(self.branch)
+        inner = (i for i in range(max(count // 2, 1), count - 1) if i not in self.special)
+        places = list(islice(inner, 1)) or range(count)
+        return {problem.canonical(branch.points[i], float(branch.values[i]))[0] for i in places}
+
+    def reaches(self, p: float) -> bool:
+        """Whether it passes a parameter value, or ends there."""
+        around = SAME * (float(self.engine.scale[-1]) + abs(p))
+        return self.low - around <= p <= self.high + around
+
+
 class Register:
-    """Known branches by the key of their solutions; a seed is compared only with branches of its own key."""
+    """Known branches; a seed is compared only with branches that reach its parameter value, and have its key."""
 
     def __init__(self) -> None:
-        self.by_key: dict[Hashable, list[tuple[Branch, Engine]]] = {}
+        self.known: list[Known] = []
 
-    def add(self, branch: Branch, engine: Engine) -> None:
-        """Remember a branch under the key of its inner points."""
-        keys = {
-            engine.problem.canonical(branch.points[i], float(branch.values[i]))[0]
-            for i in {len(branch) // 2, len(branch) // 3, (2 * len(branch)) // 3}
-        }
-        for key in keys:
-            self.by_key.setdefault(key, []).append((branch, engine))
+    def add(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
+        """Remember a branch; ``special`` are the indices of its special points."""
+        self.known.append(Known(branch, engine, special))
 
     def find(self, problem: Problem, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
         """The known branch on which a solution lies, or None.
 
         Where a branch passes the parameter value it is interpolated, solved there and compared.
         """
+        near = [known for known in self.known if real in (None, known.branch.real) and known.reaches(p)]
+        if not near:
+            return None
         key, vector = problem.canonical(u, p)
-        for branch, engine in self.by_key.get(key, []):
-            if real is not None and branch.real != real:
+        for known in near:
+            branch, engine = known.branch, known.engine
+            if key not in known.keys:
                 continue
             if _passes(branch, engine, key, vector, p) or _ends_at(branch, engine, key, vector, p):
                 return branch
