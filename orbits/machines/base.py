@@ -38,6 +38,9 @@ if TYPE_CHECKING:
     from orbits.words import Word
 
 
+ONE = np.float64(1.0)
+
+
 class Model(Varying):
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
@@ -168,7 +171,8 @@ class Model(Varying):
     @classmethod
     def column(cls, params: np.ndarray, name: str) -> Any:
         """Entry `name` of a parameter vector, or that column of many of them."""
-        return params[..., cls.parameter_names.index(name)]
+        j = cls.parameter_names.index(name)
+        return params[j] if params.ndim == 1 else params[..., j]
 
     # ------------------------------------------------------------------ mechanics
     def shakes(self, name: str) -> bool:
@@ -208,7 +212,7 @@ class Model(Varying):
     @classmethod
     def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """w at the left and at the right wall; shapes follow `params` (..., P)."""
-        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else np.float64(1.0)
+        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
         return one, -one
 
     @classmethod
