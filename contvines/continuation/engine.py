@@ -92,6 +92,7 @@ class Engine(Rows):
         # the arrays are kept here, for compiled code knows only where they are
         self.arguments = (self.data, self.work, self.known, self.metric, self.scratch)
         self.run: Callable[..., int]
+        self.march: Callable[..., Any] = self.bound.march if self.compiled else _calmly(self.bound.march)
         self.frame: Any = self.arguments
         if self.bound.keeper is None:
             self.run = _calmly(self.bound.points)
@@ -305,10 +306,10 @@ class Engine(Rows):
         )
 
 
-def _calmly(function: Callable[..., int]) -> Callable[..., int]:
+def _calmly(function: Callable[..., Any]) -> Callable[..., Any]:
     """An interpreted function, whose overflows are nobody's business."""
 
-    def called(*arguments: Any) -> int:
+    def called(*arguments: Any) -> Any:
         with np.errstate(all="ignore"):
             return function(*arguments)
 

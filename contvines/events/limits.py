@@ -80,7 +80,7 @@ def _plainly(engine: Engine, own: np.ndarray, rows: np.ndarray) -> bool:
     if not len(rows):
         return False
     polynomials = _characteristic(engine.spectrum(np.concatenate([own[None, :], rows])))
-    return bool(_apart(CUBIC @ polynomials[1:], polynomials[0]) < AGREEING)
+    return _alike(CUBIC.dot(polynomials[1:]), polynomials[0], AGREEING)
 
 
 def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarray] | None:
@@ -97,10 +97,9 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarr
         return None
     best: list[np.ndarray] | None = None
     error = np.inf
-    agree = _apart(limits[:, 0], computed).tolist()
     changes = _apart(limits[1:], limits[:-1]).tolist()
-    for i, agreed in enumerate(agree):
-        if agreed < AGREEING:
+    for i, limit in enumerate(limits[:, 0]):
+        if _alike(limit, computed, AGREEING):
             return None
         if i > 0:  # compared with the spacing before
             changed = changes[i - 1]
@@ -113,7 +112,7 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarr
     if best is None:
         return _by_margin(segment.engine, own, rows, split)
     if len(best) == 1:
-        return None if _apart(best[0], computed) < AGREEING + 10.0 * error else best
+        return None if _alike(best[0], computed, AGREEING + 10.0 * error) else best
     return None if _bounded(segment.engine, rows[split:], polynomials[split:], computed) else best
 
 
@@ -150,18 +149,23 @@ def _bounded(engine: Engine, rows: np.ndarray, polynomials: np.ndarray, computed
     come to zero nothing grows any more, and nothing can be told.
     """
     largest = float(np.abs(computed).max())
-    with np.errstate(invalid="ignore"):
-        reached = _apart(CUBIC @ polynomials, computed) < BOUNDED
-    for margins, values, there in zip(engine.smallest_margin(rows), polynomials, reached.tolist()):
+    for margins, values in zip(engine.smallest_margin(rows), polynomials):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
         if not np.isfinite(values).all():
             continue
         if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
             return False  # what is computed at the border is something else
-        if there:
+        if _alike(CUBIC.dot(values), computed, BOUNDED):
             return True
     return False
+
+
+def _alike(one: np.ndarray, other: np.ndarray, part: float) -> bool:
+    """Whether two polynomials (m + 1,) differ by no more than a part of their largest coefficient, which has to be finite."""
+    here, there = one.tolist(), other.tolist()
+    most = part * max(map(abs, here + there))
+    return most < math.inf and all(abs(a - b) <= most for a, b in zip(here, there))
 
 
 def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
