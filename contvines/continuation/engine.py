@@ -62,9 +62,8 @@ class Engine(Rows):
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem.scale_within(self.within), float(problem.noise)
         self.plain = bool((self.scale[:-1] == 1.0).all())  # unknowns have no scales of their own
-        shift = problem.period_shift
-        # what a period adds to the unknowns, if anything
-        self.shift = None if shift is None or not np.any(shift) else np.asarray(shift, dtype=float)
+        shift = np.asarray(0.0 if problem.period_shift is None else problem.period_shift, dtype=float)
+        self.shift = shift if shift.any() else None  # what a period adds to the unknowns, if anything
         scales = problem.scales
         self.rate = (
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
