@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
-from orbits.borders.distance import SAME, distance
+from orbits.borders.distance import INSTANTS, SAME, distance
 from orbits.cycles import measures as measuring
 from orbits.cycles.equations import PLAIN, equations
 from orbits.cycles.identity import canonical, is_symmetric, root_orbit
@@ -146,6 +146,8 @@ class OrbitProblem(Simulated, Relatives, Answers):
     # ------------------------------------------------------------------ larger and smaller problems
     def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
         """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
+        if self.word.repetitions == 1:
+            return None
         word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u))
         if len(word) == len(self.word):
             return None
@@ -176,11 +178,10 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """
         if not len(self.word):
             return ("stuck", self.model.name), np.array(u, dtype=float)
-        mirrored = self.model.has_mirror(self.values(p))
         nodes = self.expand(u)
         if self.units != PLAIN:
             nodes = nodes / self.equations.unit
-        return canonical(self.word, self.periods, nodes, mirrored)
+        return canonical(self.word, self.periods, nodes, self._mirrored_at(p))
 
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
@@ -189,8 +190,14 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """
         if not isinstance(other, OrbitProblem):
             return False
-        mirrored = self.model.has_mirror(self.values(p))
-        return distance(self.orbit(u, p), other.orbit(v, p), mirrored) <= SAME
+        one, another = self.orbit(u, p), other.orbit(v, p)
+        # motions that are one at a few instants are one at all, and hardly ever one is the other's image
+        return distance(one, another, instants=INSTANTS) <= SAME or (
+            self._mirrored_at(p) and distance(one, another, mirror=True, instants=INSTANTS) <= SAME
+        )
+
+    def _mirrored_at(self, p: float) -> bool:
+        return self.mirrored or self.model.has_mirror(self.values(p))
 
     # ------------------------------------------------------------------ for people
     @property

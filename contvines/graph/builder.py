@@ -62,7 +62,7 @@ def adopt(run: Run) -> None:
     """Continue the register of a graph that has branches already."""
     for branch in run.graph.branches.values():
         if branch.problem is not None:
-            run.register.add(branch, run.engine(branch.problem)[0])
+            run.register.add(branch, run.engine(branch.problem)[0], {i for i, _ in branch.marks})
     run.serial = len(run.graph.branches)
 
 
@@ -179,13 +179,15 @@ def trace_pending(run: Run, pending: Pending) -> None:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "a solution found nearby lies on a branch that does not begin here")
         return
-    half = filled(engine, half, origin_index(half, pending))
     origin = origin_index(half, pending)
+    whole = filled(engine, half, origin)
+    if whole is not half:
+        half, origin = whole, origin_index(whole, pending)
     branch = make_branch(label, engine, half, real, endings, closed, pending.point, origin)
     run.graph.branches[label] = branch
-    run.register.add(branch, engine)
+    run.register.add(branch, engine, {i for i, _ in half.events} | {origin})
     run.connect(pending.point, pending.source, label, pending.note)
-    new = mark(run, engine, branch, half, pending)
+    new = mark(run, engine, branch, half, pending, origin)
     for point in new:
         leave(run, point, branch, pending.depth)
     run.points += len(branch)
@@ -196,13 +198,15 @@ def trace_pending(run: Run, pending: Pending) -> None:
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
     """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
     whole = half.joined()
-    across = engine.join(np.ptp(whole.points, axis=0), 0.0)
     length, unit = np.ptp(whole.values), run.unit(half.end)
-    if whole.smallest[1:-1].max(initial=-np.inf) < BEYOND and len(half) > 2:
+    if len(half) > 2 and whole.smallest[1:-1].max() < BEYOND:
         return True
-    if length <= BRIEF * unit and whole.smallest.max() <= NOWHERE:
-        return True
-    return bool(length <= NOWHERE * unit and engine.norm(across) <= NOWHERE)
+    if length > BRIEF * unit:
+        return False
+    across = engine.join(np.ptp(whole.points, axis=0), 0.0)
+    return bool(
+        whole.smallest.max() <= NOWHERE or (length <= NOWHERE * unit and engine.norm(across) <= NOWHERE)
+    )
 
 
 def begins_elsewhere(run: Run, engine: Engine, half: HalfBranch, pending: Pending) -> bool:
@@ -306,10 +310,11 @@ def both_ways(
         return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
 
     def ending(half: HalfBranch) -> Ending:
-        why = ""
+        found = Ending.of(half.status, half.end)
         if half.status in DEAD:
             why = pending.problem.explain_end(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
-        return replace(Ending.of(half.status, half.end), text=why)
+            return replace(found, text=why)
+        return found
 
     def beginning(reason: Reason) -> Ending:
         return Ending(reason, pending.p, pending.point, pending.source)

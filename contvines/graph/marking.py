@@ -33,8 +33,10 @@ BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side 
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
-def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pending) -> list[SpecialPoint]:
-    """Label the events and interval ends of a branch in order along it; returns what is new on it."""
+def mark(
+    run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pending, origin: int | None
+) -> list[SpecialPoint]:
+    """Label the events and interval ends of a branch in order along it, `origin` among them; returns what is new on it."""
     marks: list[tuple[int, str]] = []
     fresh: list[SpecialPoint] = []
     ends: dict[int, Ending] = {}
@@ -44,10 +46,9 @@ def mark(run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pe
         for index, side in ((0, 0), (last, 1)):
             if branch.endings[side].reason is Reason.LEFT_INTERVAL:
                 events.append((index, _end(run, engine, half, index)))
-    if pending.point is not None and pending.kind in (Origin.SWITCH, Origin.REST) and not branch.closed:
-        origin = origin_index(half, pending)
-        if origin is not None:
-            marks.append((origin, pending.point))
+    reached = pending.kind in (Origin.SWITCH, Origin.REST) and not branch.closed
+    if reached and origin is not None and pending.point is not None:
+        marks.append((origin, pending.point))
     events.sort(key=lambda pair: pair[0])
     for index, event in events:
         meets = event.role is Role.MEETING
@@ -244,10 +245,6 @@ def _special(
     run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
 ) -> SpecialPoint:
     point = event.point
-    margin = float(engine.smallest_margin(point.row))
-    if kind in BORDERS:
-        margins = engine.margins(point.row)
-        margin = float(np.min(margins)) if len(margins) else float("inf")
     special = SpecialPoint(
         label=label,
         kind=kind,
@@ -257,7 +254,7 @@ def _special(
         u=np.array(point.u),
         tangent=np.array(point.tangent),
         multipliers=engine.multipliers(point.row),
-        margins=margin,
+        margins=float(engine.smallest_margin(point.row)),
         bracket=event.bracket,
         residual=float(point.residual),
         location_error=float(event.error),

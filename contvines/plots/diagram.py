@@ -9,7 +9,7 @@ from contvines_ground.near_names import did_you_mean
 
 from ..graph.measures import default_measure
 from ..hints import hinting
-from .figures import freeze, new_axes, settle, styled, thin_ticks
+from .figures import freeze, lay_out, new_axes, settle, styled, thin_ticks
 from .insets import Region
 from .legends import draw_legend, hold_legend
 from .picture import Picture
@@ -149,7 +149,7 @@ def draw_diagram(
     if not axes.get_ylabel():
         low = axes.get_window_extent().height < LOW * figure.dpi
         axes.set_ylabel(axis_label(y, low, graph.units.get(y)))
-    settle(figure)
+    lay_out(figure)
     picture.refine()
     if limits[0] is not None and limits[1] is None:
         fit_height(axes)  # once more: curves between stored points are known now

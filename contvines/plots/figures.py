@@ -37,9 +37,20 @@ def new_axes(axes: Axes | None, **options: Any) -> tuple[Figure, Axes]:
     return made, axes
 
 
-def settle(figure: Figure) -> None:
-    """Give everything its place."""
-    figure.draw_without_rendering()
+def settle(figure: Figure, passes: int = 1) -> None:
+    """Give everything its place, unless nothing has changed since that was done."""
+    if figure.stale:
+        for _ in range(passes):
+            figure.draw_without_rendering()
+
+
+def lay_out(figure: Figure) -> None:
+    """Give axes their size; what stands in them is not looked at."""
+    engine = figure.get_layout_engine()
+    if engine is None:
+        settle(figure)
+    else:
+        engine.execute(figure)
 
 
 def thin_ticks(*drawn: Axes) -> None:
@@ -91,7 +102,11 @@ def save_figure(figure: Figure, path: str | Path) -> None:
     """
     path = Path(path)
     check_picture(path)
-    with styled():
+    from matplotlib.layout_engine import PlaceHolderLayoutEngine
+
+    with styled({"figure.constrained_layout.use": False}):
+        if isinstance(figure.get_layout_engine(), PlaceHolderLayoutEngine):
+            figure.set_layout_engine(None)  # all has its place: with an engine all is drawn once more before
         try:
             figure.savefig(path)
         except OSError as error:

@@ -14,7 +14,11 @@ Box = tuple[float, float, float, float]
 
 RADII = (7, 11, 16, 24, 34, 46, 62)  # points on the page between an anchor and its text
 LEADER = 14  # from this radius on a thin line leads from the text to its anchor
-DIRECTIONS = [(np.cos(a), np.sin(a)) for a in np.pi * (0.25 + np.arange(16) / 8)]
+# across and up, and on which side of its anchor a text stands
+DIRECTIONS = [
+    (float(x), float(y), 0.5 * float(np.sign(round(x, 6))), 0.5 * float(np.sign(round(y, 6))))
+    for x, y in ((np.cos(a), np.sin(a)) for a in np.pi * (0.25 + np.arange(16) / 8))
+]
 CELL = 2.0  # pixels of the raster in which curves are drawn for the search
 IMPOSSIBLE = 1e6
 WORST = (
@@ -24,6 +28,7 @@ WORST = (
 ALONG = 16.0  # half cells of a leader on a curve that count as much as crossing it
 EDGE = 1.5  # points between a text and the frame
 AS_NEAR = 1.25  # times its distance from its own mark: a text that near to another one could be either's
+PLACES = np.linspace(0.0, 1.0, 24)  # along a leader, where it may pass through a box
 CROWD = 9  # with more than so many further names at one place none of them says anything
 
 
@@ -78,29 +83,30 @@ def place_labels(
     assert figure is not None
     unit = figure.dpi / 72.0
     frame = axes.bbox
+    edges: Box = float(frame.x0), float(frame.y0), float(frame.x1), float(frame.y1)
     anchors = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
     ground = Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
     boxes, leaders, written, left_out = list(taken or ()), [], [], 0
     widths = text_widths({label.text for label in labels}, size)
-    marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors]
+    marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors.tolist()]
     for i in sorted(range(len(labels)), key=lambda i: (not labels[i].kept, labels[i].near, labels[i].rank)):
-        label, (ax, ay) = labels[i], anchors[i]
-        if not (
-            np.isfinite(ax + ay) and frame.x0 - 1 <= ax <= frame.x1 + 1 and frame.y0 - 1 <= ay <= frame.y1 + 1
-        ):
+        label, (ax, ay) = labels[i], anchors[i].tolist()
+        if not (edges[0] - 1 <= ax <= edges[2] + 1 and edges[1] - 1 <= ay <= edges[3] + 1):
             continue
         width, height = (widths[label.text] + 2) * unit, 1.2 * size * unit
-        others = np.delete(anchors, i, axis=0)
+        others = marks[:i] + marks[i + 1 :]
         best: tuple[float, float, float, Box, int] | None = None
         for radius in RADII[:2] if label.near else RADII:
-            for dx, dy in DIRECTIONS:
-                cx = ax + (dx * radius + 0.5 * np.sign(round(dx, 6)) * width / unit) * unit
-                cy = ay + (dy * radius + 0.5 * np.sign(round(dy, 6)) * height / unit) * unit
+            for dx, dy, right, above in DIRECTIONS:
+                cx = ax + (dx * radius + right * width / unit) * unit
+                cy = ay + (dy * radius + above * height / unit) * unit
                 box = (cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2)
                 far = radius >= LEADER
                 line = (ax, ay, cx, cy) if far else None
-                cost = _cost(box, line, frame, ground, boxes, leaders, marks[:i] + marks[i + 1 :], unit)
-                cost += 0.3 * radius + _claimed(box, (ax, ay), others)
+                least = 0.3 * radius + _claimed(box, i, anchors)
+                if best is not None and least >= best[0]:
+                    continue
+                cost = _cost(box, line, edges, ground, boxes, leaders, others, unit) + least
                 if best is None or cost < best[0]:
                     best = (cost, cx, cy, box, radius)
             if best is not None and best[0] < RADII[0]:
@@ -163,7 +169,7 @@ class Ground:
     """How much of a box is covered by curves: sums over a raster of the axes."""
 
     def __init__(self, frame: Any, points: np.ndarray) -> None:
-        self.x0, self.y0 = frame.x0, frame.y0
+        self.x0, self.y0 = float(frame.x0), float(frame.y0)
         shape = (int(frame.height / CELL) + 2, int(frame.width / CELL) + 2)
         raster = np.zeros(shape)
         points = points[np.isfinite(points).all(axis=1)]
@@ -213,14 +219,14 @@ class Ground:
 def _cost(
     box: Box,
     line: Box | None,
-    frame: Any,
+    edges: Box,
     ground: Ground,
     boxes: list[Box],
     leaders: list[Box],
     marks: list[Box],
     unit: float,
 ) -> float:
-    out = max(frame.x0 - box[0], box[2] - frame.x1, frame.y0 - box[1], box[3] - frame.y1) + EDGE * unit
+    out = max(edges[0] - box[0], box[2] - edges[2], edges[1] - box[1], box[3] - edges[3]) + EDGE * unit
     if out > EDGE * unit or any(_overlap(box, other) for other in boxes):
         return IMPOSSIBLE
     cost = (
@@ -262,17 +268,16 @@ def _write(
     )
 
 
-def _claimed(box: Box, own: tuple[float, float], others: np.ndarray) -> float:
-    """What it costs that a text stands nearer to something else than to what it names, or about as near."""
-
-    def gap(points: np.ndarray) -> np.ndarray:
-        across = np.maximum(np.maximum(box[0] - points[:, 0], points[:, 0] - box[2]), 0.0)
-        up = np.maximum(np.maximum(box[1] - points[:, 1], points[:, 1] - box[3]), 0.0)
-        return np.hypot(across, up)
-
-    if not len(others):
+def _claimed(box: Box, own: int, anchors: np.ndarray) -> float:
+    """What it costs that a text stands nearer to something else than to what it names (by its index), or about as near."""
+    if len(anchors) < 2:
         return 0.0
-    nearest, ours = float(gap(others).min()), float(gap(np.array([own]))[0])
+    x, y = anchors.T
+    across = np.maximum(np.maximum(box[0] - x, x - box[2]), 0.0)
+    up = np.maximum(np.maximum(box[1] - y, y - box[3]), 0.0)
+    gaps = np.hypot(across, up)
+    ours, gaps[own] = float(gaps[own]), np.inf
+    nearest = float(gaps.min())
     return 30.0 if nearest < ours - 1.0 else 10.0 if nearest < AS_NEAR * ours else 0.0
 
 
@@ -282,8 +287,7 @@ def _overlap(a: Box, b: Box) -> bool:
 
 def _crosses(line: Box, box: Box) -> bool:
     """Whether a line from (x0, y0) to (x1, y1) passes through a box."""
-    along = np.linspace(0.0, 1.0, 24)
-    xs, ys = line[0] + along * (line[2] - line[0]), line[1] + along * (line[3] - line[1])
+    xs, ys = line[0] + PLACES * (line[2] - line[0]), line[1] + PLACES * (line[3] - line[1])
     return bool(((xs > box[0]) & (xs < box[2]) & (ys > box[1]) & (ys < box[3])).any())
 
 

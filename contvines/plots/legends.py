@@ -146,7 +146,7 @@ def place_legend(
         engine = figure.get_layout_engine()
         if own and isinstance(engine, ConstrainedLayoutEngine):
             engine.set(w_pad=0.09)  # inches: texts are a little wider at the resolution of a file
-        settle(figure)
+        settle(figure, 2)  # the axes become narrower, and then their ticks fewer
 
 
 def hold_legend(axes: Axes) -> list[tuple[float, float, float, float]]:
@@ -224,5 +224,5 @@ def _covers(axes: Axes, obstacles: np.ndarray | None) -> bool:
     box = legend.get_window_extent()
     drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
     further = np.empty((0, 2)) if obstacles is None else obstacles
-    points = axes.transData.transform(np.vstack([further, *drawn, np.empty((0, 2))]))
-    return any(box.contains(*point) for point in points[np.isfinite(points).all(axis=1)])
+    x, y = axes.transData.transform(np.vstack([further, *drawn, np.empty((0, 2))])).T
+    return bool(np.any((box.x0 <= x) & (x <= box.x1) & (box.y0 <= y) & (y <= box.y1)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
@@ -67,19 +69,24 @@ class Departure:
 
 
 def null_vectors(
-    engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray, singular: float = SINGULAR
+    engine: Engine,
+    u: np.ndarray,
+    p: float,
+    tangent: np.ndarray,
+    singular: float = SINGULAR,
+    most: int | None = None,
 ) -> list[np.ndarray]:
     """Null vectors of [[F_u, F_p], [tangent]]: images of random vectors under its inverse, made orthonormal in the metric.
 
     One application of the inverse is enough: the matrix is singular to roundoff. (Its eigenvectors are not asked for:
     iterating with a matrix this far from normal need not converge to the null vector.)
 
-    The tangent of the branch itself is excluded by the last row. Usually there is one; several (up to four) where several
+    The tangent of the branch itself is excluded by the last row. Usually there is one; several (up to four, or to ``most``) where several
     multipliers cross at once; none where (u, p) is not a branch point.
     """
     border = engine.weights * tangent
     _evaluate(engine, u, p, border)
-    sides = _sides(min(KERNEL + 1, engine.n), engine.n)
+    sides = _sides(min(KERNEL if most is None else most, KERNEL, engine.n), engine.n)
     found: list[np.ndarray] = []
     first = 0.0
     for random in sides:
@@ -91,12 +98,12 @@ def null_vectors(
         image = image / size
         for other in found * 2:
             image = image - engine.inner(image, other) * other
-        growth = size * engine.norm(image) / float(np.sqrt((random**2).mean()))
+        growth = size * engine.norm(image) * math.sqrt(engine.n / float(random @ random))
         first = max(first, growth)
         if growth < 1.0 / singular or growth < ALIKE * first:
             break
         found.append(_oriented(engine, engine.unit(image)))
-    return found[:KERNEL]
+    return found
 
 
 @lru_cache(maxsize=64)
@@ -117,8 +124,8 @@ def _evaluate(engine: Engine, u: np.ndarray, p: float, border: np.ndarray) -> No
             return
 
 
-def _aside(engine: Engine, u: np.ndarray) -> list[np.ndarray]:
-    return [u + part * np.maximum(np.abs(u), engine.scale[:-1]) for part in ASIDE]
+def _aside(engine: Engine, u: np.ndarray) -> Iterator[np.ndarray]:
+    return (u + part * np.maximum(np.abs(u), engine.scale[:-1]) for part in ASIDE)
 
 
 def _oriented(engine: Engine, vector: np.ndarray) -> np.ndarray:
@@ -163,7 +170,7 @@ def departures(
         How many null vectors there are at most: as many as multipliers are critical. Where equations are badly conditioned more seem to be.
     """
     if directions is None:
-        directions = null_vectors(engine, u, p, tangent)[:most]
+        directions = null_vectors(engine, u, p, tangent, most=most)
     if len(directions) > 1:
         return _multiple(engine, u, p, tangent, amplitude, one_sided, directions)
     found = [_depart(engine, u, p, tangent, amplitude, one_sided, direction) for direction in directions]
@@ -302,43 +309,42 @@ def _lined(
     """The branch in a direction whose first points are so much further away at twice the amplitude, and within reach."""
     z = engine.join(u, p)
     best: Departure | None = None
+    origin: Solved | None = None
+
+    def at(distance: float) -> Solved | None:
+        return _at(engine, z, direction, distance, bend * distance**2, reach)
+
+    near, behind = at(amplitude), None if one_sided else at(-amplitude)
     for attempt in range(ATTEMPTS):
         if attempt >= 7 and best is not None:
             break
-        half, offset = 0.5 * amplitude, bend * amplitude**2
-        ahead, near = (
-            _at(engine, z, direction, x, y, reach) for x, y in ((amplitude, offset), (half, 0.25 * offset))
-        )
-        back = behind = None
-        if not one_sided:
-            back, behind = (
-                _at(engine, z, direction, x, y, reach)
-                for x, y in ((-amplitude, offset), (-half, 0.25 * offset))
-            )
-            if not _lined_up(engine, z, back, behind, least):
-                back = None
+        half = 0.5 * amplitude
+        ahead, near = near, at(half)
+        back, behind = behind, None if one_sided else at(-half)
         if not _lined_up(engine, z, ahead, near, least):
             ahead = None
+        if not _lined_up(engine, z, back, behind, least):
+            back = None
         if (
             ahead is not None
             and near is not None
             and (one_sided or (back is not None and behind is not None))
         ):
             if one_sided:
-                wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / (0.5 * amplitude) ** 2, 0.0
+                wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / half**2, 0.0
             else:
                 assert back is not None and behind is not None
                 wide = (0.5 * (ahead.p + back.p) - p) / amplitude**2
-                narrow = (0.5 * (near.p + behind.p) - p) / (0.5 * amplitude) ** 2
+                narrow = (0.5 * (near.p + behind.p) - p) / half**2
                 slope = (4.0 * (near.p - behind.p) - 0.5 * (ahead.p - back.p)) / (3.0 * amplitude)
             curvature = (4.0 * narrow - wide) / 3.0
             chord = engine.join(ahead.u, ahead.p) - (z if back is None else engine.join(back.u, back.p))
-            origin = _origin(engine, u, p, tangent)
+            origin = origin or _origin(engine, u, p, tangent)
             if origin is None:
                 return None
             origin = origin._replace(tangent=engine.unit(chord if back is not None else direction), sign=0.0)
             best = Departure(engine.problem, origin, ahead, back, direction, amplitude, curvature, slope)
             if abs(wide - narrow) <= 0.02 * abs(narrow) + 1e-9 / amplitude**2:
                 return best
-        amplitude *= 0.5
+        amplitude = half
     return best

@@ -20,14 +20,23 @@ import numpy as np
 
 from ..continuation.aims import aim_at_multiplier
 from ..continuation.engine import Engine, Solved
+from ..continuation.solved import solved_points
 
 STEP = 1e-3
+LENGTH = (
+    16.0 * STEP
+)  # of the chord on which points beside a special point are placed: they may lie far off it, and are none of its ends
+PLACES = np.array([STEP, -STEP, 0.5 * STEP, -0.5 * STEP]) / LENGTH
 
 
-def _beside(engine: Engine, point: Solved, step: float) -> Solved | None:
+def _beside(engine: Engine, point: Solved) -> list[Solved] | None:
+    """Points of the branch ahead and back, at a step and at half of that; None if one of them is not found."""
+    z, along = engine.join(point.u, point.p), LENGTH * point.tangent
     border = engine.weights * point.tangent
-    guess = engine.join(point.u, point.p) + step * point.tangent
-    return engine.solve(guess[:-1], guess[-1], border, float(border @ guess), point.tangent)
+    chord = np.array([z, along, z + along, along])
+    found = engine.on_chord(chord, PLACES, float(border @ z), LENGTH, border, point.tangent)
+    points = [near for near in solved_points(found) if near is not None]
+    return points if len(points) == len(PLACES) else None
 
 
 def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | None:
@@ -45,13 +54,13 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     if kind == "none" or abs(point.tangent[-1]) < 1e-9:
         return None
     aim = aim_at_multiplier(engine.m, kind, name, k)
-    slopes = []
-    for step in (STEP, 0.5 * STEP):
-        ends = [_beside(engine, point, sign * step) for sign in (1.0, -1.0)]
-        if ends[0] is None or ends[1] is None:
-            return None
-        tests = [aim(end) for end in ends if end is not None]
-        slopes.append((tests[0] - tests[1]) / (ends[0].p - ends[1].p))
+    ends = _beside(engine, point)
+    if ends is None:
+        return None
+    slopes = [
+        (aim(ahead) - aim(back)) / (ahead.p - back.p)
+        for ahead, back in zip(ends[::2], ends[1::2], strict=True)
+    ]
     return float((4.0 * slopes[1] - slopes[0]) / 3.0) * engine.rate
 
 
@@ -75,10 +84,9 @@ def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str 
 
 def fold_coefficient(engine: Engine, point: Solved) -> float | None:
     """a in p = p0 + a s^2 along the branch through a fold, s the amplitude along the critical vector."""
-    slopes = []
-    for step in (STEP, 0.5 * STEP):
-        ahead, back = _beside(engine, point, step), _beside(engine, point, -step)
-        if ahead is None or back is None:
-            return None
-        slopes.append((ahead.p + back.p - 2.0 * point.p) / (2.0 * step**2))
-    return float((4.0 * slopes[1] - slopes[0]) / 3.0) / engine.amplitude(point.tangent) ** 2
+    ends = _beside(engine, point)
+    if ends is None:
+        return None
+    far, near = (ahead.p + back.p - 2.0 * point.p for ahead, back in zip(ends[::2], ends[1::2], strict=True))
+    # a of each, (ahead + back - 2 p) / (2 step^2), continued to no step at all
+    return float((16.0 * near - far) / (6.0 * STEP**2)) / engine.amplitude(point.tangent) ** 2

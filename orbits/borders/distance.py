@@ -17,15 +17,18 @@ CLOSE = 0.05  # largest difference in w between a border orbit and one that goes
 ALIKE = 1e-7  # motions that differ by less need not come any nearer
 SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on the way to the border
 
-COARSE = PER_PERIOD // 10  # every so many instants are compared first
+COARSE = 10  # every so many instants are compared first
+INSTANTS = (
+    PER_PERIOD // 5
+)  # of a period by which motions near a border are compared, where they differ all along
 
 
 def tends_to(border: Solution, near: Solution, further: Solution) -> bool:
     """Whether orbits tend to a border orbit, measured twice: `further` is the same orbit at some distance from `near`.
 
-    An orbit that is only similar keeps its distance.
+    An orbit that is only similar keeps its distance. All are read at the same phases.
     """
-    return tends(distance(border, near), lambda: distance(border, further))
+    return tends(gap(border, near), lambda: gap(border, further))
 
 
 def tends(close: float, further: Callable[[], float]) -> bool:
@@ -33,29 +36,40 @@ def tends(close: float, further: Callable[[], float]) -> bool:
     return close < ALIKE or (close < CLOSE and close < SHRINKS * further())
 
 
-def distance(one: Solution, other: Solution, mirror: bool = False) -> float:
-    """Largest difference in w at equal phases, modulo whole periods of the forcing, and the mirror image if asked for.
+def gap(border: Solution, near: Solution) -> float:
+    """The distance of orbits of one branch, or of a branch and its border, which need not be moved: from fewer instants."""
+    if border.periods != near.periods:
+        return distance(border, near)
+    free = border.word.impact_free or near.word.impact_free
+    unit = border.model.natural_units(border.params)[0]
+    return float(_largest(border.track(INSTANTS) - near.track(INSTANTS), free)) / unit
+
+
+def distance(one: Solution, other: Solution, mirror: bool = False, instants: int = PER_PERIOD) -> float:
+    """Largest difference in w at so many equal phases of each period, modulo whole periods, and the mirror image if asked for.
 
     In units of the machine's size. Where one of them hits no wall its mean position is free, and left out.
     """
     free = one.word.impact_free or other.word.impact_free
     unit = one.model.natural_units(one.params)[0]
     if one.periods == other.periods == 1 and not mirror:
-        return float(_largest(one.track - other.track, free)) / unit
+        return float(_largest(one.track(instants) - other.track(instants), free)) / unit
     periods = math.lcm(one.periods, other.periods)
     here, there = (
-        orbit.track if orbit.periods == periods else np.tile(orbit.track, periods // orbit.periods)
+        orbit.track(instants)
+        if orbit.periods == periods
+        else np.tile(orbit.track(instants), periods // orbit.periods)
         for orbit in (one, other)
     )
-    images = [here, -np.roll(here, -PER_PERIOD // 2)] if mirror else [here]
+    images = [here, -np.roll(here, -instants // 2)] if mirror else [here]
     best = np.inf
-    turned = (PER_PERIOD * np.arange(one.periods)[:, None] + np.arange(0, len(here), COARSE)) % len(here)
+    turned = (instants * np.arange(one.periods)[:, None] + np.arange(0, len(here), COARSE)) % len(here)
     for image in images:
         rough = _largest(image[turned] - there[::COARSE], free)
         for shift in np.argsort(rough, kind="stable").tolist() if len(rough) > 1 else (0,):
             if rough[shift] >= best:
                 break
-            moved = np.roll(image, -PER_PERIOD * shift) if shift else image
+            moved = np.roll(image, -instants * shift) if shift else image
             best = min(best, float(_largest(moved - there, free)))
     return best / unit
 

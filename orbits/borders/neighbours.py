@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.distance import SHRINKS, distance, tends, tends_to
+from orbits.borders.distance import SHRINKS, gap, tends, tends_to
 from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
 from orbits.borders.rewriting import edits_at, rewritten
 from orbits.compiling.interrupts import kept_back
@@ -248,30 +248,30 @@ def _begins_at(
     if size < LARGEST and np.any(undecided & (values < -ROUNDING)):
         return False  # no solution where they would have a sign
     further = second or near
-    gap = distance(border, other.orbit(near.u, near.p))
-    if not tends(gap, lambda: distance(border, other.orbit(further.u, further.p))):
+    apart = gap(border, other.orbit(near.u, near.p))
+    if not tends(apart, lambda: gap(border, other.orbit(further.u, further.p))):
         return False
-    return _keeps_tending(border, other, first, change, p, near, gap)
+    return _keeps_tending(border, other, first, change, p, near, apart)
 
 
 def _keeps_tending(
-    border: Solution, other: CycleProblem, first: int, change: Change, p: float, near: Held, gap: float
+    border: Solution, other: CycleProblem, first: int, change: Change, p: float, near: Held, apart: float
 ) -> bool:
     """Whether the solutions go on tending to the border orbit, and to its place, at still smaller sizes, as far as they can be solved for.
 
-    Those of a branch that only passes by do so until they are as far as that branch's own border. `gap` is the distance of `near`.
+    Those of a branch that only passes by do so until they are as far as that branch's own border. `apart` is the distance of `near`.
     """
     placed = PLACED * parameter_unit(other, p)
     for _ in range(CLOSER):
         held = hold(other, near.u, near.p, first, change, p, 0.1 * near.size)
         if held is None:
             break
-        closer = distance(border, other.orbit(held.u, held.p))
-        if not tends(closer, lambda gap=gap: gap):
+        closer = gap(border, other.orbit(held.u, held.p))
+        if not tends(closer, lambda apart=apart: apart):
             return False
         if abs(held.p - p) > max(SHRINKS * abs(near.p - p), placed):
             return False
-        near, gap = held, closer
+        near, apart = held, closer
     return True
 
 

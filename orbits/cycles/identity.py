@@ -57,8 +57,8 @@ def is_symmetric(
 
 @cache
 def _direction(size: int) -> np.ndarray:
-    """A direction in which no two different orbits look alike by chance."""
-    return np.sin(np.arange(1, size + 1) * np.sqrt(2.0)) + 0.1
+    """A direction in which no two different orbits look alike by chance; twice, so that its rotations are parts of it."""
+    return np.tile(np.sin(np.arange(1, size + 1) * np.sqrt(2.0)) + 0.1, 2)
 
 
 def canonical(
@@ -85,13 +85,16 @@ def canonical(
         flat[:, 2:] = nodes[:, 1:]
     else:
         flat, image = nodes, np.r_[1.0, np.full(nodes.shape[1] - 1, -1.0)]
-    best, best_score, readings = flat.ravel(), -np.inf, word.readings(mirror)
-    for mirrored, place in readings:
-        turned = np.concatenate([flat[place:], flat[:place]]) if place else flat
-        vector = (image * turned if mirrored else turned).ravel()
-        if len(readings) == 1:
-            return (target.events, target.modes, periods), vector
-        score = float(_direction(flat.size) @ vector)
-        if score > best_score + 1e-12:
-            best, best_score = vector, score
-    return (target.events, target.modes, periods), best
+    readings = word.readings(mirror)
+    best, best_score = readings[0], -np.inf
+    if len(readings) > 1:
+        size, images = flat.size, (flat.ravel(), (image * flat).ravel())
+        direction = _direction(size)
+        for reading in readings:
+            turn = size - reading[1] * flat.shape[1]
+            score = float(direction[turn : turn + size] @ images[reading[0]])
+            if score > best_score + 1e-12:
+                best, best_score = reading, score
+    mirrored, place = best
+    turned = np.concatenate([flat[place:], flat[:place]]) if place else flat
+    return (target.events, target.modes, periods), (image * turned if mirrored else turned).ravel()

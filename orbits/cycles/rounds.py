@@ -8,7 +8,9 @@ M_{n-1} + M_{n-1} M_{n-2} + ... + M_{n-1} ... M_1 when the cycle is read from it
 (2009) 795, lemma 2: s_i = det(P_i) rho.b / det(1 - M)). So a cycle is real, on one side of the border, only where these have one
 sign in all unchanged rounds and the other one in all changed ones.
 
-At an impact of vanishing speed the derivatives grow without bound; there only the multipliers tell.
+At an impact of vanishing speed s one of the derivatives grows as 1/s, since a touch displaces x by g s along some vector g, with s^2 the
+distance beyond the border (Nordmark, J. Sound Vib. 145 (1991) 279): to first order in s the cycle has s_i = 0 in a changed round, as if
+that round were linear with a slope without bound. So the signs of det P_i that count are those for s to 0, told from two sizes of s.
 """
 
 from __future__ import annotations
@@ -42,44 +44,64 @@ class Rounds(NamedTuple):
         Of both, relative to their largest entries.
     linear : bool
         Whether they have limits at the border, which agree on it.
+    further : ndarray, shape (2, m, m)
+        The same derivatives further from the border.
     """
 
     maps: np.ndarray
     error: float
     linear: bool
+    further: np.ndarray
 
     def hopeless(self, most: int) -> set[tuple[int, int]]:
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
-        keys, n = choices(most), self.maps.shape[1]
-        table = _table(most)
-        sides, products = np.empty((len(keys), 2)), np.empty((len(keys), n, n))
-        wait_for(sides_of_cycles.__name__, sides_of_cycles)
-        sides_of_cycles(np.ascontiguousarray(self.maps), table, sides, products, np.empty((3, n, n)))
+        sides, products = _sides(self.maps, most)
+        beside = sides if self.linear else _sides(self.further, most)[0]
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
-        rounds, changed = table.T
-        with np.errstate(all="ignore"):
-            errors = (rounds * self.error * own ** (rounds - changed) * other**changed).tolist()
         hopeless = set()
-        for key, (low, high), radius, error in zip(keys, sides.tolist(), _radii(products), errors):
-            torn = self.linear and low < -DECIDED * high and high > -DECIDED * low
-            if torn or (key[0] > 2 and radius > UNSTABLE + error):
+        for key, (low, high), before, product in zip(
+            choices(most), sides.tolist(), beside.tolist(), products
+        ):
+            if self.linear:
+                torn = low < -DECIDED * high and high > -DECIDED * low
+            elif _lasts(-low, -before[0]) and _lasts(high, before[1]):
+                torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < SURE
+            else:
+                torn = False
+            if torn or (key[0] > 2 and _radius(product) > UNSTABLE + self._rounding(*key, own, other)):
                 hopeless.add(key)
         return hopeless
 
-
-def _radii(products: np.ndarray) -> list[float]:
-    """Largest modulus of the eigenvalues of each matrix (c, n, n); NaN of one that is not finite."""
-    if products.shape[1] == 2:
-        return [_radius(*entries) for entries in products.reshape(-1, 4).tolist()]
-    known = np.isfinite(products.sum(axis=(1, 2)))
-    radii = np.abs(np.linalg.eigvals(np.where(known[:, None, None], products, 0.0))).max(axis=1)
-    return np.where(known, radii, np.nan).tolist()
+    def _rounding(self, rounds: int, changed: int, own: float, other: float) -> float:
+        """Of a product of so many rounds, whose derivatives are no larger than `own` and, of changed ones, `other`."""
+        try:
+            return rounds * self.error * own ** (rounds - changed) * other**changed
+        except OverflowError:
+            return math.inf
 
 
-def _radius(a: float, b: float, c: float, d: float) -> float:
-    """The same of [[a, b], [c, d]]."""
+def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Sides and products of the cycles of up to `most` rounds; see `orbits.cycles.round_maps.sides_of_cycles`."""
+    table, n = _table(most), maps.shape[1]
+    sides, products = np.empty((len(table), 2)), np.empty((len(table), n, n))
+    wait_for(sides_of_cycles.__name__, sides_of_cycles)
+    sides_of_cycles(np.ascontiguousarray(maps), table, sides, products, np.empty((3, n, n)))
+    return sides, products
+
+
+def _lasts(near: float, further: float) -> bool:
+    """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
+    return near > DECIDED and further - near <= DECIDED * near
+
+
+def _radius(product: np.ndarray) -> float:
+    """Largest modulus of the eigenvalues of a matrix; NaN of one that is not finite."""
+    if len(product) != 2:
+        known = bool(np.isfinite(product).all())
+        return float(np.abs(np.linalg.eigvals(product)).max()) if known else math.nan
+    (a, b), (c, d) = product.tolist()
     mean, half = 0.5 * (a + d), 0.5 * (a - d)
     square = half * half + b * c
     if square < 0.0:
@@ -103,19 +125,20 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
     """Rounds from the derivatives, with their errors, of unchanged and of changed ones, from far to near the border; None where they
     cannot be told.
     """
-    found, error, bounded = [], 0.0, True
+    found, further, error, bounded = [], [], 0.0, True
     for maps in kinds:
         if not maps or any(m is None for m in maps):
             return None
         far, near = maps[0], maps[-1]
         assert far is not None and near is not None
         found.append(near[0])
+        further.append(far[0])
         size = float(np.abs(near[0]).max())
         error = max(error, near[1] / size if size > 0.0 else 0.0)
         bounded = bounded and bool(np.abs(far[0] - near[0]).max() <= BOUNDED * max(size, 1.0))
     if not error <= SURE:
         return None
-    return Rounds(np.array(found), error, bounded and _agree(*found))
+    return Rounds(np.array(found), error, bounded and _agree(*found), np.array(further))
 
 
 def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:

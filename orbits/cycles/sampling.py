@@ -27,10 +27,9 @@ def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
         int(orbit.word.modes[segment]),
         orbit.nodes[segment],
     )
-    out = np.empty((len(ahead), 4))
-    engine.sample(
-        np.tile(state, (len(ahead), 1)), orbit.params, np.ascontiguousarray(ahead, dtype=float), out
-    )
+    states, out = np.empty((len(ahead), len(state))), np.empty((len(ahead), 4))
+    states[...] = state
+    engine.sample(states, orbit.params, np.ascontiguousarray(ahead, dtype=float), out)
     return out
 
 
@@ -77,9 +76,9 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
     }
 
 
-def positions(orbit: Cycle) -> np.ndarray:
-    """w at `PER_PERIOD` phases of each forcing period, from phase zero on, shape (periods * PER_PERIOD,)."""
-    count = PER_PERIOD * orbit.periods
+def positions(orbit: Cycle, instants: int = PER_PERIOD) -> np.ndarray:
+    """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
+    count = instants * orbit.periods
     if not len(orbit.word):
         return np.zeros(count)
     engine, length = stepper(orbit.model.name), len(orbit.word)
@@ -110,13 +109,14 @@ def between(states, params, ahead, out):
 def _track(codes, modes, nodes, params, left, right, whole, starts, states, ahead, out):
     """Sample a cycle of `whole` radians at equal phases into `out`; the other arrays are room, `ahead` has zeros."""
     count, length = states.shape[0], nodes.shape[0]
+    step = whole / count
     if placed(codes, modes, nodes, left, right, starts):
         between(starts, params, ahead[:length], out[:length])
         for i in range(length):
             starts[i, RATE] = out[i, 3] - nodes[i, 1] if codes[i] < 2 else 0.0
     first, segment, before, begins = nodes[0, 0], 0, -1.0, 0.0
     for i in range(count):
-        wanted = (i * (2.0 * np.pi / PER_PERIOD) - first) % whole
+        wanted = (i * step - first) % whole
         if wanted < before:
             segment, begins = 0, 0.0
         before = wanted
@@ -149,12 +149,11 @@ def slowest(orbit: Cycle, segment: int) -> tuple[float, np.ndarray]:
     ahead = np.linspace(0.0, length, 402)[1:-1]
     speed = mode * flight(orbit, segment, ahead)[:, 1]
     inner = np.flatnonzero((speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])) + 1
-    place = inner[np.argmin(speed[inner])] if inner.size else int(np.argmin(speed))
-    low, high = ahead[max(place - 1, 0)], ahead[min(place + 1, ahead.size - 1)]
+    place = int(inner[np.argmin(speed[inner])] if inner.size else np.argmin(speed))
+    low, high = float(ahead[max(place - 1, 0)]), float(ahead[min(place + 1, ahead.size - 1)])
     for _ in range(6):  # finer grids round the minimum: 1/20 of the bracket each time
-        ahead = np.linspace(low, high, 41)
-        speed = mode * flight(orbit, segment, ahead)[:, 1]
-        place = int(np.argmin(speed))
-        low, high = ahead[max(place - 1, 0)], ahead[min(place + 1, 40)]
+        ahead = low + (high - low) / 40.0 * np.arange(41.0)
+        place = int((mode * flight(orbit, segment, ahead)[:, 1]).argmin())
+        low, high = float(ahead[max(place - 1, 0)]), float(ahead[min(place + 1, 40)])
     where = 0.5 * (low + high)
-    return float(where), flight(orbit, segment, np.array([where]))[0]
+    return where, flight(orbit, segment, np.array([where]))[0]

@@ -82,15 +82,20 @@ class Solution(Claim, Cycle):
         return sample(self, points)
 
     @cached_property
-    def track(self) -> np.ndarray:
+    def _tracks(self) -> dict[int, np.ndarray]:
+        return {}
+
+    def track(self, instants: int) -> np.ndarray:
         """w at equal phases of the forcing, kept: distances to several other orbits ask for it; see `orbits.cycles.sampling.positions`."""
-        return positions(self)
+        known = self._tracks
+        if instants not in known:
+            known[instants] = positions(self, instants)
+        return known[instants]
 
     def repeat(self, times: int) -> Self:
         """The same orbit, written `times` times."""
         found = super().repeat(times)
-        if "track" in vars(self):
-            vars(found)["track"] = np.tile(self.track, times)
+        found._tracks.update((count, np.tile(track, times)) for count, track in self._tracks.items())
         return found
 
     def replay(self) -> float:
