@@ -17,10 +17,9 @@ import numpy as np
 from numba import config, typeof
 
 from orbits.compiling.waiting import cached, processes
-from orbits.cycles import kernels
+from orbits.cycles import kernels, rounds
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.round_maps import sides_of_cycles, through_flights
-from orbits.cycles.rounds import MOST, Rounds, derived
 from orbits.cycles.sampling import positions
 from orbits.elimination import by_address
 from orbits.machines.catalogue import model_class, usual
@@ -115,8 +114,7 @@ def compile_now(name: str, *more: str) -> None:
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
     positions(Cycle(model, problem.word, 1, np.zeros((2, n)), problem.params))
-    derived(np.ones((1, n, n)), np.ones((1, n, n)))
-    Rounds(np.ones((2, n, n)), 0.0, True).hopeless(MOST)
+    rounds.prepare()
     if n == 2:
         by_address.function()
     compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
