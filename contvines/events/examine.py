@@ -173,9 +173,7 @@ class Examiner:
         root = locate_singular(segment, test, rough.position) or rough
         return self._located(root, "branch-point", 0)
 
-    def _around(
-        self, segment: Segment, fold: Located, before: list[int], after: list[int]
-    ) -> list[Located]:
+    def _around(self, segment: Segment, fold: Located, before: list[int], after: list[int]) -> list[Located]:
         """Multipliers that pass the circle before a fold and come back behind it, so that the ends of the segment do not tell."""
         (here,) = self._counts(fold.point)
         found: list[Located] = []
