@@ -37,21 +37,21 @@ def hinting(function: Callable[P, R], elsewhere: Elsewhere | None = None) -> Cal
 
     @wraps(function)
     def asked(*arguments: P.args, **options: P.kwargs) -> R:
-        for name in options:
-            if name not in names:
-                hint = elsewhere(name, options[name], names) if elsewhere is not None else ""
-                hint = hint or (f"it has {', '.join(shown)}" if shown else "it takes none")
-                raise TypeError(f"{called} has no argument {name!r}{did_you_mean(name, shown)}; {hint}")
         try:
             return function(*arguments, **options)
         except TypeError:
+            wrong = next((name for name in options if name not in names), None)
             absent = _absent(known, arguments, options)
-            if not absent:
+            if wrong is None and not absent:
                 raise
-            needed = " and ".join(
-                f"{name} ({meaning})" if meaning else name
-                for name, meaning in ((name, _meaning(inspect.getdoc(function), name)) for name in absent)
-            )
+        if wrong is not None:
+            hint = elsewhere(wrong, options[wrong], names) if elsewhere is not None else ""
+            hint = hint or (f"it has {', '.join(shown)}" if shown else "it takes none")
+            raise TypeError(f"{called} has no argument {wrong!r}{did_you_mean(wrong, shown)}; {hint}")
+        needed = " and ".join(
+            f"{name} ({meaning})" if meaning else name
+            for name, meaning in ((name, _meaning(inspect.getdoc(function), name)) for name in absent)
+        )
         raise TypeError(f"{called} needs {needed}")
 
     return asked

@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
-from orbits.borders.distance import SAME, distance
+from orbits.borders.distance import INSTANTS, SAME, distance
 from orbits.cycles import measures as measuring
 from orbits.cycles.equations import PLAIN, equations
 from orbits.cycles.identity import canonical, is_symmetric, root_orbit
@@ -190,7 +190,11 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """
         if not isinstance(other, OrbitProblem):
             return False
-        return distance(self.orbit(u, p), other.orbit(v, p), self._mirrored_at(p)) <= SAME
+        one, another = self.orbit(u, p), other.orbit(v, p)
+        # motions that are one at a few instants are one at all, and hardly ever one is the other's image
+        return distance(one, another, instants=INSTANTS) <= SAME or (
+            self._mirrored_at(p) and distance(one, another, mirror=True, instants=INSTANTS) <= SAME
+        )
 
     def _mirrored_at(self, p: float) -> bool:
         return self.mirrored or self.model.has_mirror(self.values(p))

@@ -62,7 +62,7 @@ def adopt(run: Run) -> None:
     """Continue the register of a graph that has branches already."""
     for branch in run.graph.branches.values():
         if branch.problem is not None:
-            run.register.add(branch, run.engine(branch.problem)[0])
+            run.register.add(branch, run.engine(branch.problem)[0], {i for i, _ in branch.marks})
     run.serial = len(run.graph.branches)
 
 
@@ -185,7 +185,7 @@ def trace_pending(run: Run, pending: Pending) -> None:
         half, origin = whole, origin_index(whole, pending)
     branch = make_branch(label, engine, half, real, endings, closed, pending.point, origin)
     run.graph.branches[label] = branch
-    run.register.add(branch, engine)
+    run.register.add(branch, engine, {i for i, _ in half.events} | {origin})
     run.connect(pending.point, pending.source, label, pending.note)
     new = mark(run, engine, branch, half, pending, origin)
     for point in new:

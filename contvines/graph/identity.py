@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Collection, Hashable
+from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
@@ -20,41 +22,60 @@ def same_vector(
     a: np.ndarray, b: np.ndarray, tolerance: float = SAME, scale: np.ndarray | None = None
 ) -> bool:
     """Equal up to the tolerance, relative to 1 + largest entry, in units of a scale of the entries."""
-    if a.shape == b.shape:
-        a, b = _in_units(a, scale), _in_units(b, scale)
-    return a.shape == b.shape and bool(
-        np.abs(a - b).max(initial=0.0) <= tolerance * (1.0 + np.abs(b).max(initial=0.0))
-    )
+    if a.shape != b.shape:
+        return False
+    apart, size = np.abs(_in_units(np.array([a - b, b]), scale)).max(axis=1, initial=0.0).tolist()
+    return apart <= tolerance * (1.0 + size)
 
 
-def _in_units(vector: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
-    """A canonical vector in units of the unknowns. Where all of these are 1 it may have more entries than there are unknowns: a whole cycle's."""
-    return vector if scale is None or (scale[:-1] == 1.0).all() else vector / scale[: len(vector)]
+def _in_units(vectors: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
+    """Canonical vectors in units of the unknowns. Where all of these are 1 it may have more entries than there are unknowns: a whole cycle's."""
+    return vectors if scale is None or (scale[:-1] == 1.0).all() else vectors / scale[: vectors.shape[-1]]
+
+
+class Known:
+    """A branch that is known, with its engine; what its solutions are is worked out when the first is looked for where it lies."""
+
+    def __init__(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
+        self.branch, self.engine, self.special = branch, engine, special
+        self.low, self.high = float(branch.values.min()), float(branch.values.max())
+
+    @cached_property
+    def keys(self) -> set[Hashable]:
+        """The key of its inner points, which one of them tells; where all are special points, and so may repeat shorter solutions, those of all points."""
+        branch, problem, count = self.branch, self.engine.problem, len(self.branch)
+        inner = (i for i in range(max(count // 2, 1), count - 1) if i not in self.special)
+        places = list(islice(inner, 1)) or range(count)
+        return {problem.canonical(branch.points[i], float(branch.values[i]))[0] for i in places}
+
+    def reaches(self, p: float) -> bool:
+        """Whether it passes a parameter value, or ends there."""
+        around = SAME * (float(self.engine.scale[-1]) + abs(p))
+        return self.low - around <= p <= self.high + around
 
 
 class Register:
-    """Known branches by the key of their solutions; a seed is compared only with branches of its own key."""
+    """Known branches; a seed is compared only with branches that reach its parameter value, and have its key."""
 
     def __init__(self) -> None:
-        self.by_key: dict[Hashable, list[tuple[Branch, Engine]]] = {}
+        self.known: list[Known] = []
 
-    def add(self, branch: Branch, engine: Engine) -> None:
-        """Remember a branch under the key of its inner points."""
-        keys = {
-            engine.problem.canonical(branch.points[i], float(branch.values[i]))[0]
-            for i in {len(branch) // 2, len(branch) // 3, (2 * len(branch)) // 3}
-        }
-        for key in keys:
-            self.by_key.setdefault(key, []).append((branch, engine))
+    def add(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
+        """Remember a branch; ``special`` are the indices of its special points."""
+        self.known.append(Known(branch, engine, special))
 
     def find(self, problem: Problem, u: np.ndarray, p: float, real: bool | None = None) -> Branch | None:
         """The known branch on which a solution lies, or None.
 
         Where a branch passes the parameter value it is interpolated, solved there and compared.
         """
+        near = [known for known in self.known if real in (None, known.branch.real) and known.reaches(p)]
+        if not near:
+            return None
         key, vector = problem.canonical(u, p)
-        for branch, engine in self.by_key.get(key, []):
-            if real is not None and branch.real != real:
+        for known in near:
+            branch, engine = known.branch, known.engine
+            if key not in known.keys:
                 continue
             if _passes(branch, engine, key, vector, p) or _ends_at(branch, engine, key, vector, p):
                 return branch
@@ -165,7 +186,7 @@ def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
     # only the parameter's cubic has to be solved
     a, b, c, e = float(za[-1]), float(d * ta[-1]), float(zb[-1]), float(d * tb[-1])
     low, high, flow = 0.0, 1.0, a - p
-    for _ in range(50):
+    for _ in range(30):
         middle = 0.5 * (low + high)
         t, rest = middle, 1.0 - middle
         value = rest * rest * ((1.0 + 2.0 * t) * a + t * b) + t * t * ((3.0 - 2.0 * t) * c - rest * e) - p

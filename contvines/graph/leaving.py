@@ -229,10 +229,11 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itrun."""
-    at_start = point.index == 0
-    outward = -point.tangent if at_start else point.tangent
-    leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
-    leaving.tangent = outward
+    leaving = point
+    if point.index == 0:
+        leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
+        leaving.tangent = -point.tangent
+    outward = leaving.tangent
     if branch.real:
         seeds = _seeds(run, leaving, depth < run.depth)
         if not seeds:

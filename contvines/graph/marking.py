@@ -245,10 +245,6 @@ def _special(
     run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
 ) -> SpecialPoint:
     point = event.point
-    margin = float(engine.smallest_margin(point.row))
-    if kind in BORDERS:
-        margins = engine.margins(point.row)
-        margin = float(np.min(margins)) if len(margins) else float("inf")
     special = SpecialPoint(
         label=label,
         kind=kind,
@@ -258,7 +254,7 @@ def _special(
         u=np.array(point.u),
         tangent=np.array(point.tangent),
         multipliers=engine.multipliers(point.row),
-        margins=margin,
+        margins=float(engine.smallest_margin(point.row)),
         bracket=event.bracket,
         residual=float(point.residual),
         location_error=float(event.error),

@@ -92,8 +92,11 @@ def same_border(run: Run, label: str, known: Branch) -> str:
 
 
 def _in_one_place(run: Run, one: SpecialPoint, other: SpecialPoint) -> bool:
+    unit = run.unit(one.value)
+    if abs(one.value - other.value) > ONE_VALUE * unit:
+        return False
     here, there = Place(one.value, one.location_error), Place(other.value, other.location_error)
-    return in_one_place(here, there, run.unit(one.value), ONE_VALUE)
+    return in_one_place(here, there, unit, ONE_VALUE)
 
 
 def tie_borders(run: Run) -> None:

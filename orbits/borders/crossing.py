@@ -16,7 +16,7 @@ import numpy as np
 from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.dead_ends import piled_up
-from orbits.borders.distance import CLOSE, distance, tends_to
+from orbits.borders.distance import CLOSE, distance, tends
 from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
     SIZES,
@@ -82,7 +82,7 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
         return rest
     border = placed(problem, u, p, int(point.margin_index))
     index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)
-    nearby = [_real_part(problem, u, p, tangent_here, index, length) for length in BESIDE]
+    nearby = _real_part(problem, u, p, tangent_here, index)
     old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
     seeds = []
     # the simulator is asked only where no proposal stands
@@ -200,33 +200,31 @@ def _grown_in(
     return None
 
 
-def _sides(
-    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, length: float
-) -> list[tuple[np.ndarray, float]]:
-    """Solutions with the old word a little ahead of the border and behind it, as (u, p)."""
-    kernels, work = problem.equations.kernels, problem.scratch
-    step, along = np.empty(u.size + 1), np.empty(u.size + 1)
-    length /= max(float(np.abs(tangent).max()), 1e-12)
-    found = []
-    for sign in (1.0, -1.0):
-        there = u + sign * length * tangent[:-1]
-        q = p + sign * length * float(tangent[-1])
-        residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
-        if residual < 1e-10:
-            found.append((there, float(q)))
-    return found
-
-
 def _real_part(
-    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int, length: float
-) -> tuple[np.ndarray, float] | None:
-    """A solution in the branch's real part, close to the border.
+    problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int
+) -> list[tuple[np.ndarray, float] | None]:
+    """Solutions (u, p) in the branch's real part, close to the border at each of the distances `BESIDE`; None where there is none.
 
     Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
     border, so its tangent does not tell.
     """
-    sides = _sides(problem, u, p, tangent, length)
-    return max(sides, key=lambda side: float(margins_of(problem, *side)[index]), default=None)
+    kernels, work = problem.equations.kernels, problem.scratch
+    step, along = np.empty(u.size + 1), np.empty(u.size + 1)
+    tangent = tangent / max(float(np.abs(tangent).max()), 1e-12)
+    sides, found = (1.0, -1.0), []
+    for length in BESIDE:
+        best = None
+        for side in sides:
+            there = u + side * length * tangent[:-1]
+            q = p + side * length * float(tangent[-1])
+            residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
+            if residual < 1e-10:
+                margin = float(margins_of(problem, there, q)[index])
+                if best is None or margin > best[0]:
+                    best = margin, side, (there, float(q))
+        found.append(best and best[2])
+        sides = sides if best is None else (best[1],)
+    return found
 
 
 def _simulated(
@@ -263,7 +261,7 @@ def _simulated(
         other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
         nearer = _nearer(other, v, q, p)
-        if nearer is None or not tends_to(orbit, nearer, found):
+        if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
             continue  # an attractor somewhere else: nothing joins it to the border
         yield other, v, q, None, "the simulator goes on"
 

@@ -60,9 +60,10 @@ def piled_up(orbit: Solution, approaches: np.ndarray | None = None) -> bool:
 
     `approaches` are the orbit's own, where they are known.
     """
-    speeds, codes = orbit.approaches if approaches is None else approaches, orbit.word.codes
-    back = np.asarray(orbit.model.restitutions(orbit.params))[codes[codes < 2][: speeds.size]]
-    return bool(np.any((speeds > VANISHING) & (back * speeds < UNRESOLVED)))
+    speeds = (orbit.approaches if approaches is None else approaches).tolist()
+    back, codes = orbit.model.restitutions(orbit.params), orbit.word.codes
+    hits = codes[codes < 2].tolist()
+    return any(speed > VANISHING and back[hit] * speed < UNRESOLVED for speed, hit in zip(speeds, hits))
 
 
 def _gives_way_one_way(orbit: Solution) -> bool:

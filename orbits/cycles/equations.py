@@ -107,7 +107,7 @@ class Equations:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
-    @property
+    @cached_property
     def scratch(self) -> Workspace:
         """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
         return _shared(self.length, self.model.node, self.params.size)

@@ -57,26 +57,29 @@ class Rounds(NamedTuple):
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
-        keys, table = choices(most), _table(most)
         sides, products = _sides(self.maps, most)
         beside = sides if self.linear else _sides(self.further, most)[0]
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
-        rounds, changed = table.T
-        with np.errstate(all="ignore"):
-            errors = (rounds * self.error * own ** (rounds - changed) * other**changed).tolist()
-            sizes = np.abs(products).max(axis=(1, 2)).tolist()
         hopeless = set()
-        for key, (low, high), before, radius, error, size in zip(
-            keys, sides.tolist(), beside.tolist(), _radii(products), errors, sizes
+        for key, (low, high), before, product in zip(
+            choices(most), sides.tolist(), beside.tolist(), products
         ):
             if self.linear:
                 torn = low < -DECIDED * high and high > -DECIDED * low
+            elif _lasts(-low, -before[0]) and _lasts(high, before[1]):
+                torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < SURE
             else:
-                sure = key[0] * self.error * max(size, own * other) < SURE
-                torn = sure and _lasts(-low, -before[0]) and _lasts(high, before[1])
-            if torn or (key[0] > 2 and radius > UNSTABLE + error):
+                torn = False
+            if torn or (key[0] > 2 and _radius(product) > UNSTABLE + self._rounding(*key, own, other)):
                 hopeless.add(key)
         return hopeless
+
+    def _rounding(self, rounds: int, changed: int, own: float, other: float) -> float:
+        """Of a product of so many rounds, whose derivatives are no larger than `own` and, of changed ones, `other`."""
+        try:
+            return rounds * self.error * own ** (rounds - changed) * other**changed
+        except OverflowError:
+            return math.inf
 
 
 def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
@@ -93,17 +96,12 @@ def _lasts(near: float, further: float) -> bool:
     return near > DECIDED and further - near <= DECIDED * near
 
 
-def _radii(products: np.ndarray) -> list[float]:
-    """Largest modulus of the eigenvalues of each matrix (c, n, n); NaN of one that is not finite."""
-    if products.shape[1] == 2:
-        return [_radius(*entries) for entries in products.reshape(-1, 4).tolist()]
-    known = np.isfinite(products.sum(axis=(1, 2)))
-    radii = np.abs(np.linalg.eigvals(np.where(known[:, None, None], products, 0.0))).max(axis=1)
-    return np.where(known, radii, np.nan).tolist()
-
-
-def _radius(a: float, b: float, c: float, d: float) -> float:
-    """The same of [[a, b], [c, d]]."""
+def _radius(product: np.ndarray) -> float:
+    """Largest modulus of the eigenvalues of a matrix; NaN of one that is not finite."""
+    if len(product) != 2:
+        known = bool(np.isfinite(product).all())
+        return float(np.abs(np.linalg.eigvals(product)).max()) if known else math.nan
+    (a, b), (c, d) = product.tolist()
     mean, half = 0.5 * (a + d), 0.5 * (a - d)
     square = half * half + b * c
     if square < 0.0:

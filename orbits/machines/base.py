@@ -38,6 +38,9 @@ if TYPE_CHECKING:
     from orbits.words import Word
 
 
+ONE = np.float64(1.0)
+
+
 class Model(Varying):
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
@@ -168,7 +171,8 @@ class Model(Varying):
     @classmethod
     def column(cls, params: np.ndarray, name: str) -> Any:
         """Entry `name` of a parameter vector, or that column of many of them."""
-        return params[..., cls.parameter_names.index(name)]
+        j = cls.parameter_names.index(name)
+        return params[j] if params.ndim == 1 else params[..., j]
 
     # ------------------------------------------------------------------ mechanics
     def shakes(self, name: str) -> bool:
@@ -201,14 +205,14 @@ class Model(Varying):
         raise TypeError(f"{cls.__name__} has no cavity")
 
     @classmethod
-    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Derivatives of v' at a node with respect to its unknowns, shape (n,)."""
+    def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
+        """v' at a node (n,), and its derivatives with respect to the node's entries, shape (n,)."""
         raise TypeError(f"{cls.__name__} has no cavity")
 
     @classmethod
     def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """w at the left and at the right wall; shapes follow `params` (..., P)."""
-        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else np.float64(1.0)
+        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
         return one, -one
 
     @classmethod

@@ -71,8 +71,8 @@ class Alphabet:
 
     def text_of(self, contact: int, kind: int, sign: int = 0) -> str:
         """The letter's text."""
-        for letter in self.contacts[contact].events(contact):
-            if letter.kind == kind and (kind != SWITCH or letter.sign == sign):
+        for letter in self.letters.values():
+            if letter.contact == contact and letter.kind == kind and (kind != SWITCH or letter.sign == sign):
                 return letter.text
         raise KeyError(f"{KINDS[kind]} is no event of {self.contacts[contact]!r}")
 
