@@ -167,6 +167,13 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
 
 
+def prepare() -> None:
+    """Compile, or take from the cache on disk, what rounds are judged with."""
+    one = np.ones((2, 1, 1))
+    derived(one, one)
+    _sides(one, 2)
+
+
 def escape(symmetric: bool, rounds: int) -> str:
     """What becomes of the period where only some of so many rounds change."""
     if rounds == 2:
