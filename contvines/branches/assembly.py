@@ -74,9 +74,9 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
         return stable
     is_special = np.zeros(n, dtype=bool)
     is_special[special] = True
-    telling = ~is_special & ~(np.abs(outermost) <= MARGINAL)
-    for start, stop in _runs(~is_special):
-        known = start + np.flatnonzero(telling[start:stop])
+    silent = (np.abs(outermost) <= MARGINAL) & ~is_special
+    for start, stop in _runs(~is_special) if silent.any() else ():
+        known = start + np.flatnonzero(~silent[start:stop])
         if len(known) == stop - start:
             continue
         if not len(known):
@@ -87,9 +87,9 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
         before = np.maximum(after - 1, 0)
         nearer = np.where(np.abs(known[before] - here) < np.abs(known[after] - here), before, after)
         stable[start:stop] = stable[known[nearer]]
-    before = np.append(False, stable[:-1] & ~is_special[:-1])
-    after = np.append(stable[1:] & ~is_special[1:], False)
-    return np.where(is_special, before | after, stable)
+    for i in special:
+        stable[i] = any(stable[j] and not is_special[j] for j in (i - 1, i + 1) if 0 <= j < n)
+    return stable
 
 
 def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
