@@ -69,14 +69,24 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
         return None
     outermost = engine.outermost(spectrum)
     stable = outermost < 0.0
-    n = len(stable)
-    if n < 2:
+    if len(stable) < 2:
         return stable
-    is_special = np.zeros(n, dtype=bool)
-    is_special[special] = True
-    silent = (np.abs(outermost) <= MARGINAL) & ~is_special
-    for start, stop in _runs(~is_special) if silent.any() else ():
-        known = start + np.flatnonzero(~silent[start:stop])
+    ordinary = np.ones(len(stable), dtype=bool)
+    ordinary[special] = False
+    doubtful = ordinary & (np.abs(outermost) <= MARGINAL)
+    if doubtful.any():
+        _carry_over(stable, ordinary, doubtful)
+    ahead = stable & ordinary
+    beside = np.zeros(len(stable), dtype=bool)
+    beside[1:] = ahead[:-1]
+    beside[:-1] |= ahead[1:]
+    return np.where(ordinary, stable, beside)
+
+
+def _carry_over(stable: np.ndarray, ordinary: np.ndarray, doubtful: np.ndarray) -> None:
+    """Give doubtful points the stability of the nearest one that can tell, up to the next special point."""
+    for start, stop in _runs(ordinary):
+        known = start + np.flatnonzero(~doubtful[start:stop])
         if len(known) == stop - start:
             continue
         if not len(known):
@@ -87,9 +97,6 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
         before = np.maximum(after - 1, 0)
         nearer = np.where(np.abs(known[before] - here) < np.abs(known[after] - here), before, after)
         stable[start:stop] = stable[known[nearer]]
-    for i in special:
-        stable[i] = any(stable[j] and not is_special[j] for j in (i - 1, i + 1) if 0 <= j < n)
-    return stable
 
 
 def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:

@@ -27,6 +27,6 @@ def from_border(engine: Engine, half: HalfBranch, first: Solved) -> HalfBranch:
         return half
     u, p, tangent = half.at(1)
     ends = Solved(u, p, -tangent, first.row, 0.0, 0.0, 0.0), first._replace(tangent=-first.tangent)
-    limits = one_sided(Segment(engine, *ends), Root(1.0, ends[1], 0.0))
+    limits, _ = one_sided(Segment(engine, *ends), Root(1.0, ends[1], 0.0))
     half.pieces[0] = piece_of(engine, first._replace(row=limits.row))
     return half

@@ -32,6 +32,13 @@ class Piece(NamedTuple):
         where = slice(n - stop, n - start) if self.turned else slice(start, stop)
         return Piece(*(array[where] for array in self[:5]), turned=self.turned)
 
+    def in_order(self) -> tuple[np.ndarray, ...]:
+        """The arrays in the order in which the piece is read."""
+        if not self.turned:
+            return self[:5]
+        points, values, tangents, spectrum, smallest = (array[::-1] for array in self[:5])
+        return points, values, -tangents, spectrum, smallest
+
 
 def piece_of(engine: Engine, point: Solved) -> Piece:
     """A piece of one point."""
@@ -40,7 +47,7 @@ def piece_of(engine: Engine, point: Solved) -> Piece:
         np.array([point.p]),
         point.tangent[None, :],
         point.row[None, : 2 * engine.m],
-        np.array([float(engine.smallest_margin(point.row))]),
+        engine.smallest_margin(point.row)[None],
     )
 
 
@@ -117,18 +124,8 @@ class HalfBranch:
         """All points as one piece, in order."""
         if len(self.pieces) == 1 and not self.pieces[0].turned:
             return self.pieces[0]
-        first, total = self.pieces[0], len(self)
-        whole = Piece(*[np.empty((total, *array.shape[1:])) for array in first[:5]], turned=False)
-        start = 0
-        for piece in self.pieces:
-            stop = start + len(piece.values)
-            order = slice(None, None, -1 if piece.turned else 1)
-            for to, array in zip(whole[:5], piece[:5]):
-                if array is piece.tangents and piece.turned:
-                    np.negative(array[order], out=to[start:stop])
-                else:
-                    to[start:stop] = array[order]
-            start = stop
+        arrays = zip(*(piece.in_order() for piece in self.pieces))
+        whole = Piece(*[np.concatenate(parts) for parts in arrays], turned=False)
         self.pieces = [whole]
         return whole
 

@@ -21,7 +21,7 @@ from .rows import Rows
 from .settings import Settings
 from .solved import Hit as Hit
 from .solved import Solved as Solved
-from .solved import solved_points
+from .solved import solved_point
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 ONE = np.zeros(1)  # a single place: the chord's first end
@@ -51,8 +51,10 @@ class Engine(Rows):
         self.lower, self.upper = float(within[0]), float(within[1])
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
-        self.bound = bind(problem.kernels, settings.step_rule)
-        self.section = HELD if problem.kernels.compiled else OPEN
+        kernels = problem.kernels
+        self.compiled = bool(kernels.compiled)
+        self.bound = bind(kernels, settings.step_rule)
+        self.section = HELD if self.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
         self.m = int(problem.n_multipliers)
@@ -169,7 +171,7 @@ class Engine(Rows):
         along: np.ndarray | None,
     ) -> Solved | None:
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return solved_points(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0])[0]
+        return solved_point(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0], 0)
 
     def on_chord(
         self,
@@ -209,7 +211,7 @@ class Engine(Rows):
         found, outcome = self._run(chord, (start, length), ONE, border, along, 40, aim)
         if outcome == corrector.NOWHERE:
             return None
-        point = solved_points(found)[0]
+        point = solved_point(found, 0)
         one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
         if outcome == corrector.AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
@@ -260,7 +262,7 @@ class Engine(Rows):
             if found is not None and self.lower <= found.p <= self.upper:
                 return found
         found = None
-        if tangent is None and not self.problem.kernels.compiled and isinstance(self.problem, Rough):
+        if tangent is None and not self.compiled and isinstance(self.problem, Rough):
             near = approach(self.problem, np.asarray(u, dtype=float), p)
             found = None if near is None else self.at_value(near, p)
         if found is None:

@@ -88,7 +88,7 @@ class Reach:
 
     def creeps(self, chunk: Chunk) -> bool:
         """Whether many points have come next to nowhere; of problems whose points are dear."""
-        if self.engine.problem.kernels.compiled or len(chunk) < 2:
+        if self.engine.compiled or len(chunk) < 2:
             return False
         steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
         way = float(np.sqrt((steps**2) @ self.engine.weights).sum())

@@ -49,14 +49,10 @@ class Rows:
 
     def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
         """Smallest margin of each row, +inf where there are none."""
-        if rows.shape[-1] <= 2 * self.m:
-            return np.full(rows.shape[:-1], np.inf)
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
-        if margins.ndim == 1:
-            least = float(np.fmin.reduce(margins))
-            return np.asarray(least if least == least else np.inf)
-        smallest = _of_rows(np.fmin, margins)
-        return np.where(np.isnan(smallest), np.inf, smallest)
+        if margins.ndim == 1 or not margins.shape[-1]:
+            return np.asarray(np.fmin.reduce(margins, axis=-1, initial=np.inf))
+        return np.fmin(_of_rows(np.fmin, margins), np.inf)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:
         """Multipliers of the full period, shape (..., m)."""

@@ -36,8 +36,12 @@ class Hit(NamedTuple):
 
 def solved_points(found: Found) -> list[Solved | None]:
     """Points one by one, None where there is no solution."""
-    points: list[Solved | None] = []
-    for i, (p, sweeps, residual, sign, size) in enumerate(found.numbers.tolist()):
-        point = Solved(found.u[i], p, found.tangents[i], found.rows[i], sign, residual, size)
-        points.append(point if sweeps >= 0 else None)
-    return points
+    return [solved_point(found, i) for i in range(len(found.u))]
+
+
+def solved_point(found: Found, i: int) -> Solved | None:
+    """One of the points, None where there is no solution."""
+    p, sweeps, residual, sign, size = found.numbers[i].tolist()
+    if not sweeps >= 0:
+        return None
+    return Solved(found.u[i], p, found.tangents[i], found.rows[i], sign, residual, size)

@@ -134,7 +134,7 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
         If it is further away than a branch may get (`escape`).
     """
     problem = engine.problem
-    if engine.problem.kernels.compiled or not isinstance(problem, Rough):
+    if engine.compiled or not isinstance(problem, Rough):
         return ""
     return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem.scales)) if part)
 

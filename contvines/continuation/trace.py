@@ -92,7 +92,7 @@ def chunks(
             if retrace is not None:
                 room, longest = AGAIN, min(retrace.longest, longest)
                 h = min(h, longest)
-            if not engine.problem.kernels.compiled:
+            if not engine.compiled:
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
             room = min(room, max(settings.max_points - total, 1))
@@ -146,7 +146,7 @@ def _march(
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     engine.control[source.MAX_STEP] = longest
     # an interpreted loop is faster with Python's own numbers
-    control: Any = engine.control if engine.problem.kernels.compiled else engine.control.tolist()
+    control: Any = engine.control if engine.compiled else engine.control.tolist()
     with engine.section, np.errstate(all="ignore"):
         filled, h, status = engine.bound.march(
             engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch

@@ -98,20 +98,22 @@ def resolved(segment: Segment, border: Located) -> Located:
     Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
     passes zero.
     """
-    engine, place = segment.engine, border.position
-    here = _finite(engine.margins(border.point.row))
-    known = np.abs(here) >= TOLD * MARGIN_ROUNDING
-    known[border.index] = False
+    first, place = 2 * segment.engine.m, border.position
+    margins = border.point.row[first:]
+    flat = np.abs(margins) < TOLD * MARGIN_ROUNDING
+    flat[border.index] = True
+    flat = flat.nonzero()[0]
+    here = _finite(margins[flat])
     towards = -1.0 if place * segment.length > SLOPED else 1.0
     room = place if towards < 0.0 else 1.0 - place
     reach, error = min(SLOPED / segment.length, room), border.error
     while reach > 0.0 and (aside := segment.at(place + towards * reach)) is not None:
-        rises, moved = np.abs(_finite(engine.margins(aside.row)) - here), abs(aside.p - border.point.p)
-        told = ~known & (rises > TOLD * MARGIN_ROUNDING)
+        rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - border.point.p)
+        told = rises > TOLD * MARGIN_ROUNDING
         if told.any():
             error = max(error, moved * MARGIN_ROUNDING / float(rises[told].min()))
-        known |= told
-        if known.all():
+            flat, here = flat[~told], here[~told]
+        if not len(flat):
             break
         if reach == room:
             error = max(error, moved)

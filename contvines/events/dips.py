@@ -74,7 +74,7 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
     convex = (middle < (1.0 - position) * left + position * right).nonzero()[0]
     parts = (position * segment.length, (1.0 - position) * segment.length)
     sides = values[:, convex].T.tolist()
-    suspects = [j for j, side in zip(convex.tolist(), sides) if dips(*side, *parts)]
+    suspects = [j for j, side in zip(convex.tolist(), sides) if dips(side[0], side[1], side[2], *parts)]
     if not suspects:
         return None
     part = Segment(segment.engine, segment.a, border)

@@ -15,10 +15,10 @@ from .certain import passes_for_certain
 from .determinant import passes, turned
 from .eliminated import by_elimination, by_sign
 from .leaps import SHORTEST
-from .limits import one_sided
+from .limits import CLOSE, one_sided
 from .locate import Root, locate, locate_singular
 from .located import Located, Role
-from .multipliers import balance, counts
+from .multipliers import balance, counts_at
 from .scan import FLAT
 from .segment import Segment
 from .singular import singular
@@ -33,7 +33,6 @@ EXACT = 1e-13
 STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 BESIDE = 1e-3  # part of a segment, either side of such a place, by which they are told
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
-CLOSE = 1e-6  # distance from a border up to which the rest of a segment is looked at (in the metric)
 CLEAR = 1e-4  # distance from a meeting (in the metric) within which tangents and multipliers are those of its singular equations
 DEEPEST = 16  # parts of parts of a segment that are looked at
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
@@ -72,11 +71,10 @@ class Examiner:
 
     def examine(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""
-        borders = self._borders(segment, real)
+        borders, last = self._borders(segment, real)
         if borders and depth < DEEPEST:
             # behind a border multipliers may come back from infinity, and what they say of both ends together is nothing
             short = borders[0].position - CLOSE / segment.length
-            last = segment.at(short) if short > 0.0 else None
             if last is not None or not short > 0.0:
                 part = [] if last is None else self.before(segment, short, last, real, depth + 1)
                 return part + borders
@@ -95,7 +93,7 @@ class Examiner:
         folds = self._fold(segment, met)
         counted, discarded = 0, False
         crossings: list[Located] = []
-        before, after = self._counts(a, b)
+        before, after = self._counts(a), self._counts(b)
         # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
         odd, side = (after[0] - before[0]) % 2, turned(a, b)
         rounded = self.scaled and self.signed and odd != side
@@ -164,7 +162,7 @@ class Examiner:
         rough = locate(segment, test, tolerance=1e-6)
         if rough is None:
             return None
-        ((count, _, _),) = self._counts(rough.point)
+        count, _, _ = self._counts(rough.point)
         inner = abs(self._multiplier("plus", max(count, 1))(rough.point))
         if abs(test(rough.point)) > REACHED or (self.kind != "real" and inner > REACHED):
             return None
@@ -173,11 +171,9 @@ class Examiner:
         root = locate_singular(segment, test, rough.position) or rough
         return self._located(root, "branch-point", 0)
 
-    def _around(
-        self, segment: Segment, fold: Located, before: list[int], after: list[int]
-    ) -> list[Located]:
+    def _around(self, segment: Segment, fold: Located, before: list[int], after: list[int]) -> list[Located]:
         """Multipliers that pass the circle before a fold and come back behind it, so that the ends of the segment do not tell."""
-        (here,) = self._counts(fold.point)
+        here = self._counts(fold.point)
         found: list[Located] = []
         for name, one, same, there in zip(NAMES, before, after, here):
             if name == "plus" or one != same:
@@ -206,9 +202,9 @@ class Examiner:
         unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
         return bool(abs(one) > REACHED * unit)
 
-    def _counts(self, *points: Solved) -> list[list[int]]:
-        """How many multipliers are past the circle at each of some points; see :func:`counts`."""
-        return counts(self.engine.spectrum(np.array([point.row for point in points])), self.kind).tolist()
+    def _counts(self, point: Solved) -> list[int]:
+        """How many multipliers are past the circle; see :func:`counts_at`."""
+        return counts_at(point.row[: 2 * self.engine.m].tolist(), self.kind)
 
     def _kind(self, name: str) -> str:
         if name == "minus":
@@ -304,13 +300,14 @@ class Examiner:
         known = self.many or segment.length <= SHORTEST or singular(self.engine, root.point)
         return kind if known else "astray"
 
-    def _borders(self, segment: Segment, real: bool) -> list[Located]:
+    def _borders(self, segment: Segment, real: bool) -> tuple[list[Located], Solved | None]:
+        """The border of a segment, if there is one, and the point just before it."""
         border = find_border(segment, real)
         if border is None:
-            return []
+            return [], None
         kind = self.engine.problem.margin_kind(border.index)
-        root = border.root._replace(point=one_sided(segment, border.root))
-        return [self._located(root, kind, border.index, Role.BORDER)]
+        point, before = one_sided(segment, border.root)
+        return [self._located(border.root._replace(point=point), kind, border.index, Role.BORDER)], before
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""

@@ -20,7 +20,7 @@ OTHER = 0.7  # part of such a step that ends, and whose successor ends, further 
 def first_landing(chunk: Chunk, flags: np.ndarray) -> int | None:
     """The first of the flagged segments that ends next to a meeting, and may end elsewhere; None if there is none."""
     movable = flags if chunk.status == Status.RUNNING else flags[:-1]
-    found = np.flatnonzero(movable & LANDING)
+    (found,) = (movable & LANDING).nonzero()
     return int(found[0]) if len(found) else None
 
 

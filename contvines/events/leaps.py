@@ -43,7 +43,6 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
 def inexact(segment: Segment, event: Located) -> bool:
     """Whether a special point could not be located as well as those are that exist."""
     unit = segment.engine.parameter_unit(event.point.p)
-    size = segment.engine.size(event.point.u)
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
     least = max(INEXACT, NOISY * noise)
     solved = EXACT if scaled and not noise and event.kind == "branch-point" else least
@@ -52,7 +51,10 @@ def inexact(segment: Segment, event: Located) -> bool:
         # no better than the rounding of its matrix allows
         point = event.point
         vague = event.error > singular_within(segment.engine, point.u, point.p, point.tangent)
-    return event.kind == "astray" or vague or event.point.residual > solved * size
+    if event.kind == "astray" or vague:
+        return True
+    residual = event.point.residual  # sizes are one at least
+    return residual > solved and residual > solved * segment.engine.size(event.point.u)
 
 
 def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:

@@ -14,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
+from ..continuation.solved import solved_point
 from .locate import Root
 from .segment import Segment
 
 BESIDE = 1e-3  # part of a segment before the border by which the tangent is told
 SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
+CLOSE = 1e-6  # distance of a point just before a border (in the metric)
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
 BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
@@ -41,8 +43,8 @@ EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # of val
 UNBOUNDED = 1e15  # stands for a multiplier that does
 
 
-def one_sided(segment: Segment, root: Root) -> Solved:
-    """The point at a border, its tangent and multipliers replaced by their limits where they are rounding."""
+def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
+    """The point at a border, its tangent and multipliers replaced by their limits where they are rounding; and the point `CLOSE` to it."""
     engine, point, position = segment.engine, root.point, root.position
     reach = min(BESIDE, position / 3.0)
     beside = [position - k * reach for k in (1.0, 2.0) if reach > 0.0]
@@ -50,20 +52,21 @@ def one_sided(segment: Segment, root: Root) -> Solved:
     spacings = [distance / segment.length for distance in DISTANCES] if tells else []
     widest = next((step for step in spacings if position - PLACES[-1] * step >= -1.0), None)
     before = [] if widest is None else [position - k * widest for k in PLACES]
-    tangent, row, rows = point.tangent, point.row, point.row[:0]
-    if beside or before:
-        found = segment.found(beside + before)
-        known, split = found.numbers[:, 1] >= 0.0, len(beside)
-        if beside and known[:split].all():
-            tangent = _tangent(engine, tangent, *found.tangents[:split])
-        if known[split:].all():
-            rows = found.rows[split:]
+    short = position - CLOSE / segment.length if segment.length > 0.0 else 0.0
+    # all in one call; the border itself is there for where there is nothing else
+    found = segment.found([*beside, *before, short if short > 0.0 else position])
+    known, split = (found.numbers[:, 1] >= 0.0).tolist(), len(beside)
+    tangent, row, rows = point.tangent, point.row, found.rows[split:-1]
+    if beside and all(known[:split]):
+        tangent = _tangent(engine, tangent, *found.tangents[:split])
+    if not all(known[split:-1]):
+        rows = rows[:0]
     if tells and not _plainly(engine, row, rows):
         limits = _limits(segment, position, row)
         if limits is not None:
             m, roots, row = engine.m, _roots(limits), row.copy()
             row[0 : 2 * m : 2], row[1 : 2 * m : 2] = roots.real, roots.imag
-    return point._replace(tangent=tangent, row=row)
+    return point._replace(tangent=tangent, row=row), solved_point(found, -1) if short > 0.0 else None
 
 
 def _tangent(engine: Engine, own: np.ndarray, near: np.ndarray, far: np.ndarray) -> np.ndarray:
@@ -147,14 +150,16 @@ def _bounded(engine: Engine, rows: np.ndarray, polynomials: np.ndarray, computed
     come to zero nothing grows any more, and nothing can be told.
     """
     largest = float(np.abs(computed).max())
-    for margins, values in zip(engine.smallest_margin(rows), polynomials):
+    with np.errstate(invalid="ignore"):
+        reached = _apart(CUBIC @ polynomials, computed) < BOUNDED
+    for margins, values, there in zip(engine.smallest_margin(rows), polynomials, reached.tolist()):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
         if not np.isfinite(values).all():
             continue
         if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
             return False  # what is computed at the border is something else
-        if _apart(CUBIC @ values, computed) < BOUNDED:
+        if there:
             return True
     return False
 
@@ -199,7 +204,7 @@ def _before(segment: Segment, s: float) -> Solved | None:
 def _characteristic(spectrum: np.ndarray) -> np.ndarray:
     """Coefficients of the polynomials with these zeros (..., m), highest power first, shape (..., m + 1)."""
     m = spectrum.shape[-1]
-    coefficients = np.zeros((*spectrum.shape[:-1], m + 1), dtype=complex)
+    coefficients: NDArray[np.complex128] = np.zeros((*spectrum.shape[:-1], m + 1), dtype=np.complex128)
     coefficients[..., 0] = 1.0
     for k in range(m):
         coefficients[..., 1 : k + 2] -= spectrum[..., k : k + 1] * coefficients[..., : k + 1]

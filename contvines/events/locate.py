@@ -65,7 +65,8 @@ def locate(
         None if the ends do not bracket a zero or the segment cannot be solved.
     """
     if isinstance(test, Aim):
-        hit = segment.search(test._replace(anyway=int(fallback_zero)), tolerance, jump)
+        aim = test._replace(anyway=1) if fallback_zero else test
+        hit = segment.search(aim, tolerance, jump)
         if hit is None:
             return None
         if hit.point is not None:

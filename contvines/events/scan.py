@@ -283,7 +283,7 @@ class Scanner:
     def __init__(self, engine: Engine, symmetries: list[SymmetryTest]) -> None:
         self.engine = engine
         self.kind = KINDS[engine.detection]
-        self.mark = _compiled() if engine.problem.kernels.compiled else with_arrays
+        self.mark = _compiled() if engine.compiled else with_arrays
         columns = engine.n
         self.plain = plain = engine.plain
         affine = [test.affine for test in symmetries if test.affine is not None and plain]

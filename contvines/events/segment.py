@@ -9,7 +9,7 @@ import numpy as np
 from ..continuation.aims import Aim
 from ..continuation.corrector import Found
 from ..continuation.engine import Engine, Hit, Solved
-from ..continuation.solved import solved_points
+from ..continuation.solved import solved_point, solved_points
 
 
 class Segment:
@@ -38,7 +38,7 @@ class Segment:
 
     def at(self, s: float) -> Solved | None:
         """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
-        return self.several((s,))[0]
+        return solved_point(self.found((s,)), 0)
 
     def several(self, places: Sequence[float] | np.ndarray) -> list[Solved | None]:
         """The points of the branch at some places, each as by `at`."""

@@ -40,6 +40,7 @@ from .windows import passed, real_inside, windows
 # beside the bits of a scan: a user function changes its sign; a real multiplier, or a complex pair, may do so twice; a pair comes about;
 # a virtual branch may be real in between
 USER, TWICE, PAIRS, BORN, WINDOW = 256, 512, 1024, 2048, 4096
+INSIDE = SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN | WINDOW  # what the ends of a segment do not tell
 NO_MARGIN = 1e-13  # something has no length or speed at all
 AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
 AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
@@ -111,21 +112,22 @@ class Watch(Examiner):
         signs = without_zeros(chunk.signs)
         events: list[Located] = []
         landed = first_landing(chunk, flags)
-        for i in np.flatnonzero(flags[:landed]):
-            i, bits = int(i), int(flags[i])
+        for i in flags[:landed].nonzero()[0].tolist():
+            bits = int(flags[i])
             segment = Segment(
                 self.engine, chunk.solved(i, float(signs[i])), chunk.solved(i + 1, float(signs[i + 1]))
             )
             if bits & BORDER:
                 bits &= ~SHALLOW  # what is lost before a border is looked for when that is known
-            split = self._split(segment, bits, self._suspects(wide, i + own) if bits & SHALLOW else [])
+            suspects = self._suspects(wide, i + own) if bits & SHALLOW else []
+            split = self._split(segment, bits, suspects) if bits & INSIDE else None
             if i in close:
                 found = self._closely(segment, real)
             elif split is not None:
                 s, middle = split
                 plain = Located(s, "", 0, middle, (np.nan, np.nan), 0.0, Role.PLAIN)
                 found = [*self.both(segment, s, middle, real), plain]
-            elif bits & ~(SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN | WINDOW):
+            elif bits & ~INSIDE:
                 found = self.examine(segment, real=real)
                 border = min(
                     (e for e in found if e.role is Role.BORDER), key=lambda e: e.position, default=None
@@ -135,9 +137,9 @@ class Watch(Examiner):
                     found = self.both(segment, *split, real)
             else:
                 continue
-            found += self.examine_users(
-                segment, {name: values[i : i + 2] for name, values in user_values.items()}
-            )
+            if user_values:
+                ends = {name: values[i : i + 2] for name, values in user_values.items()}
+                found += self.examine_users(segment, ends)
             found.sort(key=lambda e: e.position)
             leaping = leap(segment, found)
             if leaping is not None:
@@ -339,7 +341,7 @@ def _inside(position: float) -> float:
 
 def without_zeros(signs: np.ndarray) -> np.ndarray:
     """Signs in which a zero (a point that is singular to roundoff) has taken the sign before it."""
-    if np.count_nonzero(signs) == len(signs):
+    if signs.all():
         return signs
     signs = signs.copy()
     for i in np.flatnonzero(signs == 0.0):

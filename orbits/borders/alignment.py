@@ -43,5 +43,5 @@ def _first_event(orbit: Solution, before: Solution) -> int:
     choices = choices or [i for i, letter in enumerate(letters) if letter in "LR"]
     choices = choices or [i for i, letter in enumerate(letters) if letter != "u"]
     whole = 2.0 * np.pi * before.periods
-    gaps = (orbit.nodes[choices, 0] - before.nodes[0, 0] + 0.5 * whole) % whole - 0.5 * whole
-    return choices[int(np.argmin(np.abs(gaps)))]
+    phases, first = orbit.nodes[:, 0].tolist(), float(before.nodes[0, 0])
+    return min(choices, key=lambda i: abs((phases[i] - first + 0.5 * whole) % whole - 0.5 * whole))

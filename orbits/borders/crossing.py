@@ -16,7 +16,7 @@ import numpy as np
 from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.dead_ends import piled_up
-from orbits.borders.distance import CLOSE, distance, tends_to
+from orbits.borders.distance import CLOSE, distance, tends
 from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
     SIZES,
@@ -89,7 +89,7 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
     for candidate in chain(proposals(border), _simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
-        if not _followed(orbit):
+        if not _followed(other, v, q, orbit):
             continue
         smallest, v, tangent = _simplest(other, orbit, v, tangent)
         persistence = bool(np.sign(q - p) != old_side)
@@ -105,9 +105,8 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
     return [read_alike(seed, before) for seed in seeds]
 
 
-def _followed(orbit: Solution) -> bool:
-    """Whether the simulator goes through an orbit whose margins say that it is real."""
-    return orbit.replay() < FOLLOWED
+def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Solution) -> bool:
+    return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < FOLLOWED
 
 
 def _simplest(
@@ -128,7 +127,7 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
-        if _followed(other.orbit(v, q)):
+        if _followed(other, v, q, other.orbit(v, q)):
             text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
@@ -165,7 +164,7 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
             there = other.orbit(v, q)
             if there.root().periods != other.periods or (there.symmetric and not other.symmetric):
                 continue
-            if not _followed(there):
+            if not _followed(other, v, q, there):
                 continue
             what = escape(problem.symmetric, rounds)
             yield Seed(
@@ -213,11 +212,11 @@ def _real_part(
     step, along = np.empty(u.size + 1), np.empty(u.size + 1)
     tangent = tangent / max(float(np.abs(tangent).max()), 1e-12)
     sides, found = (1.0, -1.0), []
-    for distance in BESIDE:
+    for length in BESIDE:
         best = None
         for side in sides:
-            there = u + side * distance * tangent[:-1]
-            q = p + side * distance * float(tangent[-1])
+            there = u + side * length * tangent[:-1]
+            q = p + side * length * float(tangent[-1])
             residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
             if residual < 1e-10:
                 margin = float(margins_of(problem, there, q)[index])
@@ -262,7 +261,7 @@ def _simulated(
         other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
         nearer = _nearer(other, v, q, p)
-        if nearer is None or margins_of(other, v, q).min() < REAL or not tends_to(orbit, nearer, found):
+        if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
             continue  # an attractor somewhere else: nothing joins it to the border
         yield other, v, q, None, "the simulator goes on"
 

@@ -20,13 +20,13 @@ SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on 
 COARSE = 10  # every so many instants are compared first
 INSTANTS = (
     PER_PERIOD // 5
-)  # of a period by which it is told whether orbits of one branch come nearer: their motions differ all along
+)  # of a period by which motions near a border are compared, where they differ all along
 
 
 def tends_to(border: Solution, near: Solution, further: Solution) -> bool:
     """Whether orbits tend to a border orbit, measured twice: `further` is the same orbit at some distance from `near`.
 
-    An orbit that is only similar keeps its distance.
+    An orbit that is only similar keeps its distance. All are read at the same phases.
     """
     return tends(gap(border, near), lambda: gap(border, further))
 
@@ -37,12 +37,16 @@ def tends(close: float, further: Callable[[], float]) -> bool:
 
 
 def gap(border: Solution, near: Solution) -> float:
-    """The distance of orbits of one branch, or of a branch and its border, from fewer instants."""
-    return distance(border, near, instants=INSTANTS)
+    """The distance of orbits of one branch, or of a branch and its border, which need not be moved: from fewer instants."""
+    if border.periods != near.periods:
+        return distance(border, near)
+    free = border.word.impact_free or near.word.impact_free
+    unit = border.model.natural_units(border.params)[0]
+    return float(_largest(border.track(INSTANTS) - near.track(INSTANTS), free)) / unit
 
 
 def distance(one: Solution, other: Solution, mirror: bool = False, instants: int = PER_PERIOD) -> float:
-    """Largest difference in w at equal phases, modulo whole periods of the forcing, and the mirror image if asked for.
+    """Largest difference in w at so many equal phases of each period, modulo whole periods, and the mirror image if asked for.
 
     In units of the machine's size. Where one of them hits no wall its mean position is free, and left out.
     """

@@ -61,13 +61,14 @@ def hold(
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
         unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
         node, near = u[first * n : (first + 1) * n] * unit, NEAR * parameter_unit(other, p)
-        params = other.values(np.array([q, q + near]))
-        cavity, beside = _cavity_speeds(other, node, params) / unit[1]
-        slopes = other.model.cavity_speed_slopes(node, params[0])
-        border[first * n : (first + 1) * n] = -sign * slopes * unit / unit[1]
+        (cavity, slopes), (beside, _) = (
+            other.model.cavity_speed(node, other.values(value)) for value in (q, q + near)
+        )
+        own = float(unit[1])
+        border[first * n : (first + 1) * n] = -sign / own * slopes * unit
         border[first * n + 1] += sign
-        border[size] = -sign * (beside - cavity) / near
-        speed = sign * (u[first * n + 1] - cavity)
+        border[size] = -sign * (beside - cavity) / (own * near)
+        speed = sign * (float(u[first * n + 1]) - cavity / own)
         u[first * n + 1] += sign * (wanted - speed)
         if (
             len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
@@ -77,9 +78,3 @@ def hold(
     if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
         return None
     return Held(u, float(q_new), tangent, wanted)
-
-
-def _cavity_speeds(problem: CycleProblem, node: np.ndarray, params: np.ndarray) -> np.ndarray:
-    """v' at an impact, with some parameter vectors."""
-    nodes = node[None, None].repeat(len(params), axis=0)
-    return problem.model.cavity_motion(nodes, params)[1][:, 0]

@@ -114,7 +114,7 @@ def _placed(orbit: Solution, place: int, change: Change, touch: _Touch | None) -
         if hit and not was_hit:
             row[1] = speed + side * FIRST * length * rate  # B+ = v' - w'+
         elif was_hit and not hit and spot.node is not None:
-            row[1] = orbit.events.w[spot.node]
+            row[1] = orbit.model.walls(orbit.params)[0 if word.letter(spot.node).contact == LEFT else 1]
         elif hit_before and not hit:
             row[1] -= hit_before * 0.1 * FIRST**2 * length  # a little off the wall
         hit_before = side
@@ -134,8 +134,8 @@ def _at(orbit: Solution, place: int, spot: Spot, touch: _Touch | None) -> tuple[
         row[0] = nodes[spot.clock, 0]
     if spot.between:
         row[0] = 0.5 * (row[0] + nodes[spot.node + 1, 0])
-    _, speed = orbit.model.cavity_motion(nodes[None, spot.node : spot.node + 1], orbit.params[None])
-    return row, float(speed[0, 0]), orbit.word.letter(spot.node).kind == HIT
+    speed, _ = orbit.model.cavity_speed(nodes[spot.node], orbit.params)
+    return row, speed, orbit.word.letter(spot.node).kind == HIT
 
 
 def rewritten(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:

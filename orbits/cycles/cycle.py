@@ -90,7 +90,10 @@ class Cycle:
         if not len(self.word):
             return np.zeros(0)
         phases = self.nodes[:, 0]
-        return np.diff(np.append(phases, phases[0] + 2.0 * np.pi * self.periods))
+        durations = np.empty(len(phases))
+        np.subtract(phases[1:], phases[:-1], out=durations[:-1])
+        durations[-1] = phases[0] + 2.0 * np.pi * self.periods - phases[-1]
+        return durations
 
     # ------------------------------------------------------------------ other descriptions of it
     def root(self) -> Self:

@@ -205,8 +205,8 @@ class Model(Varying):
         raise TypeError(f"{cls.__name__} has no cavity")
 
     @classmethod
-    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Derivatives of v' at a node with respect to its unknowns, shape (n,)."""
+    def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
+        """v' at a node (n,), and its derivatives with respect to the node's entries, shape (n,)."""
         raise TypeError(f"{cls.__name__} has no cavity")
 
     @classmethod

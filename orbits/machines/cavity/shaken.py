@@ -33,9 +33,12 @@ class Shaken(Model):
         return amplitude * np.sin(phase), amplitude * omega * np.cos(phase)
 
     @classmethod
-    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
-        speed = cls.column(params, "amplitude") * cls.column(params, "frequency")
-        return np.array([-speed * np.sin(node[0]), 0.0])
+    def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
+        speed, phase = (
+            float(cls.column(params, "amplitude") * cls.column(params, "frequency")),
+            float(node[0]),
+        )
+        return speed * math.cos(phase), np.array([-speed * math.sin(phase), 0.0])
 
     def measure_own(
         self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray

@@ -134,8 +134,8 @@ class Coupled(Model):
         return nodes[:, :, 2], nodes[:, :, 3]
 
     @classmethod
-    def cavity_speed_slopes(cls, node: np.ndarray, params: np.ndarray) -> np.ndarray:
-        return np.array([0.0, 0.0, 0.0, 1.0])
+    def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
+        return float(node[3]), np.array([0.0, 0.0, 0.0, 1.0])
 
     def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
         start = super().random_start(params, generator)
