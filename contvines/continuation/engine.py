@@ -64,7 +64,7 @@ class Engine(Rows):
         self.plain = bool((self.scale[:-1] == 1.0).all())  # unknowns have no scales of their own
         shift = problem.period_shift
         # what a period adds to the unknowns, if anything
-        self.shift = None if shift is None or not np.any(shift) else np.asarray(shift, dtype=float)
+        self.shift = None if shift is None or not np.count_nonzero(shift) else np.asarray(shift, dtype=float)
         scales = problem.scales
         self.rate = (
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
