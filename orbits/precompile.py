@@ -17,13 +17,11 @@ import numpy as np
 from numba import config, typeof
 
 from orbits.compiling.waiting import cached, processes
-from orbits.cycles import kernels
+from orbits.cycles import kernels, rounds
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.round_maps import sides_of_cycles, through_flights
-from orbits.cycles.rounds import MOST, Rounds, derived
 from orbits.cycles.sampling import positions
 from orbits.elimination import by_address
-from orbits.elimination.vectorised import condense, expand
 from orbits.machines.catalogue import model_class, usual
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
@@ -73,10 +71,10 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         return None
     processes[name] = process
     node = usual(name)[0].node
-    shared = [through_flights, sides_of_cycles]
-    shared += [periodic_multipliers] if _is_slow(node) else []
-    shared += [condense, expand] if node == 2 else []
-    processes.update({function.__name__: process for function in shared})
+    for function in (through_flights, sides_of_cycles, *([periodic_multipliers] if _is_slow(node) else [])):
+        processes[function.__name__] = process
+    if node == 2:
+        processes[by_address.__name__] = process
     return process
 
 
@@ -116,11 +114,9 @@ def compile_now(name: str, *more: str) -> None:
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
     positions(Cycle(model, problem.word, 1, np.zeros((2, n)), problem.params))
-    derived(np.ones((1, n, n)), np.ones((1, n, n)))
-    Rounds(np.ones((2, n, n)), 0.0, True).hopeless(MOST)
-    compiled.examine.compile(arguments)
+    rounds.prepare()
     if n == 2:
-        by_address.functions()
+        by_address.function()
     compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
     settle_all(
         name,

@@ -84,14 +84,12 @@ def test_the_glossary_has_the_terms_of_the_readme():
 
 
 def test_every_option_of_a_command_in_the_pages_exists():
-    from typer.main import get_command
+    from contvines.command.commands import COMMANDS, command
 
-    from contvines.command.cli import app
-
-    commands = get_command(app).commands  # type: ignore[attr-defined]
     options = {
-        name: {text for entry in command.params for text in (*entry.opts, *entry.secondary_opts)} | {"--help"}
-        for name, command in commands.items()
+        name: {text for entry in command(name).params for text in (*entry.opts, *entry.secondary_opts)}
+        | {"--help"}
+        for name in COMMANDS
     }
     seen = 0
     for page in (DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))):

@@ -1,6 +1,6 @@
 """The command `contvines`: its sub-commands, and how errors reach a user (as sentences).
 
-Each sub-command lives in a file of this folder and is registered below. Importing this module must stay cheap:
+Each sub-command lives in a file of this folder and has a line in `commands.py`. Importing this module must stay cheap:
 numpy, numba, matplotlib, rich and pydantic are imported by the commands that need them.
 """
 
@@ -10,28 +10,8 @@ import sys
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand
 
-from contvines.command import (
-    basins,
-    calibrate,
-    chart,
-    circle,
-    design,
-    editor_schema,
-    export,
-    locus,
-    orbit,
-    plot,
-    prove,
-    report,
-    robustness,
-    run,
-    show,
-    survey,
-    sweep,
-    transient,
-)
+from contvines.command.commands import register
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 
@@ -67,54 +47,7 @@ def _options(
     pass
 
 
-class _Command(TyperCommand):
-    """A command that takes no option's name for the value of the option before it."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        options = {
-            name: param
-            for param in self.get_params(ctx)
-            for name in (*param.opts, *param.secondary_opts)
-            if name.startswith("-")
-        }
-        for k, name in enumerate(args):
-            if name == "--":
-                break
-            option: Any = options.get(name)
-            if option is None or option.is_flag or option.count:
-                continue
-            follows = next((word for word in args[k + 1 : k + 1 + option.nargs] if word in options), None)
-            if follows:
-                raise typer.BadParameter(
-                    f"{name}: its value is missing, {follows} comes at once", ctx=ctx, param=option
-                )
-        return super().parse_args(ctx, args)
-
-
-for _command in (
-    run.diagram,
-    run.trace,
-    run.switch,
-    run.atlas,
-    basins.basins,
-    robustness.robustness,
-    locus.locus,
-    chart.chart,
-    circle.circle,
-    show.show,
-    orbit.orbit,
-    prove.prove,
-    plot.plot,
-    export.export,
-    report.report,
-    sweep.sweep,
-    survey.survey,
-    calibrate.calibrate,
-    transient.transient,
-    design.design,
-    editor_schema.schema,
-):
-    app.command(cls=_Command)(_command)
+register(app)
 
 
 def main(arguments: list[str] | None = None) -> None:

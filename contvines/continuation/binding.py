@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import types
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,7 +18,9 @@ from . import aims, bracketing, corrector, lengths, loop, step_rule
 from .step_rule import BY_ANGLE, StepRule, by_angle
 
 if TYPE_CHECKING:
-    from .kept import Keeper
+    from contvines_ground.kept import Keeper
+
+    from .kept import Kept
 
 
 class Bound(NamedTuple):
@@ -28,7 +31,7 @@ class Bound(NamedTuple):
 
     march: Callable[..., Any]
     points: Callable[..., Any]
-    keeper: Keeper | None = None
+    keeper: Kept | None = None
 
 
 # Kernels and loop allocate nothing, so they do without reference counts: counting the arrays of a workspace in
@@ -83,14 +86,14 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         return Bound(march, copy_with(corrector.points, improve=improve, **sums, **functions))
     from numba import njit
 
-    from contvines_ground.parts import part
+    from contvines_ground.outlined import outlined
 
     from ..problems.kernels import kernels_digest
-    from .kept import Keeper
+    from .kept import Kept
 
-    suffix = f"_{kernels_digest(kernels)}_{_loop_digest()}"
-    inside = part(**OPTIONS)  # of the two functions that are kept on disk
-    sums = {name: inside(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
+    digest = kernels_digest(kernels)
+    suffix = f"_{digest}_{_loop_digest()}"
+    inside, sums, search = _pieces()
     improve = copy_with(corrector.improve, suffix, **sums)
     # A call would hand over three hundred numbers, the arrays of the workspace: as dear as a point of a short word. Inlined before it
     # is compiled, the corrector is optimised once; inlined by force afterwards, twice.
@@ -103,17 +106,25 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     march = njit(cache=not own, **OPTIONS)(
         copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
     )
-    search = _search(inside, suffix)
 
-    def make(unpack: Any, mark: str) -> Any:
-        names = {"unpack": unpack, "improve": inside(improve), **sums, **functions, **search}
-        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix + mark, **names))
+    def whole() -> Any:
+        names = {"unpack": inside(_itself), "improve": inside(improve), **sums, **functions, **search}
+        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix, **names))
 
-    return Bound(march, corrector.points, Keeper(make, OPTIONS, suffix))
+    return Bound(march, corrector.points, Kept(outlined(kernels, digest), _keeper(), whole))
 
 
-def _search(inside: Callable[..., Any], suffix: str) -> dict[str, Any]:
-    """What looks for a zero along a chord, compiled."""
+def _itself(frame):
+    return frame
+
+
+@cache
+def _pieces() -> tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]:
+    """What compiles parts of the two functions that are kept on disk, what runs over the unknowns, and what looks for a zero along a chord."""
+    from contvines_ground.parts import part
+
+    inside, suffix = part(**OPTIONS), f"_{_loop_digest()}"
+    sums = {name: inside(copy_with(getattr(lengths, name), suffix)) for name in SUMS}
     known = {
         name: inside(copy_with(getattr(bracketing, name), suffix))
         for name in ("begin", "best", "_add", "_ahead")
@@ -121,7 +132,28 @@ def _search(inside: Callable[..., Any], suffix: str) -> dict[str, Any]:
     follow = inside(copy_with(bracketing.follow, suffix, _add=known.pop("_add"), _ahead=known.pop("_ahead")))
     sorts = {name: inside(copy_with(getattr(aims, name), suffix)) for name in ("_belongs", "_size")}
     multiplier = inside(copy_with(aims.multiplier, suffix, **sorts))
-    return {**known, "follow": follow, "probe": inside(copy_with(aims.probe, suffix, multiplier=multiplier))}
+    probe = inside(copy_with(aims.probe, suffix, multiplier=multiplier))
+    return inside, sums, {**known, "follow": follow, "probe": probe}
+
+
+@cache
+def _keeper() -> Keeper:
+    """Of the compiled `points` that calls kernels by address: one for all problems."""
+    from numba import njit
+
+    from contvines_ground.by_address import loader, own_digest
+    from contvines_ground.kept import Keeper
+    from contvines_ground.outlined import callers
+
+    inside, sums, search = _pieces()
+    suffix = f"_{_loop_digest()}_{own_digest()}"
+    improve = inside(copy_with(corrector.improve, suffix, **sums))
+
+    def make(kind: Any, mark: str) -> Any:
+        names = {"unpack": loader(kind), "improve": improve, **sums, **callers(), **search}
+        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix + mark, **names))
+
+    return Keeper(make, suffix)
 
 
 def compiled_rule(rule: StepRule) -> Any:
@@ -134,7 +166,6 @@ def compiled_rule(rule: StepRule) -> Any:
 def _loop_digest() -> str:
     """Of the loop's own files: numba looks only at the one that defines a function, not at what it calls, nor at how it is compiled."""
     digest = hashlib.blake2b(Path(__file__).read_bytes(), digest_size=4)
-    digest.update(Path(__file__).with_name("kept.py").read_bytes())
     for module in (aims, bracketing, corrector, lengths, loop, step_rule):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()

@@ -10,16 +10,22 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit, typeof, types  # pyright: ignore[reportPrivateImportUsage]
-from numba.core import cgutils
-from numba.core.registry import cpu_target
-from numba.extending import intrinsic
+from numba import njit, typeof  # pyright: ignore[reportPrivateImportUsage]
 
+from contvines_ground.by_address import (
+    NOTHING,
+    NUMBER,
+    VECTOR,
+    WHOLE,
+    address_of,
+    caller,
+    loader,
+    room_for,
+    save,
+)
 from contvines_ground.parts import part
 
 from ..continuation.binding import OPTIONS, copy_with
-
-WHOLE, NUMBER, VECTOR = types.int64, types.float64, types.Array(types.float64, 1, "C")
 
 kernel: Any = None  # these are put in by `copy_with`
 by_address: Any = None
@@ -30,36 +36,9 @@ work_at: Any = None
 # ------------------------------------------------------------------ tuples that stay where they are
 
 
-def _loader(kind: Any) -> Any:
-    """An intrinsic address -> the tuple of this type that is stored there."""
-
-    @intrinsic
-    def load(typingctx: Any, address: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            pointer = builder.inttoptr(values[0], context.get_value_type(kind).as_pointer())
-            return builder.load(pointer)
-
-        return kind(WHOLE), generate
-
-    return load
-
-
-@intrinsic
-def _store(typingctx: Any, address: Any, content: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        pointer = builder.inttoptr(values[0], context.get_value_type(content).as_pointer())
-        builder.store(values[1], pointer)
-        return context.get_dummy_value()
-
-    return types.none(WHOLE, content), generate
-
-
-_write: Any = _store
-
-
 @njit(**OPTIONS)
 def _put(address, content):
-    _write(address, content)
+    save(address, content)
 
 
 _types: dict[Any, Any] = {}
@@ -96,8 +75,7 @@ def _room_for(content: Any) -> int:
     """Bytes that a tuple takes."""
     key = sort_of(content)
     if key not in _rooms:
-        context: Any = cpu_target.target_context
-        _rooms[key] = context.get_abi_sizeof(context.get_value_type(type_of(content)))
+        _rooms[key] = room_for(type_of(content))
     return _rooms[key]
 
 
@@ -118,27 +96,6 @@ class Stored:
 
 
 # ------------------------------------------------------------------ the callers
-
-
-def _calls(result: Any) -> Any:
-    """An intrinsic (address, *arguments) -> result that calls compiled code by numba's own convention."""
-
-    @intrinsic
-    def call(typingctx: Any, address: Any, *arguments: Any) -> Any:
-        given = arguments[0].types if len(arguments) == 1 and hasattr(arguments[0], "types") else arguments
-
-        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            parts = [builder.extract_value(values[1], i) for i in range(len(given))]
-            kind = context.call_conv.get_function_type(result, given)
-            pointer = builder.inttoptr(values[0], kind.as_pointer())
-            status, found = context.call_conv.call_function(builder, pointer, result, given, parts)
-            with cgutils.if_unlikely(builder, status.is_error):
-                context.call_conv.return_status_propagate(builder, status)
-            return found
-
-        return result(types.int64, types.StarArgTuple(given)), generate
-
-    return call
 
 
 def linearise(calls, data, u, p, work):
@@ -174,7 +131,7 @@ def transpose(calls, data, work, column, other):
 @cache
 def callers() -> dict[str, Any]:
     """The six kernels by name; the first argument is the array of addresses that `addresses` returns."""
-    number, nothing = _calls(NUMBER), _calls(types.none)
+    number, nothing = caller(NUMBER), caller(NOTHING)
     compile_ = part(**OPTIONS)
     kinds = {linearise: number, bordered: number, inspect: nothing, assign: nothing}
     kinds |= {flip: nothing, transpose: nothing}
@@ -228,16 +185,10 @@ def addresses(kernels: dict[str, Any], data: Any, work: Any, digest: str) -> np.
         _flip: (WHOLE, WHOLE, NUMBER),
         _transpose: (WHOLE, WHOLE, VECTOR, WHOLE),
     }
-    loaders = {"data_at": _loader(type_of(data)), "work_at": _loader(type_of(work))}
+    loaders = {"data_at": loader(type_of(data)), "work_at": loader(type_of(work))}
     found = []
     for function, arguments in signatures.items():
         outlined = copy_with(function, f"_{digest}", kernel=kernels[function.__name__[1:]], **loaders)
         compiled = njit(cache=True, **OPTIONS)(outlined)
-        compiled.compile(arguments)
-        overload = compiled.overloads[arguments]
-        found.append(overload.library.get_pointer_to_function(overload.fndesc.llvm_func_name))
-        _kept.append(compiled)
+        found.append(address_of(compiled, *arguments))
     return np.array(found, np.int64)
-
-
-_kept: list[Any] = []  # compiled code lives as long as this

@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from contvines_ground.by_address import own_digest
+
 from ..continuation.binding import OPTIONS, copy_with
 from ..problems.kernels import Kernels, kernels_digest
 from ..problems.protocol import Problem
@@ -59,7 +61,7 @@ def locus_kernels(problem: Problem) -> tuple[Kernels, np.ndarray]:
     key = (*key, sort_of(data), sort_of(work))
     if key not in _addresses:
         types = hashlib.blake2b(repr((type_of(data), type_of(work))).encode(), digest_size=4).hexdigest()
-        _addresses[key] = addresses(given, data, work, f"{kernels_digest(kernels)}_{types}")
+        _addresses[key] = addresses(given, data, work, f"{kernels_digest(kernels)}_{types}_{own_digest()}")
     return _compiled_once(), _addresses[key]
 
 
@@ -75,6 +77,7 @@ def _compiled_once() -> Kernels:
         for name in ("kernels", "probing", "spanning", "layout", "addresses")
     ]
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=6).hexdigest()
+    digest += own_digest()
     return _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")
 
 

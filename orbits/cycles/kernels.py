@@ -1,7 +1,7 @@
 """The compiled functions of each model, put together once: maps, elimination, multipliers, margins.
 
 `assemble(model)` returns the kernels that a continuation loop calls (`linearise`, `bordered`, `inspect`) and the two
-entry points that this package calls itself (`newton`, `examine`). numba keeps `inspect` and the entry points on disk.
+entry points that this package calls itself (`newton`, `examine`), which call them by address: these are compiled once for all models.
 """
 
 from __future__ import annotations
@@ -12,12 +12,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numba import types
 
+from contvines_ground.by_address import NUMBER, VECTOR, WHOLE, own_digest
+from contvines_ground.outlined import callers, outlined
 from orbits.compiling import arguments, trigonometry
 from orbits.compiling import decorators as compiling
 from orbits.compiling.decorators import specialise
+from orbits.compiling.interrupts import kept_back
 from orbits.compiling.waiting import wait_for
-from orbits.elimination import block_cyclic, by_address, rearranged, two_unknowns, vectorised
+from orbits.elimination import block_cyclic, by_address, closure, rearranged, two_unknowns, vectorised
 from orbits.machines import path
 from orbits.machines.base import Model
 from orbits.multipliers import (
@@ -75,16 +79,12 @@ def _inspect(data, u, p, work, row):
     margins(data, u, p, work, row[2 * count :])
 
 
-def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
-    """Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not help.
-
-    Returns (residual, iterations, p); `u` is changed in place.
-    """
+def _newton(kernels, at, u, p, trial, border, step, tangent, tolerance, limit):
+    """See `Kernels.newton`; `kernels` are addresses, `at` is that of data and workspace."""
     size = u.size
-    residual = linearise(data, u, p, work)
-    trial = work.trial
+    residual = linearise(kernels, u, p, at)
     for iteration in range(limit):
-        sign = bordered(data, work, border, 0.0, step, tangent)
+        sign = bordered(kernels, at, border, 0.0, step, tangent)
         if sign == 0.0 or not np.isfinite(step[0]):
             return np.inf, iteration, p
         length = 0.0
@@ -95,7 +95,7 @@ def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
         while share > 0.01:
             for j in range(size):
                 trial[j] = u[j] + share * step[j]
-            best = linearise(data, trial, p + share * step[size], work)
+            best = linearise(kernels, trial, p + share * step[size], at)
             if best < residual or length < 1e-7:
                 break
             share *= 0.5
@@ -108,11 +108,27 @@ def _newton(data, u, p, work, border, step, tangent, tolerance, limit):
     return np.inf, limit, p
 
 
-def _examine(data, u, p, work, row):
-    """Residual, and the row of `inspect`, of one solution."""
-    residual = linearise(data, u, p, work)
-    inspect(data, u, p, work, row)
+def _examine(kernels, at, u, p, row):
+    """See `Kernels.examine`."""
+    residual = linearise(kernels, u, p, at)
+    inspect(kernels, u, p, at, row)
     return residual
+
+
+@cache
+def _solvers() -> tuple[Any, Any]:
+    """`_newton` and `_examine`, compiled for kernels at any address."""
+    own = Path(__file__).read_bytes() + own_digest().encode()
+    stamp = hashlib.blake2b(own, digest_size=6).hexdigest()
+    addresses = types.UniTuple(WHOLE, 3)
+    known: dict[str, Any] = callers()
+    newton: Any = specialise(_newton, stamp, **known)
+    newton.compile((addresses, WHOLE, VECTOR, NUMBER, VECTOR, VECTOR, VECTOR, VECTOR, NUMBER, WHOLE))
+    examine: Any = specialise(_examine, stamp, **known)
+    examine.compile((addresses, WHOLE, VECTOR, NUMBER, VECTOR))
+    for solver in (newton, examine):
+        solver.disable_compile()  # for other types: they would be taken for these at the address
+    return newton, examine
 
 
 class Kernels:
@@ -123,8 +139,6 @@ class Kernels:
     linearise, bordered, inspect : compiled functions
         What a continuation loop calls: `linearise(data, u, p, work)`, `bordered(data, work, border, target, step,
         tangent)`, `inspect(data, u, p, work, row)`.
-    newton, examine : compiled functions
-        `newton(data, u, p, work, border, step, tangent, tolerance, limit)`, `examine(data, u, p, work, row)`.
     assign, flip, transpose : compiled functions
         What loci against a second parameter need: `assign(data, other, value)` of `orbits.machines.path`, `flip(data, work,
         sign)` and `transpose(data, work, column, other)` of `orbits.elimination.rearranged`.
@@ -148,8 +162,7 @@ class Kernels:
         self.name, self.digest = name, digest
         self.linearise, self.bordered, self._inspect = linearise, bordered, inspect
         self.assign, self._flip, self.transpose = path.assign, flip, transpose
-        self.newton = specialise(_newton, digest, linearise=linearise, bordered=bordered)
-        self._examine = specialise(_examine, digest, linearise=linearise, inspect=inspect)
+        self._outlined = outlined(self, digest)
 
     @property
     def inspect(self) -> Any:
@@ -159,17 +172,58 @@ class Kernels:
         return self._inspect
 
     @property
-    def examine(self) -> Any:
-        """Residual, and the row of `inspect`, of one solution."""
-        if not self._examine.overloads:
-            wait_for(self.name, self._examine)
-        return self._examine
-
-    @property
     def flip(self) -> Any:
         """The Jacobian of the motion that comes back with another sign."""
         wait_for(self.name, self._flip)
         return self._flip
+
+    def newton(
+        self,
+        data: Any,
+        u: np.ndarray,
+        p: float,
+        work: Any,
+        border: np.ndarray,
+        step: np.ndarray,
+        tangent: np.ndarray,
+        tolerance: float,
+        limit: int,
+    ) -> tuple[float, int, float]:
+        """Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not help.
+
+        Parameters
+        ----------
+        data : CycleData
+        u : ndarray, shape (N,)
+            Unknowns, changed in place.
+        p : float
+        work : Workspace
+        border, step, tangent : ndarray, shape (N + 1,)
+            The last two are filled.
+        tolerance : float
+            Of the last correction.
+        limit : int
+            Of iterations.
+
+        Returns
+        -------
+        residual : float
+            Infinite where it does not converge.
+        iterations : int
+        p : float
+        """
+        kept = self._outlined.keep(data, work)
+        assert kept is not None
+        kernels = kept.kernels
+        addresses = kernels.linearise, kernels.bordered, 0
+        return _solvers()[0](addresses, kept.at, u, p, work.trial, border, step, tangent, tolerance, limit)
+
+    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
+        """Residual, and the row of `inspect`, of one solution."""
+        kept = self._outlined.keep(data, work)
+        assert kept is not None
+        with kept_back():  # few words need what calls Python
+            return _solvers()[1](kept.kernels.all, kept.at, u, p, row)
 
 
 @cache
@@ -181,6 +235,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
         arguments.__file__,
         two_unknowns.__file__,
         block_cyclic.__file__,
+        closure.__file__,
         by_address.__file__,
         vectorised.__file__,
         path.__file__,

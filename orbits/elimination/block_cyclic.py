@@ -20,10 +20,9 @@ from orbits.compiling.arguments import Workspace
 from orbits.compiling.decorators import OPTIONS, kernel
 from orbits.elimination import two_unknowns
 from orbits.elimination.by_address import call, links
+from orbits.elimination.closure import TINY, closing
 from orbits.elimination.vectorised import SHORTEST, lanes_size, short_cycle
 from orbits.multipliers.periodic_schur import scratch_size
-
-TINY = 1e-300
 
 
 def workspace(length: int, node: int, parameters: int) -> Workspace:
@@ -38,7 +37,8 @@ def workspace(length: int, node: int, parameters: int) -> Workspace:
     )
     solution, lanes, short = np.zeros((2, length * n + 1)), np.zeros(lanes_size(long)), short_cycle(long)
     short_F, short_A, short_D, short_Q, short_solution = short
-    listed = (F, A, D, Q, lanes, *short, solution)
+    stored, small, order = np.zeros((length, n, 3 * n + 2)), np.zeros((n, n + 2)), np.zeros(n + 1, np.int64)
+    listed = (F, A, D, Q, lanes, *short, solution, stored, small, order)
     return Workspace(
         F,
         A,
@@ -46,15 +46,15 @@ def workspace(length: int, node: int, parameters: int) -> Workspace:
         Q,
         numbers=np.zeros(2 * parameters),
         trig=np.zeros((length + 1, 8)),
-        stored=np.zeros((length, n, 3 * n + 2)),
+        stored=stored,
         panel=np.zeros((2 * n, 3 * n + 2)),
-        small=np.zeros((n, n + 2)),
+        small=small,
         solution=solution,
         pin=np.zeros(4 * n + 2),
         scratch=np.zeros(scratch_size(length, n)),
         re=np.zeros(n),
         im=np.zeros(n),
-        order=np.zeros(n + 1, np.int64),
+        order=order,
         trial=np.zeros(length * n),
         lanes=lanes,
         short_F=short_F,
@@ -80,6 +80,7 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         ``bordered(data, work, border, target, step, tangent)``.
     """
     n = node
+    close = closing(n)
     width = 3 * n + 2  # columns x_i | x_0 | x_{i+1} | p | right-hand side
     at_first, at_next, at_p, at_rhs = n, 2 * n, 3 * n, 3 * n + 1
 
@@ -110,51 +111,6 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
                 sign = -sign
             if panel[j, j] < 0.0:
                 sign = -sign
-        return sign
-
-    @kernel
-    def close(small, solution, order):
-        """Solve n equations in x_0 and p by complete pivoting: a particular and a null solution, and a sign."""
-        sign = 1.0
-        for j in range(n + 1):
-            order[j] = j
-        for j in range(n):
-            best, row, column = -1.0, j, j
-            for i in range(j, n):
-                for c in range(j, n + 1):
-                    if abs(small[i, c]) > best:
-                        best, row, column = abs(small[i, c]), i, c
-            if row != j:
-                sign = -sign
-                for c in range(n + 2):
-                    small[j, c], small[row, c] = small[row, c], small[j, c]
-            if column != j:
-                sign = -sign
-                order[j], order[column] = order[column], order[j]
-                for i in range(n):
-                    small[i, j], small[i, column] = small[i, column], small[i, j]
-            if abs(small[j, j]) < TINY:
-                small[j, j] = TINY
-            if small[j, j] < 0.0:
-                sign = -sign
-            for i in range(j + 1, n):
-                ratio = small[i, j] / small[j, j]
-                for c in range(j + 1, n + 2):
-                    small[i, c] -= ratio * small[j, c]
-        size = solution.shape[1] - 1
-        free = order[n]
-        place = free if free < n else size
-        solution[0, place] = 0.0
-        solution[1, place] = 1.0
-        for j in range(n - 1, -1, -1):
-            particular, null = small[j, n + 1], -small[j, n]
-            for c in range(j + 1, n):
-                where = order[c] if order[c] < n else size
-                particular -= small[j, c] * solution[0, where]
-                null -= small[j, c] * solution[1, where]
-            where = order[j] if order[j] < n else size
-            solution[0, where] = particular / small[j, j]
-            solution[1, where] = null / small[j, j]
         return sign
 
     @kernel
@@ -229,28 +185,12 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         return sign
 
     @kernel
-    def eliminate_two(F, A, D, Q, twist, stored, small, order, solution):
-        """The same for two unknowns per node, two halves side by side."""
-        state, sign = two_unknowns.forward(F, A, D, Q, stored)
-        v00, v01, u00, u01, w0, r0, v10, v11, u10, u11, w1, r1 = state
-        small[0, 0], small[0, 1], small[0, 2], small[0, 3] = u00 + v00, u01 + twist * v01, w0, r0
-        small[1, 0], small[1, 1], small[1, 2], small[1, 3] = u10 + v10, u11 + twist * v11, w1, r1
-        sign *= close(small, solution, order)
-        two_unknowns.backward(F.shape[0], stored, twist, solution)
-        return sign
-
-    @kernel
-    def eliminate_lanes(F, A, D, Q, twist, stored, small, order, solution, short, found, listed):
-        """The same with eight segments side by side, where the cycle is long enough."""
+    def eliminate_by_two(F, A, D, Q, twist, stored, small, order, solution, listed):
+        """The same for two unknowns per node, two halves side by side; eight segments where the cycle is long enough."""
         length = F.shape[0]
         if length < SHORTEST:
-            return eliminate_two(F, A, D, Q, twist, stored, small, order, solution)
-        address = listed.ctypes.data
-        sign = call(listed[0], length, twist, address)
-        F_, A_, D_, Q_ = short
-        sign *= eliminate_two(F_, A_, D_, Q_, twist, stored, small, order, found)
-        call(listed[1], length, twist, address)
-        return sign
+            return two_unknowns.eliminate(F, A, D, Q, twist, stored, small, order, solution)
+        return call(listed[0], length, twist, listed.ctypes.data)
 
     @part(forceinline=True, **OPTIONS)
     def products(border, solution):
@@ -281,19 +221,8 @@ def cyclic_kernels(node: int) -> SimpleNamespace:
         F, A, D, Q, solution = work.F, work.A, work.D, work.Q, work.solution
         size = solution.shape[1] - 1
         if n == 2:
-            sign = eliminate_lanes(
-                F,
-                A,
-                D,
-                Q,
-                data.twist,
-                work.stored,
-                work.small,
-                work.order,
-                solution,
-                (work.short_F, work.short_A, work.short_D, work.short_Q),
-                work.short_solution,
-                work.links,
+            sign = eliminate_by_two(
+                F, A, D, Q, data.twist, work.stored, work.small, work.order, solution, work.links
             )
         else:
             sign = eliminate(

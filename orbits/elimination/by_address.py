@@ -16,10 +16,11 @@ from numba.extending import intrinsic
 
 from orbits.compiling.decorators import digest_of
 from orbits.compiling.waiting import Kept, wait_for
-from orbits.elimination import two_unknowns, vectorised
+from orbits.elimination import closure, two_unknowns, vectorised
+from orbits.elimination.two_unknowns import eliminate
 from orbits.elimination.vectorised import ENDS, KEEP, LANES, PACK, SHORTEST, STATE, condense, expand
 
-FUNCTIONS, ARRAYS = 2, 11
+FUNCTIONS, ARRAYS = 1, 14
 
 
 @intrinsic
@@ -48,53 +49,43 @@ def _call_address(typingctx: Any, address: Any, length: Any, twist: Any, links: 
 call: Any = _call_address
 
 
-def _condense(length, twist, links):
+def _eliminate(length, twist, links):
     at = carray(_pointer(links), FUNCTIONS + ARRAYS, np.int64)
     nodes = LANES + length % LANES
-    F = carray(_pointer(at[2]), (length, 2), np.float64)
-    A = carray(_pointer(at[3]), (length, 2, 2), np.float64)
-    D = carray(_pointer(at[4]), (length, 2, 2), np.float64)
-    Q = carray(_pointer(at[5]), (length, 2), np.float64)
-    scratch = carray(_pointer(at[6]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
-    short_F = carray(_pointer(at[7]), (nodes, 2), np.float64)
-    short_A = carray(_pointer(at[8]), (nodes, 2, 2), np.float64)
-    short_D = carray(_pointer(at[9]), (nodes, 2, 2), np.float64)
-    short_Q = carray(_pointer(at[10]), (nodes, 2), np.float64)
-    return condense(F, A, D, Q, scratch, (short_F, short_A, short_D, short_Q))
-
-
-def _expand(length, twist, links):
-    at = carray(_pointer(links), FUNCTIONS + ARRAYS, np.int64)
-    nodes = LANES + length % LANES
-    scratch = carray(_pointer(at[6]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
-    found = carray(_pointer(at[11]), (2, 2 * nodes + 1), np.float64)
-    solution = carray(_pointer(at[12]), (2, 2 * length + 1), np.float64)
+    F = carray(_pointer(at[1]), (length, 2), np.float64)
+    A = carray(_pointer(at[2]), (length, 2, 2), np.float64)
+    D = carray(_pointer(at[3]), (length, 2, 2), np.float64)
+    Q = carray(_pointer(at[4]), (length, 2), np.float64)
+    scratch = carray(_pointer(at[5]), length // LANES * (PACK + KEEP) + STATE + ENDS, np.float64)
+    short_F = carray(_pointer(at[6]), (nodes, 2), np.float64)
+    short_A = carray(_pointer(at[7]), (nodes, 2, 2), np.float64)
+    short_D = carray(_pointer(at[8]), (nodes, 2, 2), np.float64)
+    short_Q = carray(_pointer(at[9]), (nodes, 2), np.float64)
+    found = carray(_pointer(at[10]), (2, 2 * nodes + 1), np.float64)
+    solution = carray(_pointer(at[11]), (2, 2 * length + 1), np.float64)
+    stored = carray(_pointer(at[12]), (nodes, 2, 8), np.float64)
+    small = carray(_pointer(at[13]), (2, 4), np.float64)
+    order = carray(_pointer(at[14]), 3, np.int64)
+    sign = condense(F, A, D, Q, scratch, (short_F, short_A, short_D, short_Q))
+    sign *= eliminate(short_F, short_A, short_D, short_Q, twist, stored, small, order, found)
     expand(length, scratch, found, twist, solution)
-    return 0.0
+    return sign
 
 
 @cache
-def functions() -> tuple[Any, Any]:
+def function() -> Any:
+    """The function that is called; a process that compiles beside this one is waited for."""
     # numba looks at this file only, not at those whose functions are called
-    digest = digest_of(two_unknowns, vectorised)
-    compile_ = cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)
-    for function, inner in ((_condense, condense), (_expand, expand)):
-        function.__qualname__ = f"{function.__name__.strip('_')}_{digest}"
-        wait_for(inner.__name__, Kept(function))
-    return compile_(_condense), compile_(_expand)
-
-
-@cache
-def addresses() -> list[int]:
-    """Addresses of the two functions."""
-    return [function.address for function in functions()]
+    _eliminate.__qualname__ = f"eliminate_{digest_of(closure, two_unknowns, vectorised)}"
+    wait_for(__name__, Kept(_eliminate))
+    return cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)(_eliminate)
 
 
 def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Addresses of the two functions and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution.
+    """Addresses of the function and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution, stored, small, order.
 
     Zeros where the cycle is too short to need them.
     """
     if len(arrays[0]) < SHORTEST:
         return np.zeros(FUNCTIONS + ARRAYS, np.int64)
-    return np.array(addresses() + [array.ctypes.data for array in arrays], np.int64)
+    return np.array([function().address] + [array.ctypes.data for array in arrays], np.int64)

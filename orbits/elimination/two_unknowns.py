@@ -13,7 +13,9 @@ from typing import Any
 
 from contvines_ground.parts import part
 from orbits.compiling.decorators import OPTIONS, kernel
+from orbits.elimination.closure import closing
 
+close = closing(2)
 NEVER_ZERO = 1e-290
 FAST: dict[str, Any] = {**OPTIONS, "forceinline": True, "fastmath": {"contract", "nsz", "arcp"}}
 
@@ -221,3 +223,15 @@ def backward(length, stored, twist, solution):
         z0, z1 = _back_null(top, bottom, null, n0, n1, z0, z1)
         x[2 * j], x[2 * j + 1] = e0, e1
         y[2 * j], y[2 * j + 1] = z0, z1
+
+
+@kernel
+def eliminate(F, A, D, Q, twist, stored, small, order, solution):
+    """Particular and null solution of J x + F_p p = -F, two halves side by side; returns a sign."""
+    state, sign = forward(F, A, D, Q, stored)
+    v00, v01, u00, u01, w0, r0, v10, v11, u10, u11, w1, r1 = state
+    small[0, 0], small[0, 1], small[0, 2], small[0, 3] = u00 + v00, u01 + twist * v01, w0, r0
+    small[1, 0], small[1, 1], small[1, 2], small[1, 3] = u10 + v10, u11 + twist * v11, w1, r1
+    sign *= close(small, solution, order)
+    backward(F.shape[0], stored, twist, solution)
+    return sign

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from contvines.command import commands
 from contvines.command.cli import main
 from contvines.store import Store, save
 from tests.contvines import fakes
@@ -20,6 +21,12 @@ def test_help_lists_every_command(run):
     for name in ("diagram", "trace", "switch", "show", "orbit", "plot", "export", "sweep"):
         assert name in out
         assert run(name, "--help")[0] == 0
+
+
+def test_the_list_says_of_every_command_what_it_says_of_itself():
+    for name, (_, sentence) in commands.COMMANDS.items():
+        written = (commands.command(name).help or "").split("\n\n")[0]
+        assert sentence == " ".join(written.split()), name
 
 
 def test_help_and_version_import_nothing_heavy():

@@ -1,4 +1,4 @@
-"""Numbers that pass zero, the places where they do, and arguments that compiled code keeps."""
+"""Numbers that pass zero, and the places where they do."""
 
 import math
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numba import njit
 
 import contvines as cv
 from contvines.continuation.aims import (
@@ -21,9 +20,7 @@ from contvines.continuation.aims import (
     multiplier,
     probe,
 )
-from contvines.continuation.binding import OPTIONS
 from contvines.continuation.engine import Engine
-from contvines.continuation.kept import Keeper
 from contvines.continuation.settings import Settings
 from contvines.events.locate import locate
 from contvines.events.segment import Segment
@@ -91,28 +88,3 @@ def test_points_of_a_segment_are_solved_together_as_one_by_one():
         assert point is not None and alone is not None
         assert point.p == alone.p and np.array_equal(point.u, alone.u)
         assert point.u[0] ** 2 + point.p**2 == pytest.approx(1.0, abs=1e-14)
-
-
-def test_tuples_are_kept_by_their_types():
-    """A tuple of other types is not read as one of those that came before."""
-    made, marks = [], set()
-
-    def make(unpack, mark):
-        marks.add(mark)
-
-        def total(address):
-            array, number = unpack(address)
-            for value in array.flat:
-                number += value
-            return number
-
-        made.append(total)
-        return njit(**OPTIONS)(total)
-
-    keeper = Keeper(make, OPTIONS, "of_this_test")
-    for array in (np.arange(3.0), np.arange(4.0), np.arange(6.0).reshape(2, 3), np.arange(5)):
-        frame = (array, 0.5)
-        function, address, memory = keeper.keep(frame)
-        assert memory is not None and function(address) == array.sum() + 0.5
-    # what is on disk under a name without its mark would read another's memory
-    assert len(made) == len(marks) == 3

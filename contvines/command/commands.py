@@ -1,0 +1,108 @@
+"""The sub-commands: where each lives, and what the list of them says. A sub-command is imported when it is called."""
+
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperCommand
+from typer.main import get_command
+
+COMMANDS = {
+    "diagram": ("run", "Automatic bifurcation diagram of a study; goes on with an unfinished file."),
+    "trace": ("run", "Follow the study's one branch, without switching."),
+    "switch": ("run", "Follow the branch that leaves a special point, and add it to the file."),
+    "atlas": ("run", "Everything that coexists: many simulated starts, and branches through all they reach."),
+    "basins": (
+        "basins",
+        "Basins of attraction in a plane of starts, their shares and their boundary's exponent.",
+    ),
+    "robustness": (
+        "robustness",
+        "The smallest kick that makes a stable motion go elsewhere, and the share of starts that reach it.",
+    ),
+    "locus": ("locus", "Follow one special point of a result in a second parameter."),
+    "chart": (
+        "chart",
+        "Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted.",
+    ),
+    "circle": (
+        "circle",
+        "Follow the modulated motions that are born at a Neimark-Sacker point until they break.",
+    ),
+    "show": ("show", "List branches, special points and switches."),
+    "orbit": ("orbit", "One orbit: its events, multipliers and margins."),
+    "prove": ("prove", "Prove that orbits exist, are real or virtual, stable or unstable."),
+    "plot": ("plot", "Draw a result: the diagram, the multipliers of a branch, or the graph itself."),
+    "export": ("export", "Write a result for other programs: csv, json, graphml or mat."),
+    "report": ("report", "Write a result as one HTML page that needs no network."),
+    "sweep": (
+        "sweep",
+        "Simulate over the parameter, carrying the state on; goes on with an unfinished sweep.",
+    ),
+    "survey": ("survey", "Survey many machines; goes on with an unfinished survey."),
+    "calibrate": (
+        "calibrate",
+        "Estimate restitution, friction and the like from a measurement, with confidence intervals.",
+    ),
+    "transient": (
+        "transient",
+        "A shock, a recorded base motion or a free decay, compared with the bare oscillator.",
+    ),
+    "design": (
+        "design",
+        "Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and sliding limits.",
+    ),
+    "schema": (
+        "editor_schema",
+        "Print the JSON Schema of studies, for editors that complete and check TOML.",
+    ),
+}
+"""Name of the sub-command, and of its function: the file of this folder, and the first sentence of what it says of itself."""
+
+
+class Command(TyperCommand):
+    """A command that takes no option's name for the value of the option before it."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        options = {
+            name: param
+            for param in self.get_params(ctx)
+            for name in (*param.opts, *param.secondary_opts)
+            if name.startswith("-")
+        }
+        for k, name in enumerate(args):
+            if name == "--":
+                break
+            option: Any = options.get(name)
+            if option is None or option.is_flag or option.count:
+                continue
+            follows = next((word for word in args[k + 1 : k + 1 + option.nargs] if word in options), None)
+            if follows:
+                raise typer.BadParameter(
+                    f"{name}: its value is missing, {follows} comes at once", ctx=ctx, param=option
+                )
+        return super().parse_args(ctx, args)
+
+
+def command(name: str) -> Any:
+    """The sub-command of a name, with all its options."""
+    own = typer.Typer(add_completion=False)
+    own.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
+    return get_command(own)
+
+
+class Listed(TyperCommand):
+    """A sub-command of which nothing is known but its name and its sentence until it is called."""
+
+    def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
+        return command(str(self.name)).make_context(info_name, args, parent=parent, **extra)
+
+
+def register(app: typer.Typer) -> None:
+    """Add all sub-commands to the app, in the order in which they are listed."""
+    for name, (_, sentence) in COMMANDS.items():
+        app.command(name, cls=Listed, help=sentence)(_unknown)
+
+
+def _unknown() -> None:
+    """What stands for a function that has not been imported."""
