@@ -24,6 +24,7 @@ SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1
 CLOSE = 1e-6  # distance of a point just before a border (in the metric)
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
+BEYOND = 4.0  # times what has grown at the nearest of them: what is computed at the border is not the end of that growth
 BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
 INVERSE = 1e-2  # relative difference of the products of a margin and what grows as its inverse ...
 SPREAD = 4.0  # ... at places where it differs by such a factor at least
@@ -92,11 +93,8 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
 
     None if none converges, or if they agree with the polynomial computed at the border (of the row `own`).
     """
-    spacings, rows = _rows(segment, position, (*DISTANCES, *NEAREST))
     computed = _characteristic(segment.engine.spectrum(own)).tolist()
-    polynomials = _characteristic(segment.engine.spectrum(rows))
-    split = int(np.count_nonzero(spacings >= DISTANCES[-1]))
-    limits = _extrapolated(spacings[:split], polynomials[:split]).tolist()
+    limits = _extrapolated(segment, position).tolist()
     if not limits:
         return None
     best: list[list[float]] | None = None
@@ -113,20 +111,24 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
         if best is not None and len(best) == 1 and error < SURELY:
             break
     if best is None:
-        return _by_margin(segment.engine, own, rows, split)
+        return _by_margin(segment, position, own)
     if len(best) == 1:
         return None if _apart(best[0], computed) < AGREEING + 10.0 * error else best
-    return None if _bounded(segment.engine, rows[split:], polynomials[split:], computed) else best
+    grown = max(map(abs, best[-1])) / NEAREST[-1] ** (len(best) - 1)
+    if max(map(abs, computed)) > BEYOND * grown:
+        return best
+    return None if _bounded(segment, position, computed) else best
 
 
-def _by_margin(engine: Engine, own: np.ndarray, rows: np.ndarray, split: int) -> list[list[float]] | None:
+def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
     """The polynomial, and its limit times the margin that vanishes, if that is the same wherever rounding has put the margin."""
-    before, beside = rows[:split], rows[split:]
+    engine = segment.engine
+    (_, beside), (_, before) = (_rows(segment, position, spacings) for spacings in (NEAREST, DISTANCES))
     if not (len(beside) and len(before) and engine.problem.n_margins):
         return None
-    near = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
+    rows = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
     index = int(np.abs(engine.margins(own)).argmin())
-    margins, polynomials = engine.margins(near)[:, index], _characteristic(engine.spectrum(near))
+    margins, polynomials = engine.margins(rows)[:, index], _characteristic(engine.spectrum(rows))
     products = margins[:, None] * polynomials
     grown = products[:, 1]
     if not np.isfinite(products).all() or np.abs(polynomials[0]).argmax() != 1:
@@ -138,21 +140,25 @@ def _by_margin(engine: Engine, own: np.ndarray, rows: np.ndarray, split: int) ->
     return [polynomials[0].tolist(), (side * np.median(products, axis=0)).tolist()]
 
 
-def _extrapolated(spacings: np.ndarray, polynomials: np.ndarray) -> np.ndarray:
+def _extrapolated(segment: Segment, position: float) -> np.ndarray:
     """The polynomials times each power of the distance, extrapolated to the border from each spacing that tells, (k, powers, m + 1)."""
+    spacings, rows = _rows(segment, position, DISTANCES)
+    polynomials = _characteristic(segment.engine.spectrum(rows))
     sure = np.isfinite(polynomials).all(axis=(1, 2))
     powers = spacings[sure, None] ** np.arange(POLES + 1)
     return powers[:, :, None] * (EXTRAPOLATION @ polynomials[sure])
 
 
-def _bounded(engine: Engine, rows: np.ndarray, polynomials: np.ndarray, computed: list[float]) -> bool:
+def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
     """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
 
     As where another impact, before the one that is about to graze, is almost as slow. Nearer than rounding lets the vanishing margin
     come to zero nothing grows any more, and nothing can be told.
     """
     largest = max(map(abs, computed))
-    for margins, values in zip(engine.smallest_margin(rows), polynomials):
+    _, rows = _rows(segment, position, NEAREST)
+    polynomials = _characteristic(segment.engine.spectrum(rows))
+    for margins, values in zip(segment.engine.smallest_margin(rows), polynomials):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
         if not np.isfinite(values).all():

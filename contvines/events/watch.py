@@ -67,7 +67,7 @@ class Watch(Examiner):
             wide.points, wide.values, wide.tangents, wide.rows, without_zeros(wide.signs), real
         )
         own = len(wide) - len(chunk)
-        return Scan(scan.flags[own:], scan.smallest[own:])
+        return Scan(scan.flags[own:], scan.smallest[own:]) if own else scan
 
     def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
         """All special points on a chunk, in order; what lies behind a border, a meeting, a leap or a landing is left out.
