@@ -78,10 +78,10 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
 
 def positions(orbit: Cycle, instants: int = PER_PERIOD) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
-    count = instants * orbit.periods
-    if not len(orbit.word):
+    count, length = instants * orbit.periods, len(orbit.nodes)
+    if not length:
         return np.zeros(count)
-    engine, length = stepper(orbit.model.name), len(orbit.word)
+    engine = stepper(orbit.model.name)
     left, right = engine.walls(orbit.params)
     starts, states = np.zeros((length, engine.state)), np.empty((count, engine.state))
     ahead, out = np.zeros(max(count, length)), np.empty((max(count, length), 4))

@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import numpy as np
 
-from orbits.compiling.interrupts import kept_back
 from orbits.cycles import measures as measuring
 from orbits.cycles.claim import Claim
 from orbits.cycles.cycle import Cycle
@@ -108,6 +107,5 @@ def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.nda
     count = 2 * system.n_multipliers
     row = np.empty(count + system.n_margins)
     value = system.value(system.params)
-    with kept_back():
-        residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
+    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
     return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]
