@@ -199,8 +199,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
 
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
     """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
-    whole = half.joined()
-    length, unit = np.ptp(whole.values), run.unit(half.end)
+    whole, unit = half.joined(), run.unit(half.end)
+    length = whole.values.max() - whole.values.min()
     if len(half) > 2 and whole.smallest[1:-1].max() < BEYOND:
         return True
     if length > BRIEF * unit:
