@@ -42,7 +42,7 @@ def gap(border: Solution, near: Solution) -> float:
         return distance(border, near)
     free = border.word.impact_free or near.word.impact_free
     unit = border.model.natural_units(border.params)[0]
-    return float(_largest(border.track(INSTANTS) - near.track(INSTANTS), free)) / unit
+    return float(_largest(border.positions(INSTANTS) - near.positions(INSTANTS), free)) / unit
 
 
 def distance(one: Solution, other: Solution, mirror: bool = False, instants: int = PER_PERIOD) -> float:
@@ -53,12 +53,12 @@ def distance(one: Solution, other: Solution, mirror: bool = False, instants: int
     free = one.word.impact_free or other.word.impact_free
     unit = one.model.natural_units(one.params)[0]
     if one.periods == other.periods == 1 and not mirror:
-        return float(_largest(one.track(instants) - other.track(instants), free)) / unit
+        return float(_largest(one.positions(instants) - other.positions(instants), free)) / unit
     periods = math.lcm(one.periods, other.periods)
     here, there = (
-        orbit.track(instants)
+        orbit.positions(instants)
         if orbit.periods == periods
-        else np.tile(orbit.track(instants), periods // orbit.periods)
+        else np.tile(orbit.positions(instants), periods // orbit.periods)
         for orbit in (one, other)
     )
     images = [here, -np.roll(here, -instants // 2)] if mirror else [here]

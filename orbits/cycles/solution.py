@@ -14,7 +14,7 @@ from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
 from orbits.cycles.equations import equations
 from orbits.cycles.margins import Margin, approaches_of, margin_units, named_margins
-from orbits.cycles.sampling import positions, sample
+from orbits.cycles.sampling import PER_PERIOD, positions, sample
 
 TOLERANCE = 1e-12  # of Newton's method, in the unknowns
 
@@ -80,8 +80,13 @@ class Solution(Claim, Cycle):
         """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
         return sample(self, points)
 
-    def track(self, instants: int) -> np.ndarray:
-        """w at equal phases of the forcing, kept: distances to several other orbits ask for it; see `orbits.cycles.sampling.positions`."""
+    @property
+    def track(self) -> np.ndarray:
+        """w at equal phases of the forcing; see `orbits.cycles.sampling.positions`."""
+        return self.positions(PER_PERIOD)
+
+    def positions(self, instants: int) -> np.ndarray:
+        """The same at so many phases of each period, kept: distances to several other orbits ask for it."""
         known = vars(self).setdefault("_tracks", {})
         if instants not in known:
             known[instants] = positions(self, instants)
