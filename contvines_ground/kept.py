@@ -42,11 +42,12 @@ class Keeper:
         """
         for size, write, made in self.known:
             memory = np.empty(size)
+            address = memory.ctypes.data
             try:
-                write(memory.ctypes.data, content)
+                write(address, content)
             except TypeError:
                 continue  # of another type
-            return made, memory.ctypes.data, memory
+            return made, address, memory
         kind = typeof(content)
         if not _plain(kind):
             return None

@@ -6,6 +6,7 @@ some nanoseconds.
 
 from __future__ import annotations
 
+from collections import deque
 from functools import cache, cached_property
 from types import FunctionType
 from typing import Any, NamedTuple
@@ -160,18 +161,20 @@ class Outlined:
     def __init__(self, kernels: Any, digest: str) -> None:
         suffix = f"_{digest}_{own_digest()}"
         self._keeper = Keeper(lambda kind, mark: Addressed(kernels, kind, suffix + mark), suffix)
-        self._last: Kept | None = None
+        # most calls in a row are about one problem, or about two that are compared
+        self._recent: deque[Kept] = deque(maxlen=2)
 
     def keep(self, data: Any, work: Any) -> Kept | None:
         """Data and workspace, kept; None if they are more than numbers, arrays and tuples of these."""
-        last = self._last  # most calls in a row are about one problem
-        if last is not None and last.content[0] is data and last.content[1] is work:
-            return last
+        for known in self._recent:
+            if known.content[0] is data and known.content[1] is work:
+                return known
         content = (data, work)
         found = self._keeper.keep(content)
         if found is None:
             return None
-        self._last = kept = Kept(*found, content)
+        kept = Kept(*found, content)
+        self._recent.append(kept)
         return kept
 
 

@@ -256,7 +256,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
     @property
     def spelling(self) -> str:
         """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
-        return self.word.spelled(self.model.has_mirror(self.params, self.parameter))
+        return self.word.spelled(self.mirrored)
 
     def prove_branch(
         self,

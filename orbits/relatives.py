@@ -118,15 +118,15 @@ class Relatives:
             full = self.sibling(self.word, self.periods, symmetric=False)
             image = -along.reshape(self.length, -1)
             image[:, 0] *= -1.0
-            direction = np.concatenate([along, image.ravel()])
-            return [Embedding(full, full.reduce(self.expand(u)), np.append(direction, tangent[-1]), kind)]
+            direction = np.concatenate([along, image.ravel(), tangent[-1:]])
+            return [Embedding(full, full.reduce(self.expand(u)), direction, kind)]
         if kind == "period-doubling" and not self.symmetric and len(self.word):
             periods = 2 * self.periods if self.forced else 1
             double = self.sibling(self.word.double(), periods, symmetric=False)
             nodes = self.expand(u)
             second = nodes.copy()
             second[:, 0] += self.shift
-            direction = np.append(np.concatenate([along, along]), tangent[-1])
+            direction = np.concatenate([along, along, tangent[-1:]])
             return [Embedding(double, double.reduce(np.concatenate([nodes, second])), direction, kind)]
         if kind == "branch-point":
             return [Embedding(self, np.array(u), np.array(tangent), kind)]

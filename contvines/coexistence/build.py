@@ -14,7 +14,7 @@ from ..graph.graph import Graph
 from ..graph.run import Progress, Run
 from ..hints import hinting
 from ..interrupts import listening
-from .census import Counted, census
+from .census import Counted, census, locate
 from .handover import Handover
 from .places import scattered, unasked, unresolved
 from .population import Population, population_of
@@ -181,12 +181,6 @@ def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
         if label is not None:  # one motion, one spelling of its word
             attractor.word = str(run.graph.branches[label].description.get("word", attractor.word))
     return len(run.graph.branches) - before
-
-
-def locate(run: Run, counted: Counted) -> str | None:
-    """Label of the branch of the graph on which an attractor lies, exactly; None if it lies on none."""
-    known = run.register.find(counted.problem, np.asarray(counted.u), counted.attractor.value)
-    return None if known is None else known.label
 
 
 class _Looking:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..graph.attractor import Attractor
+from ..graph.run import Run
 from ..problems.registry import rebuild
 from .population import Population
 
@@ -54,6 +55,12 @@ def followed(population: Population, p: float, starts: np.ndarray, key: str, jou
     for counted in found:
         counted.attractor = replace(counted.attractor, share=0.0, mirror_share=0.0, starts=0)
     return found
+
+
+def locate(run: Run, counted: Counted) -> str | None:
+    """Label of the branch of the graph on which an attractor lies, exactly; None if it lies on none."""
+    known = run.register.find(counted.problem, np.asarray(counted.u), counted.attractor.value)
+    return None if known is None else known.label
 
 
 def _settled(

@@ -12,8 +12,7 @@ from ..graph.builder import adopt
 from ..graph.graph import Graph
 from ..graph.run import Run
 from ..journal import NullJournal
-from .build import locate
-from .census import census
+from .census import census, locate
 from .population import Population
 
 

@@ -35,7 +35,9 @@ class Closing:
             turns = np.round((chunk.points @ shift - z[:-1] @ shift) / (shift @ shift))
             along -= turns * (shift @ border[:-1])
         along[np.abs(along) <= 1e-13 * (1.0 + abs(border) @ abs(z))] = 0.0  # the start itself
-        passed = np.flatnonzero((along[:-1] < 0.0) & (along[1:] >= 0.0))
+        (passed,) = ((along[:-1] < 0.0) & (along[1:] >= 0.0)).nonzero()
+        if not len(passed):
+            return None
         for i in passed[np.array(chunk.tangents[passed + 1] @ border) > 0.0]:
             pair = slice(i, i + 2)
             gaps = np.column_stack([chunk.points[pair], chunk.values[pair]]) - z

@@ -62,9 +62,8 @@ class Engine(Rows):
         self.row_size = 2 * self.m + int(problem.n_margins)
         self.scale, self.noise = problem.scale_within(self.within), float(problem.noise)
         self.plain = bool((self.scale[:-1] == 1.0).all())  # unknowns have no scales of their own
-        shift = problem.period_shift
-        # what a period adds to the unknowns, if anything
-        self.shift = None if shift is None or not np.any(shift) else np.asarray(shift, dtype=float)
+        shift = np.asarray(0.0 if problem.period_shift is None else problem.period_shift, dtype=float)
+        self.shift = shift if shift.any() else None  # what a period adds to the unknowns, if anything
         scales = problem.scales
         self.rate = (
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
@@ -92,6 +91,7 @@ class Engine(Rows):
         # the arrays are kept here, for compiled code knows only where they are
         self.arguments = (self.data, self.work, self.known, self.metric, self.scratch)
         self.run: Callable[..., int]
+        self.march: Callable[..., Any] = self.bound.march if self.compiled else _calmly(self.bound.march)
         self.frame: Any = self.arguments
         if self.bound.keeper is None:
             self.run = _calmly(self.bound.points)
@@ -305,10 +305,10 @@ class Engine(Rows):
         )
 
 
-def _calmly(function: Callable[..., int]) -> Callable[..., int]:
+def _calmly(function: Callable[..., Any]) -> Callable[..., Any]:
     """An interpreted function, whose overflows are nobody's business."""
 
-    def called(*arguments: Any) -> int:
+    def called(*arguments: Any) -> Any:
         with np.errstate(all="ignore"):
             return function(*arguments)
 

@@ -147,8 +147,8 @@ def _march(
     engine.control[source.MAX_STEP] = longest
     # an interpreted loop is faster with Python's own numbers
     control: Any = engine.control if engine.compiled else engine.control.tolist()
-    with engine.section, np.errstate(all="ignore"):
-        filled, h, status = engine.bound.march(
+    with engine.section:
+        filled, h, status = engine.march(
             engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch
         )
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)

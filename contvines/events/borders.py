@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..continuation.aims import MARGINS, Aim
-from ..continuation.engine import Engine
+from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from .kinds import BORDERS
+from .limits import CLOSE
 from .locate import Root, locate
-from .located import Located
 from .segment import Segment
 
 TIED = 1e-9  # margins that differ by less vanish together
 BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
-SLOPED = 1e-6  # distance (in the metric) from which the slope of a margin can be told
+SLOPED = CLOSE  # distance (in the metric) from which the slope of a margin can be told
 MARGIN_ROUNDING = 4e-16  # of margins, in units of the machine's own size
 TOLD = 10.0  # times that: a difference of margins which is no rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
@@ -92,23 +92,24 @@ def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray
     return falling
 
 
-def resolved(segment: Segment, border: Located) -> Located:
-    """The border with an error that covers rounding of the margins that vanish there.
+def rounding(segment: Segment, root: Root, index: int, before: Solved | None) -> float:
+    """How far rounding of the margins that vanish at a border may move its parameter value.
 
     Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
-    passes zero.
+    passes zero. The point `SLOPED` before the border may be known.
     """
-    first, place = 2 * segment.engine.m, border.position
-    margins = border.point.row[first:]
+    first, place, point = 2 * segment.engine.m, root.position, root.point
+    margins = point.row[first:]
     flat = np.abs(margins) < TOLD * MARGIN_ROUNDING
-    flat[border.index] = True
+    flat[index] = True
     flat = flat.nonzero()[0]
-    here = _finite(margins[flat])
+    here, error = _finite(margins[flat]), 0.0
     towards = -1.0 if place * segment.length > SLOPED else 1.0
     room = place if towards < 0.0 else 1.0 - place
-    reach, error = min(SLOPED / segment.length, room), border.error
-    while reach > 0.0 and (aside := segment.at(place + towards * reach)) is not None:
-        rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - border.point.p)
+    reach = min(SLOPED / segment.length, room)
+    aside = before if towards < 0.0 else None
+    while reach > 0.0 and (aside := aside or segment.at(place + towards * reach)) is not None:
+        rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - point.p)
         told = rises > TOLD * MARGIN_ROUNDING
         if told.any():
             error = max(error, moved * MARGIN_ROUNDING / float(rises[told].min()))
@@ -118,8 +119,8 @@ def resolved(segment: Segment, border: Located) -> Located:
         if reach == room:
             error = max(error, moved)
             break
-        reach = min(30.0 * reach, room)
-    return border._replace(error=error)
+        reach, aside = min(30.0 * reach, room), None
+    return error
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:

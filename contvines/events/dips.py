@@ -67,7 +67,8 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
     if middle.min() < MARGIN:  # one of a flight, say, that is over before the segment is
         return position, border
     rows, found = segment.rows(position * SHARES)
-    for share in SHARES[found & (margins(rows).min(axis=1) < MARGIN)].tolist():
+    below = found & (rows[:, 2 * segment.engine.m :] < MARGIN).any(axis=1)
+    for share in SHARES[below].tolist():
         point = segment.at(share * position)
         if point is not None:
             return share * position, point

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from ..continuation.aims import NO_COLUMNS, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
 from .blur import blurred
-from .borders import find_border
+from .borders import find_border, rounding
 from .certain import passes_for_certain
 from .determinant import passes, turned
 from .eliminated import by_elimination, by_sign
@@ -25,6 +26,7 @@ from .singular import singular
 from .symmetry import SymmetryTest
 from .users import user_function
 
+NOWHERE = (math.nan, math.nan)  # the bracket of what nobody has put on its branch yet
 NAMES = ("plus", "minus", "pair")
 AT_FOLDS = Aim(SLOPE, NO_COLUMNS)
 REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
@@ -217,7 +219,7 @@ class Examiner:
     def _located(
         self, root: Root, kind: str, index: int, role: Role = Role.SPECIAL, name: str = ""
     ) -> Located:
-        return Located(root.position, kind, index, root.point, (np.nan, np.nan), root.error, role, name)
+        return Located(root.position, kind, index, root.point, NOWHERE, root.error, role, name)
 
     def _fold(self, segment: Segment, met: list[float]) -> list[Located]:
         one, other = float(segment.a.tangent[-1]), float(segment.b.tangent[-1])
@@ -305,9 +307,12 @@ class Examiner:
         border = find_border(segment, real)
         if border is None:
             return [], None
-        kind = self.engine.problem.margin_kind(border.index)
-        point, before = one_sided(segment, border.root)
-        return [self._located(border.root._replace(point=point), kind, border.index, Role.BORDER)], before
+        root, index = border
+        kind = self.engine.problem.margin_kind(index)
+        point, before = one_sided(segment, root)
+        blur = rounding(segment, root, index, before)
+        found = Located(root.position, kind, index, point, NOWHERE, root.error, Role.BORDER, "", blur)
+        return [found], before
 
     def examine_users(self, segment: Segment, values: Mapping[str, np.ndarray]) -> list[Located]:
         """Zeros of the user functions on one segment."""

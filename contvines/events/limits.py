@@ -9,6 +9,7 @@ at a wall that is touched without speed, the coefficients times the distance are
 from __future__ import annotations
 
 import math
+from operator import sub
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1
 CLOSE = 1e-6  # distance of a point just before a border (in the metric)
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
+BEYOND = 4.0  # times what has grown at the nearest of them: what is computed at the border is not the end of that growth
 BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
 INVERSE = 1e-2  # relative difference of the products of a margin and what grows as its inverse ...
 SPREAD = 4.0  # ... at places where it differs by such a factor at least
@@ -79,52 +81,54 @@ def _plainly(engine: Engine, own: np.ndarray, rows: np.ndarray) -> bool:
     """Whether the polynomial tends to the one computed at the border by the first points (4, columns) already, as at most borders."""
     if not len(rows):
         return False
+    numbers = own[: 2 * engine.m], CUBIC.dot(rows[:, : 2 * engine.m])
+    if _apart(*(one.tolist() for one in numbers)) < AGREEING / engine.m:  # where none meet, each is smooth
+        return True
     polynomials = _characteristic(engine.spectrum(np.concatenate([own[None, :], rows])))
-    return bool(_apart(CUBIC @ polynomials[1:], polynomials[0]) < AGREEING)
+    return _apart(CUBIC.dot(polynomials[1:]).tolist(), polynomials[0].tolist()) < AGREEING
 
 
-def _limits(segment: Segment, position: float, own: np.ndarray) -> list[np.ndarray] | None:
+def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
     """Limits of the characteristic polynomial times powers of the distance, up to the first that is finite.
 
     None if none converges, or if they agree with the polynomial computed at the border (of the row `own`).
     """
-    spacings, rows = _rows(segment, position, (*DISTANCES, *NEAREST))
-    computed = _characteristic(segment.engine.spectrum(own))
-    polynomials = _characteristic(segment.engine.spectrum(rows))
-    split = int(np.count_nonzero(spacings >= DISTANCES[-1]))
-    limits = _extrapolated(spacings[:split], polynomials[:split])
-    if not len(limits):
+    computed = _characteristic(segment.engine.spectrum(own)).tolist()
+    limits = _extrapolated(segment, position).tolist()
+    if not limits:
         return None
-    best: list[np.ndarray] | None = None
-    error = np.inf
-    agree = _apart(limits[:, 0], computed).tolist()
-    changes = _apart(limits[1:], limits[:-1]).tolist()
-    for i, agreed in enumerate(agree):
-        if agreed < AGREEING:
+    best: list[list[float]] | None = None
+    error = math.inf
+    for i, limit in enumerate(limits):
+        if _apart(limit[0], computed) < AGREEING:
             return None
         if i > 0:  # compared with the spacing before
-            changed = changes[i - 1]
+            changed = [_apart(one, other) for one, other in zip(limit, limits[i - 1])]
             poles = next((k for k, change in enumerate(changed) if change < CONVERGED[k]), POLES)
             fewer = best is not None and poles < len(best) - 1
             if changed[poles] < CONVERGED[poles] and (changed[poles] < error or fewer):
-                best, error = list(limits[i, : poles + 1]), changed[poles]
+                best, error = limit[: poles + 1], changed[poles]
         if best is not None and len(best) == 1 and error < SURELY:
             break
     if best is None:
-        return _by_margin(segment.engine, own, rows, split)
+        return _by_margin(segment, position, own)
     if len(best) == 1:
         return None if _apart(best[0], computed) < AGREEING + 10.0 * error else best
-    return None if _bounded(segment.engine, rows[split:], polynomials[split:], computed) else best
+    grown = max(map(abs, best[-1])) / NEAREST[-1] ** (len(best) - 1)
+    if max(map(abs, computed)) > BEYOND * grown:
+        return best
+    return None if _bounded(segment, position, computed) else best
 
 
-def _by_margin(engine: Engine, own: np.ndarray, rows: np.ndarray, split: int) -> list[np.ndarray] | None:
+def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
     """The polynomial, and its limit times the margin that vanishes, if that is the same wherever rounding has put the margin."""
-    before, beside = rows[:split], rows[split:]
+    engine = segment.engine
+    (_, beside), (_, before) = (_rows(segment, position, spacings) for spacings in (NEAREST, DISTANCES))
     if not (len(beside) and len(before) and engine.problem.n_margins):
         return None
-    near = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
+    rows = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
     index = int(np.abs(engine.margins(own)).argmin())
-    margins, polynomials = engine.margins(near)[:, index], _characteristic(engine.spectrum(near))
+    margins, polynomials = engine.margins(rows)[:, index], _characteristic(engine.spectrum(rows))
     products = margins[:, None] * polynomials
     grown = products[:, 1]
     if not np.isfinite(products).all() or np.abs(polynomials[0]).argmax() != 1:
@@ -133,45 +137,45 @@ def _by_margin(engine: Engine, own: np.ndarray, rows: np.ndarray, split: int) ->
     if not (even and float(np.abs(margins).max()) > SPREAD * float(np.abs(margins).min())):
         return None
     side = np.sign(engine.margins(before[0, 0])[index])
-    return [polynomials[0], side * np.median(products, axis=0)]
+    return [polynomials[0].tolist(), (side * np.median(products, axis=0)).tolist()]
 
 
-def _extrapolated(spacings: np.ndarray, polynomials: np.ndarray) -> np.ndarray:
+def _extrapolated(segment: Segment, position: float) -> np.ndarray:
     """The polynomials times each power of the distance, extrapolated to the border from each spacing that tells, (k, powers, m + 1)."""
+    spacings, rows = _rows(segment, position, DISTANCES)
+    polynomials = _characteristic(segment.engine.spectrum(rows))
     sure = np.isfinite(polynomials).all(axis=(1, 2))
-    powers = np.power.outer(spacings[sure], np.arange(POLES + 1))
+    powers = spacings[sure, None] ** np.arange(POLES + 1)
     return powers[:, :, None] * (EXTRAPOLATION @ polynomials[sure])
 
 
-def _bounded(engine: Engine, rows: np.ndarray, polynomials: np.ndarray, computed: np.ndarray) -> bool:
+def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
     """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
 
     As where another impact, before the one that is about to graze, is almost as slow. Nearer than rounding lets the vanishing margin
     come to zero nothing grows any more, and nothing can be told.
     """
-    largest = float(np.abs(computed).max())
-    with np.errstate(invalid="ignore"):
-        reached = _apart(CUBIC @ polynomials, computed) < BOUNDED
-    for margins, values, there in zip(engine.smallest_margin(rows), polynomials, reached.tolist()):
+    largest = max(map(abs, computed))
+    _, rows = _rows(segment, position, NEAREST)
+    polynomials = _characteristic(segment.engine.spectrum(rows))
+    for margins, values in zip(segment.engine.smallest_margin(rows), polynomials):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
         if not np.isfinite(values).all():
             continue
         if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
             return False  # what is computed at the border is something else
-        if there:
+        if _apart(CUBIC.dot(values).tolist(), computed) < BOUNDED:
             return True
     return False
 
 
-def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Largest differences of polynomials (..., m + 1), as parts of their largest coefficients."""
-    most = np.maximum.reduce
-    with np.errstate(all="ignore"):
-        gap = most(np.abs(one - other), axis=-1)
-        largest = np.maximum(most(np.abs(one), axis=-1), most(np.abs(other), axis=-1))
-        part = np.where(gap > 0.0, gap / largest, 0.0)
-    return np.where(gap < np.inf, part, np.inf)
+def _apart(one: list[float], other: list[float]) -> float:
+    """Largest difference of two polynomials (m + 1,), as a part of their largest coefficient; infinite where they are."""
+    if not all(map(math.isfinite, one + other)):
+        return math.inf
+    gap = max(map(abs, map(sub, one, other)))
+    return gap / max(map(abs, one + other)) if gap > 0.0 else 0.0
 
 
 def _rows(segment: Segment, position: float, spacings: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -180,7 +184,7 @@ def _rows(segment: Segment, position: float, spacings: tuple[float, ...]) -> tup
     places = position - np.outer(wanted / segment.length, PLACES)
     rows, found = segment.rows(places.reshape(-1))
     rows, found = rows.reshape(*places.shape, -1), found.reshape(places.shape)
-    for i, j in np.argwhere(places < -1.0).tolist():
+    for i, j in zip(*(places < -1.0).nonzero()):
         point = _before(segment, float(places[i, j]))
         found[i, j] = point is not None
         rows[i, j] = 0.0 if point is None else point.row
@@ -211,30 +215,28 @@ def _characteristic(spectrum: np.ndarray) -> np.ndarray:
     return coefficients.real
 
 
-def _roots(limits: list[np.ndarray]) -> NDArray[np.complex128]:
+def _roots(limits: list[list[float]]) -> NDArray[np.complex128]:
     """The multipliers, largest modulus first; those that grow without bound have a size of `UNBOUNDED`."""
     poles = len(limits) - 1
-    finite: NDArray[np.complex128] = _zeros(limits[poles][poles:])
+    finite = sorted(_zeros(limits[poles][poles:]), key=lambda one: (-abs(one), -one.real, -one.imag))
     # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
-    lead = [limits[k][k] for k in range(poles + 1)]
-    growing = _zeros(np.array(lead))
-    growing = UNBOUNDED * growing / np.maximum(np.abs(growing), 1e-300)
-    finite = finite[np.lexsort((-finite.imag, -finite.real, -np.abs(finite)))]
+    growing = _zeros([limits[k][k] for k in range(poles + 1)])
+    growing = [UNBOUNDED * one / max(abs(one), 1e-300) for one in growing]
     missing = len(limits[0]) - 1 - len(growing) - len(finite)
-    return np.concatenate([growing, finite, np.zeros(missing, dtype=complex)])
+    return np.array([*growing, *finite, *[0.0] * missing], dtype=np.complex128)
 
 
-def _zeros(polynomial: np.ndarray) -> NDArray[np.complex128]:
+def _zeros(polynomial: list[float]) -> list[complex]:
     """Zeros of a polynomial; of one or two in closed form."""
-    degree = len(polynomial) - 1
-    if degree > 2 or polynomial[0] == 0.0:
-        return np.roots(polynomial).astype(np.complex128)
+    degree, lead = len(polynomial) - 1, polynomial[0]
+    if degree > 2 or lead == 0.0:
+        return np.roots(polynomial).tolist()
     if degree < 2:
-        return -polynomial[1:].astype(np.complex128) / polynomial[0]
-    b, c = (polynomial[1:] / polynomial[0]).tolist()
+        return [complex(-one / lead) for one in polynomial[1:]]
+    b, c = polynomial[1] / lead, polynomial[2] / lead
     square = 0.25 * b * b - c
     if square < 0.0:
         whole = complex(-0.5 * b, math.sqrt(-square))
-        return np.array([whole, whole.conjugate()])
+        return [whole, whole.conjugate()]
     larger = -0.5 * b - math.copysign(math.sqrt(square), b)
-    return np.array([larger, c / larger if larger else 0.0], dtype=complex)
+    return [complex(larger), complex(c / larger if larger else 0.0)]

@@ -39,6 +39,8 @@ class Located(NamedTuple):
     role : Role
     name : str
         Of the user function.
+    rounding : float
+        Of a border, how far rounding of its margins may move the parameter value: no sign of a leap, but part of the error.
     """
 
     position: float
@@ -49,6 +51,7 @@ class Located(NamedTuple):
     error: float
     role: Role = Role.SPECIAL
     name: str = ""
+    rounding: float = 0.0
 
     @property
     def ends_branch(self) -> bool:

@@ -34,7 +34,7 @@ class Segment:
         self.arc = self.length * (1.0 + engine.inner(turn, turn) / 24.0)
         np.multiply(self.arc, a.tangent, out=self.chord[1])
         np.multiply(self.arc, b.tangent, out=self.chord[3])
-        self.start = float(self.border @ self.za)
+        self.start = float(self.border.dot(self.za))
 
     def at(self, s: float) -> Solved | None:
         """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""

@@ -49,7 +49,7 @@ class SymmetryTest:
         else:
             gap = points - np.array([self.symmetry.apply(u) for u in points])
         if self.shift is not None:
-            turns = np.rint(gap @ self.shift / (self.shift @ self.shift))
+            turns = np.rint(gap.dot(self.shift) / self.shift.dot(self.shift))
             if turns.any():
                 gap = gap - turns[:, None] * self.shift
         return gap if self.scale is None else gap / self.scale

@@ -12,7 +12,6 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.loop import MARGIN
 from . import pairs
-from .borders import resolved
 from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
 from .excursion import left_between
@@ -68,7 +67,7 @@ class Watch(Examiner):
             wide.points, wide.values, wide.tangents, wide.rows, without_zeros(wide.signs), real
         )
         own = len(wide) - len(chunk)
-        return Scan(scan.flags[own:], scan.smallest[own:])
+        return Scan(scan.flags[own:], scan.smallest[own:]) if own else scan
 
     def look(self, chunk: Chunk, scan: Scan, real: bool = True) -> list[Located]:
         """All special points on a chunk, in order; what lies behind a border, a meeting, a leap or a landing is left out.
@@ -145,7 +144,7 @@ class Watch(Examiner):
             if leaping is not None:
                 return [*events, leaping._replace(position=float(i))]
             found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
-            found = [resolved(segment, e) if e.role is Role.BORDER else e for e in found]
+            found = [e._replace(error=e.rounding) if e.rounding > e.error else e for e in found]
             outside = left_between(segment, found)
             if outside is not None:
                 found = [*(e for e in found if e.position < outside.position), outside]

@@ -9,7 +9,6 @@ import numpy as np
 from ..problems.protocol import Problem
 from ..problems.sparse_loci import large
 from .coefficients import Forms
-from .sparse_pair import sparse_lyapunov
 
 
 class Pitch(NamedTuple):
@@ -56,6 +55,8 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
         return Pitch(None, None, "")
     try:
         if large(problem):
+            from .sparse_pair import sparse_lyapunov
+
             critical = _critical(np.asarray(problem.to_multipliers(spectrum), dtype=complex), flow)
             found = sparse_lyapunov(problem, u, p, critical)
         else:

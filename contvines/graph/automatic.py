@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from contvines_ground.stack import with_room
+
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
 from ..hints import hinting
@@ -79,7 +81,7 @@ def diagram(
         problem.parameter, about, within, depth, virtual, user_functions, journal, progress, settings, limits
     )
     begin(run, problem, u, p)
-    work(run)
+    with_room(work, run)
     return run.graph
 
 
@@ -172,7 +174,7 @@ def switch(
     )
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)
-    work(run)
+    with_room(work, run)
     return [name for name in graph.branches if name not in before]
 
 

@@ -99,7 +99,7 @@ def tell_waiting(run: Run) -> None:
     """Say at the special points whose branches wait why these are not followed; of a single branch nobody expects others."""
     most = run.settings.max_branches
     for pending in run.queue if most > 1 else ():
-        if pending.point is not None:
+        if pending.point is not None and not pending.reached:
             run.remark(pending.point, f"a branch that leaves here is not followed: max_branches = {most}")
 
 
@@ -114,6 +114,8 @@ def tell_dead_ends(run: Run) -> None:
 
 def trace_pending(run: Run, pending: Pending) -> None:
     """Trace a branch unless it is known, and queue what leaves it."""
+    if pending.reached:
+        return
     first = first_point(run, run.engine(pending.problem)[0], pending)
     # the virtual rest of a branch goes on in its own equations, though at the border it repeats a shorter solution
     rest = pending.kind is Origin.REST and not pending.real
@@ -197,8 +199,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
 
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
     """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
-    whole = half.joined()
-    length, unit = np.ptp(whole.values), run.unit(half.end)
+    whole, unit = half.joined(), run.unit(half.end)
+    length = whole.values.max() - whole.values.min()
     if len(half) > 2 and whole.smallest[1:-1].max() < BEYOND:
         return True
     if length > BRIEF * unit:

@@ -39,6 +39,7 @@ class Known:
     def __init__(self, branch: Branch, engine: Engine, special: Collection[int | None] = ()) -> None:
         self.branch, self.engine, self.special = branch, engine, special
         self.low, self.high = float(branch.values.min()), float(branch.values.max())
+        self.unit = float(engine.scale[-1])
 
     @cached_property
     def keys(self) -> set[Hashable]:
@@ -50,7 +51,7 @@ class Known:
 
     def reaches(self, p: float) -> bool:
         """Whether it passes a parameter value, or ends there."""
-        around = SAME * (float(self.engine.scale[-1]) + abs(p))
+        around = SAME * (self.unit + abs(p))
         return self.low - around <= p <= self.high + around
 
 
@@ -170,8 +171,7 @@ def is_end(branch: Branch, engine: Engine, i: int, key: Hashable, vector: np.nda
 
 def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
     """u at parameter value p on the cubic between points i and i + 1."""
-    za = np.append(branch.points[i], branch.values[i])
-    zb = np.append(branch.points[i + 1], branch.values[i + 1])
+    za, zb = (engine.join(branch.points[j], branch.values[j]) for j in (i, i + 1))
     ta, tb = branch.tangents[i], branch.tangents[i + 1]
     d = engine.norm(zb - za)
 

@@ -170,6 +170,7 @@ def _known(
                 continue
             found = run.register.find(other.problem, other.u, other.p)
             if found is not None and found.label == branch.label:
+                other.reached = branch.real
                 return other.point
     form, beside = None, []
     if kind == "fold":

@@ -45,6 +45,8 @@ class Pending:
     origin, ahead, back : Solved or None
         Of a departure.
     first_step : float or None
+    reached : bool
+        A branch of these solutions was traced in the meantime: it has come to the border from the other side.
     """
 
     problem: Problem
@@ -61,3 +63,4 @@ class Pending:
     ahead: Solved | None = None
     back: Solved | None = None
     first_step: float | None = None
+    reached: bool = False

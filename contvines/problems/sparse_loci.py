@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 
 LARGEST = 300  # unknowns up to which a dense matrix is made for normal forms
 
@@ -16,7 +15,9 @@ def flip(data: Any, work: Any, sign: float) -> None:
 
 def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
     """The transposed Jacobian, with another last column, into another workspace."""
-    if not sp.issparse(work.jacobian):
+    from scipy.sparse import issparse
+
+    if not issparse(work.jacobian):
         raise ValueError(
             "loci need the transposed Jacobian: give it as an array or a sparse matrix, not as a LinearOperator"
         )
@@ -32,6 +33,8 @@ def large(problem: Any) -> bool:
 
 def matrix(data: Any, work: Any) -> np.ndarray:
     """F_u as it stands in a workspace, dense."""
-    if len(work.residual) > LARGEST or not sp.issparse(work.jacobian):
+    from scipy.sparse import issparse
+
+    if len(work.residual) > LARGEST or not issparse(work.jacobian):
         raise ValueError(f"it needs the matrix of F_u, of up to {LARGEST} unknowns")
     return work.jacobian.toarray()

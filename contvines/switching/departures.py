@@ -24,7 +24,7 @@ ATTEMPTS = 22  # halvings of the amplitude
 UPRIGHT, VISIBLE = 1e-14, 1e-4  # a change of the parameter that is none, over at least this length
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
 ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
-ASIDE = (0.0, 1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
+ASIDE = (1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
 
 
@@ -85,13 +85,11 @@ def null_vectors(
     multipliers cross at once; none where (u, p) is not a branch point.
     """
     border = engine.weights * tangent
-    _evaluate(engine, u, p, border)
-    sides = _sides(min(KERNEL if most is None else most, KERNEL, engine.n), engine.n)
     found: list[np.ndarray] = []
     first = 0.0
-    for random in sides:
-        side = np.append(engine.row_sizes * random, 0.0)
-        image = engine.apply_inverse(border, side)
+    for random in _sides(min(KERNEL if most is None else most, KERNEL, engine.n), engine.n):
+        side = engine.join(engine.row_sizes * random, 0.0)
+        image = engine.apply_inverse(border, side) if found else _evaluated(engine, u, p, border, side)
         size = float(np.abs(image).max())
         if not np.isfinite(size):
             break
@@ -112,20 +110,24 @@ def _sides(count: int, n: int) -> np.ndarray:
     return np.random.default_rng(3).standard_normal((count, n))
 
 
-def _evaluate(engine: Engine, u: np.ndarray, p: float, border: np.ndarray) -> None:
-    """Evaluate the equations at a branch point, or so little beside it that the matrix can be inverted.
+def _evaluated(engine: Engine, u: np.ndarray, p: float, border: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """What the inverse makes of a right-hand side at a branch point, or so little beside it that the matrix can be inverted.
 
     By chance it may be singular to the last bit, and its inverse infinite.
     """
-    side = np.append(engine.row_sizes, 0.0)
+    image = side
     for near in _aside(engine, u):
         engine.residual(near, p)
-        if np.isfinite(engine.apply_inverse(border, side)).all():
-            return
+        image = engine.apply_inverse(border, side)
+        if np.isfinite(image).all():
+            break
+    return image
 
 
 def _aside(engine: Engine, u: np.ndarray) -> Iterator[np.ndarray]:
-    return (u + part * np.maximum(np.abs(u), engine.scale[:-1]) for part in ASIDE)
+    yield u
+    for part in ASIDE:
+        yield u + part * np.maximum(np.abs(u), engine.scale[:-1])
 
 
 def _oriented(engine: Engine, vector: np.ndarray) -> np.ndarray:
@@ -268,7 +270,7 @@ def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved 
 
 
 def _origin(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
-    """The branch point with its row, if need be of a point beside it; see `_evaluate`."""
+    """The branch point with its row, if need be of a point beside it; see `_evaluated`."""
     border = engine.weights * tangent
     target = float(border @ engine.join(u, p))
     solved = (engine.polish(near, p, border, target) for near in _aside(engine, u))

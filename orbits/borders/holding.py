@@ -50,7 +50,7 @@ def hold(
     n, size = other.model.node, other.dimension
     kernels, work = other.equations.kernels, other.scratch
     step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
-    u = guess.copy()
+    u, scale = guess.copy(), parameter_unit(other, p)
     if change.grows is Grows.GAP:
         border[first * n], border[(first + 1) * n] = -1.0, 1.0
         if change.start == change.stop:  # the later event stays: friction gives way there
@@ -60,10 +60,9 @@ def hold(
     else:
         sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
         unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
-        node, near = u[first * n : (first + 1) * n] * unit, NEAR * parameter_unit(other, p)
-        (cavity, slopes), (beside, _) = (
-            other.model.cavity_speed(node, other.values(value)) for value in (q, q + near)
-        )
+        node, near = u[first * n : (first + 1) * n] * unit, NEAR * scale
+        cavity, slopes = other.model.cavity_speed(node, other.values(q))
+        beside, _ = other.model.cavity_speed(node, other.values(q + near))
         own = float(unit[1])
         border[first * n : (first + 1) * n] = -sign / own * slopes * unit
         border[first * n + 1] += sign
@@ -75,6 +74,6 @@ def hold(
         ):  # it comes to rest the sooner the slower it is
             u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10 or abs(q_new - p) > 0.02 * parameter_unit(other, p):
+    if not residual < 1e-10 or abs(q_new - p) > 0.02 * scale:
         return None
     return Held(u, float(q_new), tangent, wanted)

@@ -12,7 +12,6 @@ import numpy as np
 from orbits.borders.distance import SHRINKS, gap, tends, tends_to
 from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
 from orbits.borders.rewriting import edits_at, rewritten
-from orbits.compiling.interrupts import kept_back
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, STICK
 from orbits.cycles.claim import REAL
@@ -47,8 +46,7 @@ def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
 def examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Multipliers as (re, im) pairs, then margins; the linearisation stays in the scratch."""
     row = np.empty(2 * problem.n_multipliers + problem.n_margins)
-    with kept_back():
-        problem.equations.kernels.examine(problem.data, u, p, problem.scratch, row)
+    problem.equations.kernels.examine(problem.data, u, p, problem.scratch, row)
     return row
 
 

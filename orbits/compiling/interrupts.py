@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import sys
 from signal import SIGINT
-from threading import get_ident, main_thread
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -27,8 +26,11 @@ class kept_back:
 
     def __enter__(self) -> None:
         listener = _plain.getsignal(SIGINT)
-        if get_ident() == main_thread().ident and callable(listener):
-            _plain.signal(SIGINT, self._comes)
+        if callable(listener):
+            try:
+                _plain.signal(SIGINT, self._comes)
+            except ValueError:
+                return  # the main thread alone is interrupted
             self.listener = listener
 
     def _comes(self, number: int, frame: FrameType | None) -> None:

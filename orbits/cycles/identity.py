@@ -36,7 +36,7 @@ def root_orbit(
         shifted = nodes[length:].copy()
         if forced:
             shifted[:, 0] -= 2.0 * np.pi * (periods // times)
-        if np.max(np.abs(shifted - nodes[:-length])) < same:
+        if np.abs(shifted - nodes[:-length]).max() < same:
             return word.head(length), periods // times if forced else periods, nodes[:length]
     return word, periods, nodes
 

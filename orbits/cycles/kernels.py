@@ -19,6 +19,7 @@ from contvines_ground.outlined import callers, outlined
 from orbits.compiling import arguments, trigonometry
 from orbits.compiling import decorators as compiling
 from orbits.compiling.decorators import specialise
+from orbits.compiling.interrupts import kept_back
 from orbits.compiling.waiting import wait_for
 from orbits.elimination import block_cyclic, by_address, closure, rearranged, two_unknowns, vectorised
 from orbits.machines import path
@@ -221,7 +222,8 @@ class Kernels:
         """Residual, and the row of `inspect`, of one solution."""
         kept = self._outlined.keep(data, work)
         assert kept is not None
-        return _solvers()[1](kept.kernels.all, kept.at, u, p, row)
+        with kept_back():  # few words need what calls Python
+            return _solvers()[1](kept.kernels.all, kept.at, u, p, row)
 
 
 @cache

@@ -44,21 +44,21 @@ class Rounds(NamedTuple):
         Of both, relative to their largest entries.
     linear : bool
         Whether they have limits at the border, which agree on it.
-    further : ndarray, shape (2, m, m)
-        The same derivatives further from the border.
+    further : ndarray, shape (2, m, m), optional
+        The same derivatives further from the border, where they grow without bound.
     """
 
     maps: np.ndarray
     error: float
     linear: bool
-    further: np.ndarray
+    further: np.ndarray | None = None
 
     def hopeless(self, most: int) -> set[tuple[int, int]]:
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
         sides, products = _sides(self.maps, most)
-        beside = sides if self.linear else _sides(self.further, most)[0]
+        beside = sides if self.further is None else _sides(self.further, most)[0]
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
         hopeless = set()
         for key, (low, high), before, product in zip(
@@ -66,7 +66,7 @@ class Rounds(NamedTuple):
         ):
             if self.linear:
                 torn = low < -DECIDED * high and high > -DECIDED * low
-            elif _lasts(-low, -before[0]) and _lasts(high, before[1]):
+            elif self.further is not None and _lasts(-low, -before[0]) and _lasts(high, before[1]):
                 torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < SURE
             else:
                 torn = False
@@ -138,7 +138,7 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
         bounded = bounded and bool(np.abs(far[0] - near[0]).max() <= BOUNDED * max(size, 1.0))
     if not error <= SURE:
         return None
-    return Rounds(np.array(found), error, bounded and _agree(*found), np.array(further))
+    return Rounds(np.array(found), error, bounded and _agree(*found), None if bounded else np.array(further))
 
 
 def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:

@@ -15,21 +15,26 @@ from orbits.machines.states import placed, state_of, states_of
 from orbits.machines.stepping import RATE
 
 PER_PERIOD = 200  # instants of a forcing period at which motions are compared
+GRID = np.arange(41.0)
 
 
 def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
     """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
+    return _ahead(orbit, _begins(orbit, segment), np.ascontiguousarray(ahead, dtype=float))
+
+
+def _begins(orbit: Cycle, segment: int) -> np.ndarray:
+    word = orbit.word
     engine = stepper(orbit.model.name)
-    state = state_of(
-        engine,
-        orbit.params,
-        int(orbit.word.codes[segment]),
-        int(orbit.word.modes[segment]),
-        orbit.nodes[segment],
+    return state_of(
+        engine, orbit.params, int(word.codes[segment]), int(word.modes[segment]), orbit.nodes[segment]
     )
+
+
+def _ahead(orbit: Cycle, state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
     states, out = np.empty((len(ahead), len(state))), np.empty((len(ahead), 4))
     states[...] = state
-    engine.sample(states, orbit.params, np.ascontiguousarray(ahead, dtype=float), out)
+    stepper(orbit.model.name).sample(states, orbit.params, ahead, out)
     return out
 
 
@@ -78,10 +83,10 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
 
 def positions(orbit: Cycle, instants: int = PER_PERIOD) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
-    count = instants * orbit.periods
-    if not len(orbit.word):
+    count, length = instants * orbit.periods, len(orbit.nodes)
+    if not length:
         return np.zeros(count)
-    engine, length = stepper(orbit.model.name), len(orbit.word)
+    engine = stepper(orbit.model.name)
     left, right = engine.walls(orbit.params)
     starts, states = np.zeros((length, engine.state)), np.empty((count, engine.state))
     ahead, out = np.zeros(max(count, length)), np.empty((max(count, length), 4))
@@ -144,16 +149,15 @@ def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:
 
 def slowest(orbit: Cycle, segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
-    length = float(orbit.durations[segment])
-    mode = orbit.word.modes[segment]
+    length, mode, state = float(orbit.durations[segment]), orbit.word.modes[segment], _begins(orbit, segment)
     ahead = np.linspace(0.0, length, 402)[1:-1]
-    speed = mode * flight(orbit, segment, ahead)[:, 1]
+    speed = mode * _ahead(orbit, state, ahead)[:, 1]
     inner = np.flatnonzero((speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])) + 1
-    place = int(inner[np.argmin(speed[inner])] if inner.size else np.argmin(speed))
+    place = int(inner[speed[inner].argmin()] if inner.size else speed.argmin())
     low, high = float(ahead[max(place - 1, 0)]), float(ahead[min(place + 1, ahead.size - 1)])
     for _ in range(6):  # finer grids round the minimum: 1/20 of the bracket each time
-        ahead = low + (high - low) / 40.0 * np.arange(41.0)
-        place = int((mode * flight(orbit, segment, ahead)[:, 1]).argmin())
+        ahead = low + (high - low) / 40.0 * GRID
+        place = int((mode * _ahead(orbit, state, ahead)[:, 1]).argmin())
         low, high = float(ahead[max(place - 1, 0)]), float(ahead[min(place + 1, 40)])
     where = 0.5 * (low + high)
-    return where, flight(orbit, segment, np.array([where]))[0]
+    return where, _ahead(orbit, state, np.array([where]))[0]

@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import numpy as np
 
-from orbits.compiling.interrupts import kept_back
 from orbits.cycles import measures as measuring
 from orbits.cycles.claim import Claim
 from orbits.cycles.cycle import Cycle
@@ -81,13 +80,9 @@ class Solution(Claim, Cycle):
         """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
         return sample(self, points)
 
-    @cached_property
-    def _tracks(self) -> dict[int, np.ndarray]:
-        return {}
-
     def track(self, instants: int) -> np.ndarray:
         """w at equal phases of the forcing, kept: distances to several other orbits ask for it; see `orbits.cycles.sampling.positions`."""
-        known = self._tracks
+        known = vars(self).setdefault("_tracks", {})
         if instants not in known:
             known[instants] = positions(self, instants)
         return known[instants]
@@ -95,7 +90,8 @@ class Solution(Claim, Cycle):
     def repeat(self, times: int) -> Self:
         """The same orbit, written `times` times."""
         found = super().repeat(times)
-        found._tracks.update((count, np.tile(track, times)) for count, track in self._tracks.items())
+        known = vars(self).get("_tracks", {})
+        vars(found)["_tracks"] = {instants: np.tile(track, times) for instants, track in known.items()}
         return found
 
     def replay(self) -> float:
@@ -108,6 +104,5 @@ def _examined(system: Any, nodes: np.ndarray) -> tuple[float, np.ndarray, np.nda
     count = 2 * system.n_multipliers
     row = np.empty(count + system.n_margins)
     value = system.value(system.params)
-    with kept_back():
-        residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
+    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
     return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]

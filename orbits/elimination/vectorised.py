@@ -256,8 +256,11 @@ def expand(length, scratch, found, twist, solution):
 
 
 def short_cycle(length: int) -> tuple[np.ndarray, ...]:
-    """Arrays of the shorter cycle: F, A, D, Q, and its two solutions."""
-    nodes = LANES + length % LANES if length >= SHORTEST else 0
+    """Arrays of the shorter cycle: F, A, D, Q, and its two solutions; cycles that have none share empty ones."""
+    return _arrays(LANES + length % LANES) if length >= SHORTEST else NONE
+
+
+def _arrays(nodes: int) -> tuple[np.ndarray, ...]:
     square = (nodes, 2, 2)
     return (
         np.zeros((nodes, 2)),
@@ -266,3 +269,6 @@ def short_cycle(length: int) -> tuple[np.ndarray, ...]:
         np.zeros((nodes, 2)),
         np.zeros((2, 2 * nodes + 1)),
     )
+
+
+NONE = _arrays(0)

@@ -109,7 +109,8 @@ class CyclicWord(ABC):
         """The smallest of all rotations of the word, and of its mirror image if that is a motion of the machine, too."""
         if not self.events and not self.modes:
             return self
-        return _canonical(self, mirror and self.alphabet.mirror is not None, self.alphabet)
+        alphabet = self.alphabet
+        return _canonical(self, mirror and alphabet.mirror is not None, alphabet)
 
     def _smallest_rotation(self) -> Self:
         """The smallest rotation by its events, of those with equal events by its modes; no slip begins a word."""
@@ -122,7 +123,8 @@ class CyclicWord(ABC):
 
     def readings(self, mirror: bool = True) -> list[tuple[bool, int]]:
         """(mirrored, rotation) of every way in which this word reads as its canonical form."""
-        return _readings(self, mirror and self.alphabet.mirror is not None, self.alphabet)
+        alphabet = self.alphabet
+        return _readings(self, mirror and alphabet.mirror is not None, alphabet)
 
     @cached_property
     def mirror_symmetric_halves(self) -> bool:

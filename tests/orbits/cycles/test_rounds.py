@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.cycles.rounds import Rounds
+from orbits.cycles.rounds import Rounds, judged
 
 ROUNDS = 8
 
@@ -28,7 +28,7 @@ def test_no_cycle_that_is_real_and_stable_is_given_up(size):
         plain = 0.6 * generator.standard_normal((size, size))
         border, b = generator.standard_normal((2, size))
         maps = np.array([plain, plain + np.outer(generator.standard_normal(size), border)])
-        hopeless = Rounds(maps, 1e-14, True, maps).hopeless(ROUNDS)
+        hopeless = Rounds(maps, 1e-14, linear=True).hopeless(ROUNDS)
         for rounds in range(2, ROUNDS + 1):
             for changed in {1, rounds - 1}:
                 word = [1] * changed + [0] * (rounds - changed)
@@ -94,7 +94,25 @@ def test_determinants_of_another_sign_further_from_the_border_tell_nothing():
     assert not Rounds(small, 1e-12, False, other).hopeless(3)
 
 
+def test_maps_that_do_not_agree_on_the_border_are_judged_by_their_multipliers():
+    plain, changed = np.diag([0.5, 0.2]), np.array([[1.5, 1.0], [0.7, -3.0]])
+    maps = np.array([plain, changed])
+    judgement = judged([[(plain, 1e-15)] * 2, [(changed, 1e-15)] * 2])
+    assert judgement is not None and not judgement.linear
+    assert judgement.hopeless(ROUNDS) == {
+        (rounds, changed)
+        for rounds in range(3, ROUNDS + 1)
+        for changed in {1, rounds - 1}
+        if np.abs(np.linalg.eigvals(product(maps, rounds, changed))).max() > 1.5
+    }
+
+
+def product(maps, rounds, changed):
+    power = np.linalg.matrix_power
+    return power(maps[0], rounds - changed) @ power(maps[1], changed)
+
+
 def test_a_map_that_is_smooth_at_the_border_has_no_cycles_there():
     plain = np.array([[0.3, 0.4], [-0.2, 0.1]])
     maps = np.array([plain, plain])
-    assert {(2, 1), (3, 1), (3, 2), (8, 1), (8, 7)} <= Rounds(maps, 1e-14, True, maps).hopeless(ROUNDS)
+    assert {(2, 1), (3, 1), (3, 2), (8, 1), (8, 7)} <= Rounds(maps, 1e-14, linear=True).hopeless(ROUNDS)
