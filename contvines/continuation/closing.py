@@ -22,7 +22,8 @@ class Closing:
         engine = self.engine
         if chunk.values[0] == self.start.p:
             changes = chunk.values[1:] - chunk.values[:-1]
-            if (changes > 0.0).all() or (changes < 0.0).all():
+            rises = chunk.values[-1] > self.start.p
+            if (changes > 0.0 if rises else changes < 0.0).all():
                 return None  # from the start on the parameter only rises, or only falls
         far = NEAR * apart * (engine.upper - engine.lower)
         if self.start.p < chunk.values.min() - far or self.start.p > chunk.values.max() + far:

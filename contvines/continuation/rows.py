@@ -51,7 +51,7 @@ class Rows:
         """Smallest margin of each row, +inf where there are none."""
         margins = rows[..., 2 * self.m :]  # fmin passes over NaN
         if margins.ndim == 1 or not margins.shape[-1]:
-            return np.asarray(np.fmin.reduce(margins, axis=-1, initial=np.inf))
+            return np.fmin.reduce(margins, axis=-1, initial=np.inf)
         return np.fmin(_of_rows(np.fmin, margins), np.inf)
 
     def multipliers(self, rows: np.ndarray) -> np.ndarray:

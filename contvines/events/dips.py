@@ -62,24 +62,24 @@ def before_border(segment: Segment, position: float, border: Solved) -> tuple[fl
     """
     if not 0.0 < position < 1.0:
         return None
-    margins = segment.engine.margins
-    left, middle, right = values = margins(np.array([segment.a.row, border.row, segment.b.row]))
-    if middle.min() < MARGIN:  # one of a flight, say, that is over before the segment is
+    first = 2 * segment.engine.m
+    left, middle, right = (point.row[first:] for point in (segment.a, border, segment.b))
+    if (middle < MARGIN).any():  # one of a flight, say, that is over before the segment is
         return position, border
     rows, found = segment.rows(position * SHARES)
-    below = found & (rows[:, 2 * segment.engine.m :] < MARGIN).any(axis=1)
+    below = found & (rows[:, first:] < MARGIN).any(axis=1)
     for share in SHARES[below].tolist():
         point = segment.at(share * position)
         if point is not None:
             return share * position, point
     convex = (middle < (1.0 - position) * left + position * right).nonzero()[0]
     parts = (position * segment.length, (1.0 - position) * segment.length)
-    sides = values[:, convex].T.tolist()
-    suspects = [j for j, side in zip(convex.tolist(), sides) if dips(side[0], side[1], side[2], *parts)]
+    sides = (margins[convex].tolist() for margins in (left, middle, right))
+    suspects = [j for j, a, b, c in zip(convex.tolist(), *sides) if dips(a, b, c, *parts)]
     if not suspects:
         return None
     part = Segment(segment.engine, segment.a, border)
-    found = below_zero(part, lambda point: float(margins(point.row)[suspects].min()))
+    found = below_zero(part, lambda point: float(segment.engine.margins(point.row)[suspects].min()))
     if found is None:
         return None
     _, point = found

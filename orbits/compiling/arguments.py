@@ -68,12 +68,7 @@ class Workspace(NamedTuple):
     trial: np.ndarray
     """Unknowns that Newton's method tries, shape (L n,)."""
     lanes: np.ndarray
-    """For `orbits.elimination.vectorised`, as the next five: long cycles of two unknowns per node are condensed to short ones."""
-    short_F: np.ndarray
-    short_A: np.ndarray
-    short_D: np.ndarray
-    short_Q: np.ndarray
-    short_solution: np.ndarray
+    """For `orbits.elimination.vectorised`: long cycles of two unknowns per node are condensed to short ones; empty for others."""
     sines: np.ndarray
     """Of the phases of the nodes, the first one's return included, shape (L + 1,)."""
     cosines: np.ndarray

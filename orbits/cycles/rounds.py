@@ -141,8 +141,19 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
 
 def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:
     """Whether two derivatives differ by a matrix of rank one: on the border the maps are the same."""
-    values = np.linalg.svd(changed - plain, compute_uv=False)
-    return len(values) < 2 or bool(values[1] <= BOUNDED * max(float(values[0]), np.abs(plain).max()))
+    first, second = _two_largest(changed - plain)
+    return second <= BOUNDED * max(first, float(np.abs(plain).max()))
+
+
+def _two_largest(matrix: np.ndarray) -> tuple[float, float]:
+    """The two largest singular values; the second of a single number is 0."""
+    if len(matrix) != 2:
+        first, second, *_ = *np.linalg.svd(matrix, compute_uv=False).tolist(), 0.0
+        return first, second
+    (a, b), (c, d) = matrix.tolist()
+    squares, determinant = a * a + b * b + c * c + d * d, abs(a * d - b * c)
+    first = math.sqrt(0.5 * (squares + math.sqrt(max(squares * squares - 4.0 * determinant**2, 0.0))))
+    return first, determinant / first if first > 0.0 else 0.0
 
 
 def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, float] | None:

@@ -19,26 +19,29 @@ from contvines_ground.parts import part
 from orbits.compiling.arguments import Workspace
 from orbits.compiling.decorators import OPTIONS, kernel
 from orbits.elimination import two_unknowns
-from orbits.elimination.by_address import call, links
+from orbits.elimination.by_address import UNLINKED, call, links
 from orbits.elimination.closure import TINY, closing
-from orbits.elimination.vectorised import SHORTEST, lanes_size, short_cycle
+from orbits.elimination.vectorised import SHORTEST, room
 from orbits.multipliers.periodic_schur import scratch_size
+
+EMPTY = np.zeros(0)
 
 
 def workspace(length: int, node: int, parameters: int) -> Workspace:
     """Arrays for one system of `length` nodes of `node` unknowns and `parameters` numbers."""
     n = node
-    long = length if n == 2 else 0
     F, A, D, Q = (
         np.zeros((length, n)),
         np.zeros((length, n, n)),
         np.zeros((length, n, n)),
         np.zeros((length, n)),
     )
-    solution, lanes, short = np.zeros((2, length * n + 1)), np.zeros(lanes_size(long)), short_cycle(long)
-    short_F, short_A, short_D, short_Q, short_solution = short
-    stored, small, order = np.zeros((length, n, 3 * n + 2)), np.zeros((n, n + 2)), np.zeros(n + 1, np.int64)
-    listed = (F, A, D, Q, lanes, *short, solution, stored, small, order)
+    solution, stored = np.zeros((2, length * n + 1)), np.zeros((length, n, 3 * n + 2))
+    small, order = np.zeros((n, n + 2)), np.zeros(n + 1, np.int64)
+    lanes, addresses = EMPTY, UNLINKED
+    if n == 2 and length >= SHORTEST:
+        lanes, parts = room(length)
+        addresses = links((F, A, D, Q, *parts, solution, stored, small, order))
     return Workspace(
         F,
         A,
@@ -57,14 +60,9 @@ def workspace(length: int, node: int, parameters: int) -> Workspace:
         order=order,
         trial=np.zeros(length * n),
         lanes=lanes,
-        short_F=short_F,
-        short_A=short_A,
-        short_D=short_D,
-        short_Q=short_Q,
-        short_solution=short_solution,
         sines=np.zeros(length + 1),
         cosines=np.zeros(length + 1),
-        links=links(listed if n == 2 else (np.zeros(0),)),
+        links=addresses,
     )
 
 

@@ -6,6 +6,7 @@ do not move: their addresses are listed once, and compiled code calls a function
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -19,9 +20,10 @@ from orbits.compiling.decorators import digest_of
 from orbits.compiling.waiting import Kept, wait_for
 from orbits.elimination import closure, two_unknowns, vectorised
 from orbits.elimination.two_unknowns import eliminate
-from orbits.elimination.vectorised import ENDS, KEEP, LANES, PACK, SHORTEST, STATE, condense, expand
+from orbits.elimination.vectorised import ENDS, KEEP, LANES, PACK, STATE, condense, expand
 
 FUNCTIONS, ARRAYS = 1, 14
+UNLINKED = np.zeros(FUNCTIONS + ARRAYS, np.int64)  # of cycles that are too short to need them
 
 
 @intrinsic
@@ -82,11 +84,6 @@ def function() -> Any:
     return cfunc(types.float64(types.int64, types.float64, types.int64), cache=True, **MAKER)(_eliminate)
 
 
-def links(arrays: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Addresses of the function and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution, stored, small, order.
-
-    Zeros where the cycle is too short to need them.
-    """
-    if len(arrays[0]) < SHORTEST:
-        return np.zeros(FUNCTIONS + ARRAYS, np.int64)
+def links(arrays: Sequence[np.ndarray]) -> np.ndarray:
+    """Addresses of the function and of F, A, D, Q, scratch, the shorter F, A, D, Q, found, solution, stored, small, order."""
     return np.array([function().address] + [array.ctypes.data for array in arrays], np.int64)

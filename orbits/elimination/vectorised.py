@@ -23,9 +23,13 @@ SHORTEST = 32  # cycles shorter than this are eliminated by `orbits.elimination.
 PACK, KEEP, STATE, ENDS = 12 * LANES, 16 * LANES, 13 * LANES, 14 * LANES
 
 
-def lanes_size(length: int) -> int:
-    """Number of floats of scratch for a cycle of `length` nodes."""
-    return 0 if length < SHORTEST else length // LANES * (PACK + KEEP) + STATE + ENDS
+def room(length: int) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Room for a long cycle, and its parts: scratch, F, A, D, Q of the shorter cycle, and its two solutions."""
+    nodes = LANES + length % LANES
+    scratch = length // LANES * (PACK + KEEP) + STATE + ENDS
+    ends = np.cumsum((scratch, 2 * nodes, 4 * nodes, 4 * nodes, 2 * nodes, 2 * (2 * nodes + 1)))
+    whole = np.zeros(ends[-1])
+    return whole, np.split(whole, ends[:-1])
 
 
 @part(**FAST)
@@ -253,22 +257,3 @@ def expand(length, scratch, found, twist, solution):
                 solution[r, i + 1] = keep[b * KEEP + (2 * r + 1) * LANES + s]
         for j in range(2 * LANES, 2 * nodes + 1):
             solution[r, 2 * LANES * m + j - 2 * LANES] = found[r, j]
-
-
-def short_cycle(length: int) -> tuple[np.ndarray, ...]:
-    """Arrays of the shorter cycle: F, A, D, Q, and its two solutions; cycles that have none share empty ones."""
-    return _arrays(LANES + length % LANES) if length >= SHORTEST else NONE
-
-
-def _arrays(nodes: int) -> tuple[np.ndarray, ...]:
-    square = (nodes, 2, 2)
-    return (
-        np.zeros((nodes, 2)),
-        np.zeros(square),
-        np.zeros(square),
-        np.zeros((nodes, 2)),
-        np.zeros((2, 2 * nodes + 1)),
-    )
-
-
-NONE = _arrays(0)

@@ -116,3 +116,17 @@ def test_a_map_that_is_smooth_at_the_border_has_no_cycles_there():
     plain = np.array([[0.3, 0.4], [-0.2, 0.1]])
     maps = np.array([plain, plain])
     assert {(2, 1), (3, 1), (3, 2), (8, 1), (8, 7)} <= Rounds(maps, 1e-14, linear=True).hopeless(ROUNDS)
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_maps_agree_on_a_border_where_they_differ_by_rank_one(size):
+    generator = np.random.default_rng(size)
+    for _ in range(50):
+        plain, other = generator.standard_normal((2, size, size))
+        values = np.append(np.linalg.svd(other - plain, compute_uv=False), 0.0)
+        small = bool(values[1] <= 0.05 * max(values[0], np.abs(plain).max()))
+        known = judged([[(plain, 1e-15)] * 2, [(other, 1e-15)] * 2])
+        assert known is not None and known.linear == small
+        kicked = plain + 1e3 * np.outer(*generator.standard_normal((2, size)))
+        touched = judged([[(plain, 1e-15)] * 2, [(kicked, 1e-15)] * 2])
+        assert touched is not None and touched.linear
