@@ -8,9 +8,10 @@ from types import FunctionType
 from typing import Any
 
 import numpy as np
-from numba import njit, typeof, types  # pyright: ignore[reportPrivateImportUsage]
+from numba import typeof, types  # pyright: ignore[reportPrivateImportUsage]
 
 from contvines_ground.by_address import room_for, save
+from contvines_ground.parts import whole
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 """Of the compiler; without reference counts, which nobody would keep for the arrays at an address."""
@@ -54,7 +55,7 @@ class Keeper:
         # a copy, as numba would take a closure over an intrinsic for another function in every process
         write: Any = FunctionType(_write.__code__, _write.__globals__, f"save_{self.suffix}{mark}")
         write.__qualname__, write.__module__ = write.__name__, __name__
-        compiled: Any = njit(types.int64(types.int64, kind), cache=True, **OPTIONS)
+        compiled: Any = whole(types.int64(types.int64, kind), cache=True, **OPTIONS)
         self.known.append((-(-room_for(kind) // 8), compiled(write), self.make(kind, mark)))
         return self.keep(content)
 

@@ -6,15 +6,16 @@ What is used of numba's inner rooms is the same from 0.60 to 0.68.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from numba import njit
 from numba.core import types
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import NativeLowering
+
+from contvines_ground.compiler import Compiler
 
 
 class _Library(JITCodeLibrary):
@@ -44,14 +45,8 @@ class _Lowering(NativeLowering):
         return True
 
 
-class _Compiler(CompilerBase):
-    def define_pipelines(self) -> list[Any]:
-        manager = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        manager.passes = [
-            (_Lowering if step is NativeLowering else step, name) for step, name in manager.passes
-        ]
-        manager.finalize()
-        return [manager]
+class _Compiler(Compiler):
+    replaced: ClassVar[dict[Any, Any]] = {**Compiler.replaced, NativeLowering: _Lowering}
 
 
 class Part(CPUDispatcher):

@@ -12,7 +12,6 @@ from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from contvines_ground.by_address import (
     NOTHING,
@@ -25,7 +24,7 @@ from contvines_ground.by_address import (
     own_digest,
 )
 from contvines_ground.kept import OPTIONS, Keeper
-from contvines_ground.parts import part
+from contvines_ground.parts import part, whole
 
 kernel: Any = None  # these are put in per set of kernels
 unpack: Any = None
@@ -145,7 +144,7 @@ class Addressed:
             function.__code__, {**globals(), "kernel": inner, "unpack": loader(self._kind)}, name
         )
         copy.__qualname__, copy.__module__ = name, __name__
-        return address_of(njit(cache=True, **OPTIONS)(copy), *KINDS[function])
+        return address_of(whole(cache=True, **OPTIONS)(copy), *KINDS[function])
 
 
 class Outlined:

@@ -14,13 +14,17 @@ from numba import njit
 from numba.core import config
 
 Part: Any
+MAKER: dict[str, Any]
 try:
+    from contvines_ground.compiler import Compiler
     from contvines_ground.linked import Part
+
+    MAKER = {"pipeline_class": Compiler}
 except (
     ImportError,
     AttributeError,
-):  # a numba with other inner rooms: parts are functions like any, and take longer to compile
-    Part = None
+):  # a numba with other inner rooms: parts are functions like any, and all take longer to compile
+    Part, MAKER = None, {}
 
 
 def part(**options: Any) -> Callable[[Any], Any]:
@@ -38,3 +42,16 @@ def part(**options: Any) -> Callable[[Any], Any]:
         return njit(**options)(function) if Part is None else Part(function, None, options)
 
     return decorate
+
+
+def whole(*signature: Any, **options: Any) -> Callable[[Any], Any]:
+    """Decorator of functions that Python calls: `numba.njit`, which takes less time.
+
+    Parameters
+    ----------
+    *signature
+        To compile at once.
+    **options
+        Of `numba.njit`.
+    """
+    return njit(*signature, **MAKER, **options)

@@ -1,9 +1,9 @@
 """Compiling beside other work: what a first run needs later is compiled by a second process meanwhile.
 
 numba compiles one function at a time in a process. On a machine with a second core another process compiles the
-kernel `inspect`, the simulator, what looks beyond borders, and at last what only other runs need: its loop over many starts and
-the elimination of long words. Meanwhile this one compiles Newton's method and the continuation loop; both find each other's
-results in numba's cache on disk.
+kernel `inspect`, the simulator, the elimination of long words and the loop over many starts, while this one compiles Newton's
+method, the continuation loop and what judges borders; both find each other's results in numba's cache on disk. The work is parted so
+that both end at about the same time.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ import numpy as np
 from numba import config, typeof
 
 from orbits.compiling.waiting import cached, processes
-from orbits.cycles import kernels, rounds
+from orbits.cycles import kernels
 from orbits.cycles.cycle import Cycle
-from orbits.cycles.round_maps import sides_of_cycles, through_flights
 from orbits.cycles.sampling import positions
 from orbits.elimination import by_address
 from orbits.machines.catalogue import model_class, usual
@@ -51,7 +50,8 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
     digest = kernels.assemble(usual(name)[0]).digest
     program = "import gc; gc.set_threshold(200_000, 20, 100)\n"  # compiling makes many objects that stay
     program += "from contvines_ground.stack import with_room; from orbits.precompile import compile_as\n"
-    program += f"with_room(compile_as, {digest!r}, {name!r}, *{more!r})"
+    program += f"with_room(compile_as, {digest!r}, {name!r}, *{more!r})\n"
+    program += "gc.freeze()"  # else everything is looked through once more at the end
     # the very modules and the very cache of this process, wherever it was started
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     place = getattr(config, "CACHE_DIR", "")
@@ -71,8 +71,8 @@ def compile_ahead(name: str, *more: str) -> subprocess.Popen[bytes] | None:
         return None
     processes[name] = process
     node = usual(name)[0].node
-    for function in (through_flights, sides_of_cycles, *([periodic_multipliers] if _is_slow(node) else [])):
-        processes[function.__name__] = process
+    if _is_slow(node):
+        processes[periodic_multipliers.__name__] = process
     if node == 2:
         processes[by_address.__name__] = process
     return process
@@ -114,7 +114,6 @@ def compile_now(name: str, *more: str) -> None:
     motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
     motion.sample()
     positions(Cycle(model, problem.word, 1, np.zeros((2, n)), problem.params))
-    rounds.prepare()
     if n == 2:
         by_address.function()
     compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))

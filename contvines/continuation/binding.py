@@ -87,6 +87,7 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
     from numba import njit
 
     from contvines_ground.outlined import outlined
+    from contvines_ground.parts import whole
 
     from ..problems.kernels import kernels_digest
     from .kept import Kept
@@ -103,15 +104,15 @@ def _make(kernels: Any, rule: StepRule) -> Bound:
         rule is not BY_ANGLE
     )  # a user's function may change while its loop is kept on disk: compiled in every process
     judge = compiled_rule(rule) if own else inside(copy_with(by_angle, suffix))
-    march = njit(cache=not own, **OPTIONS)(
+    march = whole(cache=not own, **OPTIONS)(
         copy_with(loop.march, suffix, correct=correct, judge=judge, **sums, **functions)
     )
 
-    def whole() -> Any:
+    def inlining() -> Any:
         names = {"unpack": inside(_itself), "improve": inside(improve), **sums, **functions, **search}
-        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix, **names))
+        return whole(cache=True, **OPTIONS)(copy_with(corrector.points, suffix, **names))
 
-    return Bound(march, corrector.points, Kept(outlined(kernels, digest), _keeper(), whole))
+    return Bound(march, corrector.points, Kept(outlined(kernels, digest), _keeper(), inlining))
 
 
 def _itself(frame):
@@ -139,11 +140,10 @@ def _pieces() -> tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]:
 @cache
 def _keeper() -> Keeper:
     """Of the compiled `points` that calls kernels by address: one for all problems."""
-    from numba import njit
-
     from contvines_ground.by_address import loader, own_digest
     from contvines_ground.kept import Keeper
     from contvines_ground.outlined import callers
+    from contvines_ground.parts import whole
 
     inside, sums, search = _pieces()
     suffix = f"_{_loop_digest()}_{own_digest()}"
@@ -151,7 +151,7 @@ def _keeper() -> Keeper:
 
     def make(kind: Any, mark: str) -> Any:
         names = {"unpack": loader(kind), "improve": improve, **sums, **callers(), **search}
-        return njit(cache=True, **OPTIONS)(copy_with(corrector.points, suffix + mark, **names))
+        return whole(cache=True, **OPTIONS)(copy_with(corrector.points, suffix + mark, **names))
 
     return Keeper(make, suffix)
 

@@ -237,9 +237,7 @@ def turns_twice(here, there, mean):
 
 @cache
 def _compiled() -> Callable[..., Any]:
-    from numba import njit
-
-    from contvines_ground.parts import part
+    from contvines_ground.parts import part, whole
 
     from ..continuation.binding import OPTIONS, copy_with
 
@@ -251,7 +249,7 @@ def _compiled() -> Callable[..., Any]:
     # sums in any order, so that they are vector instructions; NaN and infinity keep their meaning
     fast = {"fastmath": {"reassoc", "contract", "nsz"}, **OPTIONS}
     inner["one_dips"] = part(**fast)(copy_with(one_dips, f"_{digest}", dips=inner["dips"]))
-    return njit(cache=True, **fast)(copy_with(mark_segments, f"_{digest}", **inner))
+    return whole(cache=True, **fast)(copy_with(mark_segments, f"_{digest}", **inner))
 
 
 def prepare() -> None:

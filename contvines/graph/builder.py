@@ -166,11 +166,8 @@ def trace_pending(run: Run, pending: Pending) -> None:
             f"the branch dies at its first point, {name} = {first.p:.10g}, in every direction: "
             + "; ".join(dict.fromkeys(ending.sentence(name) for ending in endings))
         )
-    if (
-        pending.kind is Origin.REST
-        and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p)
-        and len(half) < 4
-    ):
+    few = pending.kind is Origin.REST and len(half) < 4
+    if few and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p):
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return

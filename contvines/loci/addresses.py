@@ -23,7 +23,7 @@ from contvines_ground.by_address import (
     room_for,
     save,
 )
-from contvines_ground.parts import part
+from contvines_ground.parts import part, whole
 
 from ..continuation.binding import OPTIONS, copy_with
 
@@ -189,6 +189,6 @@ def addresses(kernels: dict[str, Any], data: Any, work: Any, digest: str) -> np.
     found = []
     for function, arguments in signatures.items():
         outlined = copy_with(function, f"_{digest}", kernel=kernels[function.__name__[1:]], **loaders)
-        compiled = njit(cache=True, **OPTIONS)(outlined)
+        compiled = whole(cache=True, **OPTIONS)(outlined)
         found.append(address_of(compiled, *arguments))
     return np.array(found, np.int64)

@@ -68,7 +68,7 @@ def locus_kernels(problem: Problem) -> tuple[Kernels, np.ndarray]:
 @cache
 def _compiled_once() -> Kernels:
     """The compiled kernels of all loci."""
-    from numba import njit
+    from contvines_ground.parts import whole
 
     from .addresses import callers
 
@@ -78,7 +78,7 @@ def _compiled_once() -> Kernels:
     ]
     digest = hashlib.blake2b(b"".join(path.read_bytes() for path in sources), digest_size=6).hexdigest()
     digest += own_digest()
-    return _bind(callers(), njit(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")
+    return _bind(callers(), whole(cache=True, **OPTIONS), f"_{digest}", True, f"locus_{digest}")
 
 
 def _bind(

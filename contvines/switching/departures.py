@@ -327,11 +327,8 @@ def _lined(
             ahead = None
         if not _lined_up(engine, z, back, behind, least):
             back = None
-        if (
-            ahead is not None
-            and near is not None
-            and (one_sided or (back is not None and behind is not None))
-        ):
+        both = one_sided or (back is not None and behind is not None)
+        if ahead is not None and near is not None and both:
             if one_sided:
                 wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / half**2, 0.0
             else:

@@ -12,19 +12,17 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
-from numba import njit
-
-from contvines_ground.parts import part
+from contvines_ground.parts import part, whole
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 
 kernel = part(forceinline=True, **OPTIONS)
 """Decorator of functions that other compiled functions call."""
 
-stored_kernel = njit(cache=True, **OPTIONS)
+stored_kernel = whole(cache=True, **OPTIONS)
 """Decorator of functions that are called from Python as well, and kept on disk."""
 
-inlined_kernel = njit(cache=True, forceinline=True, **OPTIONS)
+inlined_kernel = whole(cache=True, forceinline=True, **OPTIONS)
 """Decorator of functions that other compiled functions call, and that are kept on disk by themselves."""
 
 
@@ -43,7 +41,7 @@ def stored_with(*modules: ModuleType, **options: Any) -> Callable[[Callable], An
 
     def decorate(function: Callable) -> Any:
         function.__qualname__ = f"{function.__name__}_{digest}"
-        return njit(cache=True, error_model="numpy", **options)(function)
+        return whole(cache=True, error_model="numpy", **options)(function)
 
     return decorate
 
@@ -61,5 +59,5 @@ def specialise(
     copy.__qualname__ = qualified
     copy.__module__ = function.__module__
     if options is not None:
-        return njit(cache=True, **options)(copy)
+        return whole(cache=True, **options)(copy)
     return (inlined_kernel if inline else stored_kernel)(copy)

@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.compiling.waiting import wait_for
 from orbits.cycles.round_maps import sides_of_cycles, through_flights
 
 MOST = 8  # up to so many rounds of a cycle are joined to one at a border
@@ -86,7 +85,6 @@ def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     """Sides and products of the cycles of up to `most` rounds; see `orbits.cycles.round_maps.sides_of_cycles`."""
     table, n = _table(most), maps.shape[1]
     sides, products = np.empty((len(table), 2)), np.empty((len(table), n, n))
-    wait_for(sides_of_cycles.__name__, sides_of_cycles)
     sides_of_cycles(np.ascontiguousarray(maps), table, sides, products, np.empty((3, n, n)))
     return sides, products
 
@@ -171,18 +169,10 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     n = A.shape[1]
     whole, sizes = np.empty((2, n, n))
     after = np.empty((0, n, n)) if D is None else D
-    wait_for(through_flights.__name__, through_flights)
     if not through_flights(np.ascontiguousarray(A), after, whole, sizes, np.empty((3, n, n))):
         return None
     error = ROUNDING * float(sizes.max())
     return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
-
-
-def prepare() -> None:
-    """Compile, or take from the cache on disk, what rounds are judged with."""
-    one = np.ones((2, 1, 1))
-    derived(one, one)
-    _sides(one, 2)
 
 
 def escape(symmetric: bool, rounds: int) -> str:

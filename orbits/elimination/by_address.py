@@ -15,6 +15,7 @@ from llvmlite import ir
 from numba import carray, cfunc, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.extending import intrinsic
 
+from contvines_ground.parts import MAKER
 from orbits.compiling.decorators import digest_of
 from orbits.compiling.waiting import Kept, wait_for
 from orbits.elimination import closure, two_unknowns, vectorised
@@ -80,7 +81,7 @@ def function() -> Any:
     # numba looks at this file only, not at those whose functions are called
     _eliminate.__qualname__ = f"eliminate_{digest_of(closure, two_unknowns, vectorised)}"
     wait_for(__name__, Kept(_eliminate))
-    return cfunc(types.float64(types.int64, types.float64, types.int64), cache=True)(_eliminate)
+    return cfunc(types.float64(types.int64, types.float64, types.int64), cache=True, **MAKER)(_eliminate)
 
 
 def links(arrays: Sequence[np.ndarray]) -> np.ndarray:
