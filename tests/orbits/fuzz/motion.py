@@ -24,7 +24,7 @@ def apart(one: Any, other: Any, *, images: bool = True) -> float:
     periods = math.lcm(one.periods, other.periods)
     if periods > LONGEST:
         return math.nan
-    here, there = (np.tile(orbit.track(PER_PERIOD), periods // orbit.periods) for orbit in (one, other))
+    here, there = (np.tile(orbit.track, periods // orbit.periods) for orbit in (one, other))
     free = not (one.impacts and other.impacts)
     faces = [here]
     if images and one.model.has_mirror(one.params):
@@ -38,7 +38,7 @@ def shortest(orbit: Any, near: float = 1e-7) -> int:
     """Forcing periods after which w comes back, a divisor of the orbit's own."""
     for periods in range(1, orbit.periods):
         if orbit.periods % periods == 0:
-            gap = np.roll(orbit.track(PER_PERIOD), periods * PER_PERIOD) - orbit.track(PER_PERIOD)
+            gap = np.roll(orbit.track, periods * PER_PERIOD) - orbit.track
             if np.abs(gap).max() < near * orbit.model.natural_units(orbit.params)[0]:
                 return periods
     return orbit.periods
