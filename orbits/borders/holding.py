@@ -64,10 +64,11 @@ def hold(
         cavity, slopes = other.model.cavity_speed(node, other.values(q))
         beside, _ = other.model.cavity_speed(node, other.values(q + near))
         own = float(unit[1])
-        border[first * n : (first + 1) * n] = -sign / own * slopes * unit
+        cavity, beside = cavity / own, beside / own
+        border[first * n : (first + 1) * n] = -sign * slopes * unit / own
         border[first * n + 1] += sign
-        border[size] = -sign * (beside - cavity) / (own * near)
-        speed = sign * (float(u[first * n + 1]) - cavity / own)
+        border[size] = -sign * (beside - cavity) / near
+        speed = sign * (float(u[first * n + 1]) - cavity)
         u[first * n + 1] += sign * (wanted - speed)
         if (
             len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
