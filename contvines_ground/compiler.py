@@ -12,11 +12,16 @@ from __future__ import annotations
 from types import FunctionType, SimpleNamespace
 from typing import Any, ClassVar
 
+from numba import version_info
 from numba.core import typed_passes, typeinfer
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import register_pass
 from numba.core.targetconfig import ConfigStack
 from numba.core.types import Function
+
+NEWEST = (0, 68)
+if version_info.short > NEWEST:
+    raise ImportError(f"the inner rooms of numba {version_info.string} are not known here")
 
 
 class _Given(Flags):

@@ -61,6 +61,10 @@ class Part(CPUDispatcher):
         super().__init__(function, locals or {}, {**(options or {}), "nopython": True}, _Compiler)
         self._whole: Any = None
 
+    def called_by(self, whole: Any) -> None:
+        """What Python is to call in place of this function, which calls it: one that is kept on disk. The first one stays."""
+        self._whole = self._whole or whole
+
     def get_call_template(self, args: Any, kws: Any) -> Any:
         # one compilation for all numbers of a type, be they written out or not: inlined, those written out are known all the same
         return super().get_call_template([types.unliteral(kind) for kind in args], kws)

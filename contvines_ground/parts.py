@@ -44,6 +44,13 @@ def part(**options: Any) -> Callable[[Any], Any]:
     return decorate
 
 
+def from_python(function: Any, caller: Any) -> Any:
+    """The part, and `caller`, a compiled function that does nothing but call it, for whoever calls it from Python all the same."""
+    if Part is not None and isinstance(function, Part):
+        function.called_by(caller)
+    return function
+
+
 def whole(*signature: Any, **options: Any) -> Callable[[Any], Any]:
     """Decorator of functions that Python calls: `numba.njit`, which takes less time.
 

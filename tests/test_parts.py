@@ -2,6 +2,8 @@
 
 import math
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from numba import config, njit
 from numba.core.errors import TypingError
 
 from contvines_ground import parts
-from contvines_ground.parts import part
+from contvines_ground.parts import from_python, part
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 
@@ -91,3 +93,32 @@ def test_with_another_numba_a_part_is_a_function_like_any(monkeypatch):
 
     assert half(3.0) == 1.5
     assert caller(3.0) == 2.5
+
+
+def test_python_calls_what_is_kept_on_disk_where_there_is_such_a_function():
+    @part(error_model="numpy")
+    def third(a):
+        return a / 3.0
+
+    @njit(error_model="numpy")
+    def caller(a):
+        return third(a)
+
+    assert from_python(third, caller) is third
+    from_python(third, njit(lambda a: 0.0 * a))  # the first one stays
+    assert third(6.0) == 2.0
+    assert len(caller.overloads) == 1
+
+
+NEWER = """
+import numba
+numba.version_info = numba.version_info._replace(short=(9, 1), string="9.1.0")
+from contvines_ground import parts
+assert parts.Part is None and parts.MAKER == {}
+print(parts.part()(lambda a: a + 1.0)(2.0), parts.whole()(lambda a: 2.0 * a)(2.0))
+"""
+
+
+def test_a_numba_that_is_not_known_compiles_as_it_likes():
+    told = subprocess.run([sys.executable, "-c", NEWER], capture_output=True, text=True, check=True)
+    assert told.stdout.split() == ["3.0", "4.0"]

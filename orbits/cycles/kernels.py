@@ -16,6 +16,7 @@ from numba import types
 
 from contvines_ground.by_address import NUMBER, VECTOR, WHOLE, own_digest
 from contvines_ground.outlined import callers, outlined
+from contvines_ground.parts import from_python
 from orbits.compiling import arguments, trigonometry
 from orbits.compiling import decorators as compiling
 from orbits.compiling.decorators import specialise
@@ -77,6 +78,10 @@ def _inspect(data, u, p, work, row):
         row[2 * j] = re[j]
         row[2 * j + 1] = im[j]
     margins(data, u, p, work, row[2 * count :])
+
+
+def _bordered(data, work, border, target, step, tangent):
+    return bordered(data, work, border, target, step, tangent)
 
 
 def _newton(kernels, at, u, p, trial, border, step, tangent, tolerance, limit):
@@ -252,6 +257,7 @@ def _assemble(kernels: Any, node: int, name: str) -> Kernels:
     digest = hashlib.blake2b(b"".join(Path(file).read_bytes() for file in files), digest_size=6).hexdigest()
     stamp = f"{name}_{digest}"
     eliminate = block_cyclic.cyclic_kernels(node).bordered
+    from_python(eliminate, specialise(_bordered, stamp, bordered=eliminate))  # loci do, point by point
     inspect = specialise(
         _inspect,
         stamp,
