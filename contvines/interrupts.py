@@ -37,15 +37,15 @@ def listening() -> Iterator[None]:
     if not _unheard():
         yield
         return
-    signal.signal(signal.SIGINT, _interrupted)
-    _state.listening = True
-    try:
+    try:  # an interrupt may come as soon as it is listened to
+        _state.listening = True
+        _plain.signal(signal.SIGINT, _interrupted)
         yield
     except BaseException:
         take()
         raise
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        _plain.signal(signal.SIGINT, signal.default_int_handler)
         _state.held, _state.listening = 0, False
     if _state.wanted:
         take()
@@ -83,9 +83,17 @@ class Section:
 
     def __enter__(self) -> None:
         if self.held and not _state.held and not _state.listening and _unheard():
-            _plain.signal(signal.SIGINT, _interrupted)
             _state.alone = True
-        _state.held += self.held
+            try:
+                _plain.signal(signal.SIGINT, _interrupted)
+                _state.held = 1
+            except BaseException:  # an interrupt that came in between: the section does not begin
+                _plain.signal(signal.SIGINT, signal.default_int_handler)
+                _state.held, _state.alone = 0, False
+                take()
+                raise
+        else:
+            _state.held += self.held
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

@@ -10,6 +10,7 @@ import time
 import pytest
 
 import contvines as cv
+from contvines import interrupts
 from contvines.graph.persistence import same_graph
 from contvines.interrupts import HELD, OPEN, listening
 from orbits import Absorber
@@ -177,3 +178,26 @@ def test_a_held_section_keeps_an_interrupt_back_though_nobody_listens(capfd):
             signal.raise_signal(signal.SIGINT)
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("begin", [listening, lambda: HELD], ids=["listening", "held"])
+def test_an_interrupt_that_comes_as_soon_as_it_is_listened_to_is_raised_once(begin, monkeypatch):
+    class Hasty:
+        getsignal = staticmethod(signal.getsignal)
+
+        @staticmethod
+        def signal(number, handler):
+            signal.signal(number, handler)
+            if handler is interrupts._interrupted:
+                signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(interrupts, "_plain", Hasty)
+    with pytest.raises(KeyboardInterrupt), begin():
+        raise AssertionError("the work has begun")
+    monkeypatch.undo()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with listening(), HELD:
+        pass  # nothing is left to be raised
+    with HELD:
+        pass
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
