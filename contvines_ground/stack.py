@@ -2,7 +2,7 @@
 
 CPython keeps the frames of Python functions in chunks of 16 KB. A loop that stands at the end of one and calls a function has a
 chunk mapped and given back with each turn, by two calls of the operating system: numba's compiler did so half a million times in
-a first run, for a quarter of its time. A function whose frame needs more gets a chunk of the next power of two, and what it calls
+a first run, for a fifth to a third of its time. A function whose frame needs more gets a chunk of the next power of two, and what it calls
 finds its frames in the rest.
 """
 

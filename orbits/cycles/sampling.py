@@ -15,7 +15,7 @@ from orbits.machines.states import placed, state_of, states_of
 from orbits.machines.stepping import RATE
 
 PER_PERIOD = 200  # instants of a forcing period at which motions are compared
-GRID = np.arange(41.0)
+GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
 
 def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
