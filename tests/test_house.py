@@ -1,4 +1,4 @@
-"""The house in order: no file that cannot be read in one sitting, no function without an end, no two files that need one another."""
+"""The package structure in order: no two files that need one another."""
 
 import ast
 from functools import cache
@@ -6,8 +6,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("contvines", "orbits", "contvines_ground")
-LINES, FUNCTION = 350, 120
-FILES = sorted(path for package in (*PACKAGES, "tests") for path in (ROOT / package).rglob("*.py"))
 
 
 def module_of(path):
@@ -18,15 +16,6 @@ def module_of(path):
 @cache
 def parsed(path):
     return ast.parse(path.read_text())
-
-
-def functions(tree):
-    return [node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
-
-
-def says_why(node):
-    """Kernels, whose parts share too many numbers to be functions of their own, may be long; their docstrings say so."""
-    return "In one piece: " in (ast.get_docstring(node) or "")
 
 
 def imports(path, known):
@@ -46,22 +35,6 @@ def imports(path, known):
         else:
             continue
         yield from (name for name in wanted if name in known and name != own)
-
-
-def test_files_are_short():
-    long = {path: path.read_text().count("\n") for path in FILES}
-    long = {str(path.relative_to(ROOT)): lines for path, lines in long.items() if lines > LINES}
-    assert not long, f"more than {LINES} lines: {long}; what is their second concept?"
-
-
-def test_functions_are_short():
-    long = [
-        f"{path.relative_to(ROOT)}: {node.name}"
-        for path in FILES
-        for node in functions(parsed(path))
-        if (node.end_lineno or 0) - node.lineno >= FUNCTION and not says_why(node)
-    ]
-    assert not long, f"more than {FUNCTION} lines: {', '.join(long)}"
 
 
 def in_circles(needs):
