@@ -1,7 +1,15 @@
-"""What all tests share: hypothesis draws the same examples every time, however long they take; `pytest --hypothesis-profile=search` draws new ones."""
+"""What all tests share: a native core that belongs to its sources; hypothesis draws the same examples every time, however long they take; `pytest --hypothesis-profile=search` draws new ones."""
+
+from contextlib import suppress
 
 from hypothesis import settings
+
+from contvines.core.build import NotBuilt, build, up_to_date
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("search", derandomize=False, deadline=None)
 settings.load_profile("repeatable")
+
+if not up_to_date():
+    with suppress(NotBuilt):  # the reference core computes then
+        build()

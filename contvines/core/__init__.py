@@ -1,0 +1,1 @@
+"""General numerics that know no machine: the native core and its reference in numpy."""

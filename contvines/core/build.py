@@ -1,0 +1,137 @@
+"""Compile the native core: ``python -m contvines.core.build`` in a checkout; wheels are built by ``hatch_build.py``.
+
+This file needs nothing but the standard library, so that a build can use it before anything is installed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SOURCES = HERE.parents[1] / "native"
+SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+VARIANTS = {"baseline": (), "avx2": ("-mavx2",)}
+FLAGS = (
+    "-std=c++20",
+    "-O3",
+    "-fno-exceptions",
+    "-fno-rtti",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+    "-fvisibility=hidden",
+)
+ZIG = "ziglang==0.13.0"
+"""The compiler in a wheel that a build asks for where the system has none."""
+
+
+class NotBuilt(Exception):
+    """The native core cannot be compiled; the sentence says why."""
+
+
+def variants() -> tuple[str, ...]:
+    """Names of the variants for this machine's processor."""
+    return ("baseline", "avx2") if platform.machine().lower() in ("x86_64", "amd64") else ("baseline",)
+
+
+def path_of(variant: str, folder: Path = HERE) -> Path:
+    """File of a variant's library."""
+    return folder / f"libcontvines-{variant}{SUFFIX}"
+
+
+def digest(sources: Path = SOURCES) -> str:
+    """Digest of all native sources and of the flags."""
+    found = hashlib.blake2b(repr((FLAGS, VARIANTS)).encode(), digest_size=8)
+    for file in sorted(sources.iterdir()):
+        if file.suffix in (".h", ".hpp", ".cpp"):
+            found.update(file.name.encode() + file.read_bytes())
+    return found.hexdigest()
+
+
+def up_to_date(folder: Path = HERE) -> bool:
+    """Whether the libraries in a folder belong to the sources of this checkout (their digest is a string in them)."""
+    mark = digest().encode()
+    paths = [path_of(variant, folder) for variant in variants()]
+    return all(path.exists() and mark in path.read_bytes() for path in paths)
+
+
+def compiler() -> list[str] | None:
+    """Command of the system's C++ compiler: ``CXX``, c++, g++ or clang++; None if there is none."""
+    given = os.environ.get("CXX")
+    if given and shutil.which(shlex.split(given)[0]):
+        return shlex.split(given)
+    found = next((path for name in ("c++", "g++", "clang++") if (path := shutil.which(name))), None)
+    return [found] if found else None
+
+
+def zig(target: str = "") -> list[str] | None:
+    """Command of the compiler in the wheel `ziglang`; None if it is not installed."""
+    from importlib.util import find_spec
+
+    if find_spec("ziglang") is None:
+        return None
+    return [sys.executable, "-m", "ziglang", "c++", *(["-target", target] if target else [])]
+
+
+def build(folder: Path = HERE, command: list[str] | None = None) -> list[Path]:
+    """Compile all variants for this machine into a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    command : list of str, optional
+        The compiler; by default the system's, else zig's.
+
+    Returns
+    -------
+    list of Path
+        The libraries.
+
+    Raises
+    ------
+    NotBuilt
+        If there is no compiler, or it fails.
+    """
+    command = command or compiler() or zig()
+    if command is None:
+        raise NotBuilt(f"there is no C++ compiler (CXX, c++, g++, clang++); pip install {ZIG} brings one")
+    mark = f'-DCORE_DIGEST="{digest()}"'
+    made = []
+    for variant in variants():
+        target = path_of(variant, folder)
+        unfinished = target.with_name(f"{target.stem}-{os.getpid()}{SUFFIX}")
+        flags = [*FLAGS, *VARIANTS[variant], *([] if sys.platform == "win32" else ["-fPIC"]), mark]
+        for libraries in (["-nostdlib++", "-lm"], ["-nodefaultlibs", "-lm", "-lc", "-lgcc"], ["-lm"]):
+            # the second for versions of g++ that do not know -nostdlib++
+            done = subprocess.run(
+                [*command, *flags, "-shared", "-o", str(unfinished), str(SOURCES / "core.cpp"), *libraries],
+                capture_output=True,
+                text=True,
+            )
+            if done.returncode == 0:
+                break
+        else:
+            raise NotBuilt(f"{shlex.join(command)} fails on native/core.cpp: {done.stderr.strip()[-2000:]}")
+        os.replace(unfinished, target)
+        made.append(target)
+    return made
+
+
+def main() -> None:
+    """Build in place and say where."""
+    try:
+        for path in build():
+            print(path)
+    except NotBuilt as error:
+        sys.exit(f"The native core is not built: {error}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,96 @@
+"""The native core's shared library: which one is loaded, and how its functions are declared.
+
+The environment variable ``CONTVINES_CORE`` chooses: ``reference`` (no library), ``baseline`` or ``avx2`` (this variant). Without it
+the best variant for the processor is loaded; where no library can be, one line says so and the reference core computes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from .build import SOURCES, digest, path_of, variants
+
+WHOLE, NUMBER, POINTER, NOTHING = ctypes.c_int64, ctypes.c_double, ctypes.c_void_p, None
+"""Types of arguments and results; arrays are pointers (`address`)."""
+
+CHOICES = ("reference", "baseline", "avx2")
+
+
+class Unusable(Exception):
+    """A library cannot be used; the sentence says why."""
+
+
+@cache
+def library() -> Any | None:
+    """The loaded library (`ctypes.CDLL`), or None where the reference core computes.
+
+    Raises
+    ------
+    ValueError
+        If ``CONTVINES_CORE`` is no known choice.
+    """
+    choice = os.environ.get("CONTVINES_CORE", "")
+    if choice == "reference":
+        return None
+    if choice and choice not in CHOICES:
+        raise ValueError(f"CONTVINES_CORE={choice!r} is unknown; choose one of {', '.join(CHOICES)}")
+    try:
+        return _load(choice)
+    except Unusable as error:
+        print(f"contvines computes slowly, without its native core: {error}", file=sys.stderr)
+        return None
+
+
+def _load(choice: str) -> Any:
+    """The variant of this name, or the best one."""
+    baseline = _open("baseline")
+    if choice == "baseline" or "avx2" not in variants():
+        return baseline
+    baseline.core_avx2.restype = WHOLE
+    if baseline.core_avx2():
+        return _open("avx2")
+    if choice == "avx2":
+        raise Unusable("CONTVINES_CORE=avx2, but this processor has no AVX2")
+    return baseline
+
+
+def _open(variant: str) -> Any:
+    path = path_of(variant)
+    checkout = (SOURCES / "core.cpp").exists()
+    again = "run python -m contvines.core.build" if checkout else "install contvines again"
+    if not path.exists():
+        raise Unusable(f"{path} is missing; {again}")
+    try:
+        found = ctypes.CDLL(str(path))
+    except OSError as error:
+        raise Unusable(f"{path} cannot be loaded ({error}); {again}") from error
+    found.core_digest.restype = ctypes.c_char_p
+    if checkout and found.core_digest().decode() != digest():
+        raise Unusable(f"{path} is older than its sources; {again}")
+    return found
+
+
+def native() -> bool:
+    """Whether the native core computes."""
+    return library() is not None
+
+
+@cache
+def function(name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
+    """A function of the library by name, with the types of its result and arguments."""
+    found = library()
+    if found is None:
+        raise RuntimeError(f"{name} belongs to the native core, which is not loaded")
+    declared = found[name]  # an object of its own, not shared with other declarations
+    declared.restype, declared.argtypes = result, arguments
+    return declared
+
+
+def address(array: Any) -> int:
+    """Address of an array's first element; the array has to be C-contiguous."""
+    return array.__array_interface__["data"][0]
