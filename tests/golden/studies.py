@@ -1,0 +1,97 @@
+"""The golden studies: what is computed, from starts that are stored so that nothing has to be looked for."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import contvines as cv
+import orbits
+from orbits.declared.loading import load_page
+from tests.contvines.problems.demos import listed, maps
+from tests.contvines.problems.demos.make_table import graph_of
+
+from .compact import of_chart, of_graph
+
+HERE = Path(__file__).parent
+GRAPHS = HERE / "graphs"
+PAGES = HERE.parents[1] / "examples" / "machines"
+
+
+def starts() -> dict[str, Any]:
+    """Machines with the nodes of a first orbit and the options of a diagram, by name; see `make_starts.py`."""
+    return json.loads((HERE / "starts.json").read_text())
+
+
+def first_orbit(start: dict[str, Any]) -> Any:
+    """The first orbit of a stored start."""
+    if start["machine"].endswith(".py"):
+        machine = load_page(PAGES / start["machine"], "machine")
+    else:
+        machine = getattr(orbits, start["machine"])(**start["given"])
+    return machine.orbit(start["word"], start["periods"], start["nodes"], **start["values"])
+
+
+def diagram(start: dict[str, Any]) -> dict[str, Any]:
+    return of_graph(cv.diagram(first_orbit(start), **start["options"]))
+
+
+def demo(name: str) -> dict[str, Any]:
+    entry = next(entry for entry in [*listed.DEMOS, *maps.DEMOS] if entry.name == name)
+    return of_graph(graph_of(entry))
+
+
+def chart(start: dict[str, Any], over: str, within: tuple[float, float], **options: Any) -> dict[str, Any]:
+    graph = cv.diagram(first_orbit(start), **start["options"])
+    return of_chart(cv.chart(graph, over=over, within=within, regions=False, **options))
+
+
+def atlas(start: dict[str, Any], **options: Any) -> dict[str, Any]:
+    settings = {**start["options"], **options}
+    return of_graph(cv.atlas(first_orbit(start).model, **settings))
+
+
+_CHARTS: dict[str, tuple[str, str, tuple[float, float], dict[str, Any]]] = {
+    "chart friction": ("friction", "friction", (0.3, 0.7), {"depth": 0}),
+    "chart frequency": ("coupled, stronger", "forcing", (2.8, 3.4), {"depth": 0}),
+}
+_ATLASES: dict[str, tuple[str, dict[str, Any]]] = {
+    "atlas friction": (
+        "friction",
+        {"values": [0.3, 0.6, 0.95, 1.1], "starts": 24, "scan": 0, "depth": 2},
+    ),
+    "atlas frequency": ("frequency", {"values": [0.98, 1.0], "starts": 16, "scan": 0, "depth": 1}),
+}
+_DEMOS = ("ab", "pp3", "lorenz 84", "enz", "henon", "delayed logistic", "generalized henon", "logistic")
+
+
+def studies() -> dict[str, Callable[[], dict[str, Any]]]:
+    """All golden studies by name: each a function that computes its compact form."""
+    stored = starts()
+    found: dict[str, Callable[[], dict[str, Any]]] = {
+        name: partial(diagram, start) for name, start in stored.items()
+    }
+    for name in _DEMOS:
+        found[f"demo {name}"] = partial(demo, name)
+    for name, (start, over, within, options) in _CHARTS.items():
+        found[name] = partial(chart, stored[start], over, within, **options)
+    found["chart henon"] = henon_chart
+    for name, (start, options) in _ATLASES.items():
+        found[name] = partial(atlas, stored[start], **options)
+    return found
+
+
+def henon_chart() -> dict[str, Any]:
+    """Fixed points of the map x, y -> y, a - b x - y^2 against both parameters."""
+    problem = cv.MapProblem(
+        lambda x, p: [x[1], p.a - p.b * x[0] - x[1] ** 2], [0.5, 0.5], {"a": 1.0, "b": 0.5}, parameter="a"
+    )
+    graph = cv.diagram(problem, over="a", within=(-1.0, 3.0), depth=0)
+    return of_chart(cv.chart(graph, over="b", within=(-0.9, 1.3), regions=False, depth=0))
+
+
+def file_of(name: str) -> Path:
+    return GRAPHS / f"{name.replace(',', '').replace(' ', '_')}.json"

@@ -1,0 +1,42 @@
+"""Graphs, charts and atlases that were checked from outside and frozen: every later state gives the same."""
+
+import copy
+import json
+
+import pytest
+
+from .compare import differences
+from .studies import file_of, studies
+
+STUDIES = studies()
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_golden(name):
+    golden = json.loads(file_of(name).read_text())
+    assert not differences(golden, json.loads(json.dumps(STUDIES[name]())))
+
+
+def test_there_is_one_file_for_each_study():
+    assert {file_of(name) for name in STUDIES} == set(file_of("friction").parent.glob("*.json"))
+
+
+def test_the_comparison_notices_every_change():
+    """A value moved by 1e-9, and any name, link, interval or point that is changed or left out."""
+    golden = json.loads(file_of("friction").read_text())
+    assert not differences(golden, golden)
+
+    def changed(change):
+        other = copy.deepcopy(golden)
+        change(other)
+        return differences(golden, other)
+
+    assert changed(lambda g: g["points"]["SB1"].update(value=g["points"]["SB1"]["value"] + 1e-9))
+    assert changed(lambda g: g["points"]["SB1"].update(kind="fold"))
+    assert changed(lambda g: g["points"]["SB1"].update(real=False))
+    assert changed(lambda g: g["points"]["SB1"].update(multipliers=[0.5, 1.1]))
+    assert changed(lambda g: g["points"].pop("PD5"))
+    assert changed(lambda g: g["branches"].pop("B13"))
+    assert changed(lambda g: g["branches"]["B2"].update(word="ss"))
+    assert changed(lambda g: g["branches"]["B1"].update(stable=[]))
+    assert changed(lambda g: g["links"].pop())
