@@ -41,6 +41,28 @@ class NullJournal:
         return None
 
 
+class Part:
+    """A part of a journal, for a run inside another one: its keys begin with a prefix, its graph is not kept.
+
+    Parameters
+    ----------
+    journal : Journal
+    prefix : str
+    """
+
+    def __init__(self, journal: Journal, prefix: str) -> None:
+        self.journal, self.prefix = journal, prefix
+
+    def recall(self, key: str) -> dict[str, Any] | None:
+        return self.journal.recall(self.prefix + key)
+
+    def record(self, key: str, values: dict[str, Any]) -> None:
+        self.journal.record(self.prefix + key, values)
+
+    def checkpoint(self, graph: Any) -> None:
+        return None
+
+
 class MemoryJournal:
     """Remembers in memory; for tests and interactive work."""
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..continuation.settings import Settings
 from ..graph.automatic import new_run
+from ..graph.builder import finish
 from ..graph.graph import Graph
 from ..graph.run import Progress, Run
 from ..hints import hinting
@@ -123,9 +124,7 @@ def atlas(
     everything = looking.found
     everything.sort(key=lambda counted: counted.attractor.value)
     run.graph.attractors = [counted.attractor for counted in everything]
-    run.graph.message = run.graph.message or "finished"
-    run.graph.finished = True
-    run.checkpoint()
+    finish(run)
     return run.graph
 
 

@@ -13,7 +13,7 @@ from ..branches.branch import Branch
 from ..graph.builder import begin, work
 from ..graph.graph import Graph
 from ..graph.run import Run
-from ..journal import NullJournal
+from ..journal import Part
 from ..problems.registry import rebuild
 from .census import Counted
 from .population import Population
@@ -40,7 +40,7 @@ class Windows:
             parameter=whole.parameter, model=whole.model, within=whole.within, settings=dict(whole.settings)
         )
         settings = replace(run.settings, max_branches=MOST)
-        self.apart = Run(graph, settings, NullJournal(), 0, False, None, None, run.limits)
+        self.apart = Run(graph, settings, Part(run.journal, "apart/"), 0, False, None, None, run.limits)
 
     def beside(self, found: Sequence[Counted]) -> int:
         """Add to the graph the branches that are stable somewhere and hold an unstable cycle of a chaotic motion.
@@ -60,7 +60,7 @@ class Windows:
             if counted.state is not None:
                 state, p = counted.state, counted.attractor.value
                 self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
-                self._add(f"windows/{p!r}", p, partial(self.population.embedded, state, p))
+                self._add(f"cycles/{p!r}", p, partial(self.population.embedded, state, p))
         return len(self.run.graph.branches) - before
 
     def around(self, values: Sequence[float], count: int, seed: int) -> int:
@@ -77,7 +77,7 @@ class Windows:
         for p in values:
             starts = self.population.starts(count, seed, p)
             self.run.tell(f"cycles from {count} starts at {self.population.parameter} = {p:.6g}", p)
-            self._add(f"returning/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
+            self._add(f"cycles/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
         return len(self.run.graph.branches) - before
 
     def _add(self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]) -> None:
@@ -88,26 +88,32 @@ class Windows:
     def _stable(
         self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]
     ) -> list[tuple[Any, np.ndarray, float]]:
-        """A point of every stable stretch to which cycles lead; kept in the journal."""
-        known = self.run.journal.recall(key)
-        parts = [] if known is None else [rebuild(description) for description in known["problems"]]
-        at_hand = all(part is not None for part in parts)  # functions of the user's may not be
-        if known is not None and at_hand:
-            return [(problem, known[f"u{k}"], float(known["at"][k])) for k, problem in enumerate(parts)]
+        """A point of every stable stretch to which cycles lead."""
         points = []
-        found = cycles()
+        known = self._recalled(key)
+        found = self._recorded(key, cycles()) if known is None else known
         for k, (problem, u) in enumerate(found):
             if self.run.register.find(problem, u, p) is None:
                 where = f"{self.population.parameter} = {p:.6g}"
                 self.run.tell(f"cycle {k + 1} of {len(found)} at {where}: followed to where it is stable", p)
                 points += self._traced(problem, u, p)
-        record: dict[str, Any] = {
-            "problems": [problem.describe() for problem, _, _ in points],
-            "at": np.array([at for _, _, at in points]),
-        }
-        record.update({f"u{k}": u for k, (_, u, _) in enumerate(points)})
-        self.run.journal.record(key, record)
         return points
+
+    def _recalled(self, key: str) -> list[tuple[Any, np.ndarray]] | None:
+        """Cycles of an earlier run; None if there was none, or their problems take functions that are not at hand."""
+        known = self.run.journal.recall(key)
+        problems = [] if known is None else [rebuild(description) for description in known["problems"]]
+        if known is None or any(problem is None for problem in problems):
+            return None
+        return [(problem, known[f"u{k}"]) for k, problem in enumerate(problems)]
+
+    def _recorded(
+        self, key: str, cycles: Sequence[tuple[Any, np.ndarray]]
+    ) -> Sequence[tuple[Any, np.ndarray]]:
+        record: dict[str, Any] = {"problems": [problem.describe() for problem, _ in cycles]}
+        record.update({f"u{k}": np.asarray(u, dtype=float) for k, (_, u) in enumerate(cycles)})
+        self.run.journal.record(key, record)
+        return cycles
 
     def _traced(self, problem: Any, u: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
         """Trace a cycle unless it has been; a point of each stable stretch of what is new."""

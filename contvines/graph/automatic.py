@@ -12,7 +12,7 @@ from ..continuation.starts import check_interval, problem_and_start
 from ..hints import hinting
 from ..journal import NullJournal
 from ..problems.registry import without_problem
-from .builder import adopt, begin, work
+from .builder import adopt, begin, finish, work
 from .graph import Graph
 from .leaving import leave
 from .limits import NO_LIMITS, Limits
@@ -82,6 +82,7 @@ def diagram(
     )
     begin(run, problem, u, p)
     with_room(work, run)
+    finish(run)
     return run.graph
 
 
@@ -161,7 +162,7 @@ def switch(
     point = graph.special[label]
     if point.problem is None:
         raise ValueError(without_problem(label, graph.branches[point.branch].description))
-    before = list(graph.branches)
+    before, finished = list(graph.branches), graph.finished
     run = Run(
         graph,
         Settings.kept(graph.settings) if settings is None else Settings.of(settings),
@@ -175,6 +176,8 @@ def switch(
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)
     with_room(work, run)
+    if finished:  # more of an unfinished graph is still to come
+        finish(run)
     return [name for name in graph.branches if name not in before]
 
 

@@ -67,7 +67,7 @@ def adopt(run: Run) -> None:
 
 
 def work(run: Run) -> None:
-    """Work until the queue is empty."""
+    """Work until the queue is empty. The graph is not finished by that: an atlas adds further roots; see `finish`."""
     graph = run.graph
     graph.finished = False
     with listening():
@@ -89,8 +89,15 @@ def work(run: Run) -> None:
             graph.message = "interrupted; run the same command again to go on"
             run.checkpoint()
             raise
-        graph.finished = True
-        graph.message = graph.message or "finished"
+
+
+def finish(run: Run) -> None:
+    """Declare the graph finished and keep it: called once, by whoever has begun the run, after its last step."""
+    graph = run.graph
+    graph.finished = True
+    if graph.complete:
+        graph.message = "finished"
+    with listening():
         run.checkpoint()
     run.tell(graph.message, float("nan"))
 

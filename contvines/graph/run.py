@@ -15,7 +15,6 @@ from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
 from ..events.located import Located
 from ..events.watch import Watch
-from ..journal import NullJournal
 from ..problems.protocol import Problem
 from .graph import Graph, Switch
 from .identity import Register
@@ -88,10 +87,7 @@ class Run:
             )
 
     def checkpoint(self) -> None:
-        """Keep the graph as it is now; what is to be worked out of its points is, before a write that nothing may interrupt."""
-        if not isinstance(self.journal, NullJournal):
-            for point in self.graph.special.values():
-                _ = point.coefficient, point.replay
+        """Keep the graph as it is now."""
         self.journal.checkpoint(self.graph)
 
     def unit(self, p: float) -> float:

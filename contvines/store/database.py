@@ -172,6 +172,8 @@ class Store:
         """Keep the graph as it stands, replacing what was kept of it before, in one transaction."""
         from contvines.graph.persistence import graph_entries
 
+        # some numbers are worked out when they are asked for: before the write, which nothing may interrupt
+        entries: Any = list(graph.entries() if hasattr(graph, "entries") else graph_entries(graph))
         with self.transaction():
             # changes when another process has written, which then may have replaced what was kept here
             version = self._db.execute("PRAGMA data_version").fetchone()[0]
@@ -180,7 +182,6 @@ class Store:
                 self._version = version
             if not self._kept:
                 self._db.execute("DELETE FROM entry WHERE kind != 'journal'")
-            entries: Any = graph.entries() if hasattr(graph, "entries") else graph_entries(graph)
             present = {self._renew(*entry) for entry in entries}
             for place in self._kept.keys() - present:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
