@@ -17,6 +17,7 @@ from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.attractors.recurrence import settle
 from orbits.attractors.returning import returning_cycles
+from orbits.machines.notation import STARTS
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
 from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip
@@ -75,6 +76,9 @@ class Population:
     def about(self) -> dict[str, Any]:
         """The machine's name and settings."""
         return self.model.settings()
+
+    notation = STARTS
+    leftward = "w"  # w = +1 is the left wall, and stands on the left
 
     across = 200
     """Starts across and up in a picture of basins where no number is given."""

@@ -258,6 +258,11 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
         return self.word.spelled(self.mirrored)
 
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of parameter or measure."""
+        return self.model.notation
+
     def prove_branch(
         self,
         points: np.ndarray,

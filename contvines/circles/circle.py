@@ -100,6 +100,8 @@ class Circles:
         Why the last one is the last: a sentence.
     beyond : dict
         What a simulation settles on a little beyond it: "value", "kind" and, of a locked motion, "periods".
+    notation : dict
+        Labels of axes by name of parameter or coordinate.
     """
 
     label: str
@@ -113,6 +115,7 @@ class Circles:
     circles: tuple[Circle, ...] = field(repr=False, default=())
     ended: str = ""
     beyond: dict[str, Any] = field(default_factory=dict)
+    notation: dict[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.circles)

@@ -11,6 +11,7 @@ import numpy as np
 from ..branches.special_point import SpecialPoint
 from ..hints import hinting
 from ..interrupts import listening
+from ..problems.abilities import notation_of
 from ..problems.registry import without_problem
 from .along import Reach, followed
 from .averages import rotation_number
@@ -97,6 +98,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         made,
         ended,
         beyond,
+        notation_of(point.problem),
     )
 
 

@@ -12,6 +12,7 @@ from ..doors import above
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..hints import hinted, hinting
+from ..problems.abilities import notation_of
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
@@ -47,6 +48,10 @@ class Basins:
         With their shares of the plane.
     manifolds : list of Manifold
         Stable manifolds of saddles, which separate the basins.
+    notation : dict
+        Labels of axes by name of coordinate.
+    leftward : str
+        The coordinate that grows from right to left in a picture.
     """
 
     parameter: str
@@ -59,6 +64,8 @@ class Basins:
     mirrored: np.ndarray
     attractors: list[Attractor] = field(default_factory=list)
     manifolds: list[Manifold] = field(default_factory=list)
+    notation: dict[str, str] = field(default_factory=dict)
+    leftward: str = ""
 
     def __str__(self) -> str:
         return above("basins_table")(self)
@@ -238,6 +245,8 @@ def basins(
         mirrored.reshape(shape),
         attractors,
         curves,
+        notation_of(population),
+        getattr(population, "leftward", ""),
     )
 
 

@@ -12,6 +12,7 @@ from ..branches.branch import Branch
 from ..doors import above
 from ..graph.table import with_unit
 from ..hints import hinted, hinting
+from ..problems.abilities import notation_of
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, refuse_uncomputed, robustness
 
@@ -29,12 +30,15 @@ class Erosion:
     parameter, label, word : str
     entries : list of Robustness
         In increasing order of the parameter.
+    notation : dict
+        Labels of axes by name of parameter.
     """
 
     parameter: str
     label: str
     word: str
     entries: list[Robustness] = field(default_factory=list)
+    notation: dict[str, str] = field(default_factory=dict)
 
     @property
     def values(self) -> np.ndarray:
@@ -112,7 +116,8 @@ def erosion(
     where = _spread(branch, values) if isinstance(values, int) else sorted(float(v) for v in values)
     if not where:
         raise ValueError(f"values = {values!r}: give how many, 1 or more, or a list of values")
-    found = Erosion(branch.parameter, branch.label, str(branch.description.get("word", "")))
+    word = str(branch.description.get("word", ""))
+    found = Erosion(branch.parameter, branch.label, word, notation=notation_of(branch.problem))
     for value in where:
         found.entries.append(
             robustness(branch, value, units=units, directions=directions, starts=starts, seed=seed)

@@ -10,6 +10,7 @@ The contract, in words:
    standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None;
    a chaotic one has a ``state`` from which it goes on.
 4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
+   Optional: ``population.notation``, labels of axes by name of coordinate; ``population.leftward``, the coordinate that a picture shows growing from right to left.
 5. ``population.brief`` is how many values and how many starts at each a brief look after a diagram takes: few, so that it costs a
    fraction of the diagram; ``population.across`` how many starts each way a picture of basins has where no number is given.
 6. ``population.embedded(motion.state, p)`` returns ``(problem, u)`` of unstable cycles that a chaotic motion passes near, each once.

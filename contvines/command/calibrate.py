@@ -318,4 +318,4 @@ def _from_sweep(
         fixed=loose(study),
         confidence=confidence,
     )
-    return found, (over, own, values, heights, axis_label(name, unit=unit or None))
+    return found, (over, own, values, heights, axis_label(name, unit=unit or None, notation=model.notation))

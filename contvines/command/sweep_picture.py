@@ -83,13 +83,14 @@ def picture(
     from contvines.plots.sweep import plot_sweep
     from orbits.machines.catalogue import model_class
 
+    page = study.machine is not None
     look: dict[str, Any] = {
-        "units": {} if study.machine is not None else machine(study).units,
+        **({} if page else {"units": machine(study).units, "notation": machine(study).notation}),
         "figsize": size,
     }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
-    if study.machine is not None:  # impact speeds, or how far the first state goes
+    if page:  # impact speeds, or how far the first state goes
         walls = any(hasattr(contact, "gap") for contact in study.machine.contacts)
         measure = "approach_speed" if walls else f"max_{study.machine.states[0]}"
     else:

@@ -10,6 +10,7 @@ from contvines_ground.near_names import did_you_mean
 from ..doors import above
 from ..events.kinds import PREFIXES
 from ..hints import hinted
+from ..problems.abilities import notation_of
 from .attractor import Attractor
 
 if TYPE_CHECKING:
@@ -136,6 +137,11 @@ class Graph:
     def units(self) -> dict[str, str]:
         """Units of the parameter and the measures by name; none where all are plain numbers."""
         return next((dict(b.description.get("units") or {}) for b in self.branches.values()), {})
+
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of parameter or measure; none for equations of the user's own."""
+        return notation_of(*(branch.problem for branch in self.branches.values()))
 
     def on(self, branch: str) -> list[SpecialPoint]:
         """The special points of a branch, in order along it."""

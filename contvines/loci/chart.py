@@ -13,6 +13,7 @@ from ..doors import above
 from ..events.kinds import CODIMENSION_TWO
 from ..graph.persistence import branch_of, content_of
 from ..hints import hinted
+from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
 from .plane_point import PlanePoint
@@ -79,6 +80,11 @@ class Chart:
             f"Chart({self.parameters[0]} x {self.parameters[1]}: {len(self.loci)} loci, {len(self.points)} points, "
             f"{len(self.regions)} regions{state})"
         )
+
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of parameter; none for equations of the user's own."""
+        return notation_of(*(locus.branch.problem for locus in self.loci.values()))
 
     def of_kind(self, kind: str) -> list[PlanePoint]:
         """The points of codimension two of a kind.

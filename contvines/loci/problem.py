@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..problems.abilities import notation_of
 from ..problems.protocol import Problem, ProblemDefaults
 from .binding import locus_kernels
 from .kinds import condition
@@ -294,6 +295,11 @@ class LocusProblem(ProblemDefaults):
         """The special solution as the object that the problem hands to users."""
         inner, value = self.split(u)
         return self.at(p).orbit(inner, float(value))
+
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes, as the problem's."""
+        return notation_of(self.base)
 
     def describe(self) -> dict[str, Any]:
         """A description from which `from_description` builds the problem again."""

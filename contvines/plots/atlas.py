@@ -80,7 +80,9 @@ def plot_atlas(
             upper.set_xlabel("")
             upper.tick_params(labelbottom=False)
         draw_shares(lower, graph, FEW if small else MOST)
-        lower.set_xlabel(axis_label(graph.parameter, unit=graph.units.get(graph.parameter)))
+        lower.set_xlabel(
+            axis_label(graph.parameter, unit=graph.units.get(graph.parameter), notation=graph.notation)
+        )
         if small and len(lower.get_ylabel()) > 8:
             lower.set_ylabel("share")
         # a high figure has both keys; they stand below one another where there is no room beside the panels

@@ -36,11 +36,6 @@ COLORS = (
 )
 NAMED = 3  # words of manifolds in the legend
 IMAGE = 0.45  # how much lighter the basin of a mirror image is
-START = {
-    "w": "position $w$ of the start",
-    "w_rate": "velocity $w'$ of the start",
-    "phase": "phase of the start",
-}
 
 
 @hinting
@@ -87,9 +82,9 @@ def plot_basins(
             axes.plot(*curve.points.T, color="black", linewidth=0.8)
         axes.set_xlim(extent[:2])
         axes.set_ylim(extent[2:])
-        if basins.axes[0] == "w":
-            axes.invert_xaxis()  # w = +1 is the left wall, and stands on the left
-        across, up = (START.get(name, axis_label(name)) for name in basins.axes)
+        if basins.axes[0] == basins.leftward:
+            axes.invert_xaxis()
+        across, up = (axis_label(name, notation=basins.notation) for name in basins.axes)
         axes.set_xlabel(across)
         axes.set_ylabel(up.removesuffix(" of the start") if low else up)
         axes.set_title(f"{basins.parameter} = {basins.value:.8g}")

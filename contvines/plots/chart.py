@@ -98,14 +98,14 @@ def plot_chart(
                 markersize=4,
                 zorder=5,
             )
-        axes.set_xlabel(axis_label(q, unit=chart.units.get(q)))
-        axes.set_ylabel(axis_label(p, unit=chart.units.get(p)))
+        axes.set_xlabel(axis_label(q, unit=chart.units.get(q), notation=chart.notation))
+        axes.set_ylabel(axis_label(p, unit=chart.units.get(p), notation=chart.notation))
         inside = legend == "inside" or (legend is True and not own)
         if not inside:
             place_legend(axes, list(handles.values()), legend, own, usual="below")
         settle(figure)
         if own and axes.get_window_extent().height < LOW * figure.dpi:
-            axes.set_ylabel(axis_label(p, short=True, unit=chart.units.get(p)))
+            axes.set_ylabel(axis_label(p, short=True, unit=chart.units.get(p), notation=chart.notation))
             settle(figure)
         settle(figure)  # the labels of the axes have their size by now
         if own:

@@ -116,7 +116,8 @@ def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
         x = circle.at(phases)[:, pair]
         axes.plot(*x.T, color=color, linewidth=0.9, linestyle="--" if circle.stable is False else "-")
     axes.plot(*(circles.centre[k] for k in pair), "k+", markersize=7)
-    axes.set(xlabel=axis_label(circles.names[pair[0]]), ylabel=axis_label(circles.names[pair[1]]))
+    across, up = (axis_label(circles.names[k], notation=circles.notation) for k in pair)
+    axes.set(xlabel=across, ylabel=up)
     if any(circle.stable is False for circle in circles.circles):
         axes.set_title("dashed: repelling", loc="left", fontsize="medium")
 
@@ -140,4 +141,4 @@ def _sizes(radius: Axes, rotation: Axes, circles: Circles, legend: bool | str) -
     place_legend(radius, radius.get_legend_handles_labels()[0], legend, False)
     rotation.plot(values, np.append(circles.rotation, circles.rotations), color="#7c3aed", **look)
     rotation.set_ylabel("turns per period")
-    rotation.set_xlabel(axis_label(circles.parameter))
+    rotation.set_xlabel(axis_label(circles.parameter, notation=circles.notation))

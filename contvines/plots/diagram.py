@@ -145,10 +145,10 @@ def draw_diagram(
     picture.draw_points(ends)
     frame(axes, graph, picture.curves, x, y, *limits)
     if not axes.get_xlabel():
-        axes.set_xlabel(axis_label(x, unit=graph.units.get(x)))
+        axes.set_xlabel(axis_label(x, unit=graph.units.get(x), notation=graph.notation))
     if not axes.get_ylabel():
         low = axes.get_window_extent().height < LOW * figure.dpi
-        axes.set_ylabel(axis_label(y, low, graph.units.get(y)))
+        axes.set_ylabel(axis_label(y, low, graph.units.get(y), notation=graph.notation))
     lay_out(figure)
     picture.refine()
     if limits[0] is not None and limits[1] is None:

@@ -60,7 +60,7 @@ def plot_erosion(
         axes.set_ylim(bottom=0.0)
         axes.set_zorder(beside.get_zorder() + 1)
         axes.patch.set_visible(False)
-        axes.set_xlabel(axis_label(erosion.parameter, unit=erosion.unit))
+        axes.set_xlabel(axis_label(erosion.parameter, unit=erosion.unit, notation=erosion.notation))
         axes.set_ylabel("smallest kick")
         axes.set_title(f"{erosion.label}: {erosion.word}" if erosion.word else erosion.label)
         place_legend(axes, [kicks, shares], legend, own, usual="below")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..hints import hinting
+from ..problems.abilities import notation_of
 from .figures import new_figure, settle, styled, thin_ticks
 from .legends import place_legend
 from .style import axis_label
@@ -85,9 +86,10 @@ def plot_multipliers(
     return figure
 
 
-def unit_of(branch: Branch) -> str | None:
-    """The unit of the parameter, where it has one."""
-    return (branch.description.get("units") or {}).get(branch.parameter)
+def parameter_label(branch: Branch) -> str:
+    """The label of the parameter's axis."""
+    unit = (branch.description.get("units") or {}).get(branch.parameter)
+    return axis_label(branch.parameter, unit=unit, notation=notation_of(branch.problem))
 
 
 def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend: bool | str) -> None:
@@ -112,7 +114,7 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend:
         axes.set_yscale("log")
         low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
         axes.set_ylim(max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5)  # a graze sends a multiplier to infinity
-    axes.set_xlabel(axis_label(branch.parameter, unit=unit_of(branch)))
+    axes.set_xlabel(parameter_label(branch))
     axes.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
     what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
     figure = axes.get_figure(root=True)
@@ -151,7 +153,7 @@ def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
     figure = axes.get_figure(root=True)
     assert figure is not None
     bar = figure.colorbar(dots, ax=axes, shrink=0.85)
-    bar.set_label(axis_label(branch.parameter, unit=unit_of(branch)))
+    bar.set_label(parameter_label(branch))
     axes.set_xlabel(r"Re $\lambda$")
     axes.set_ylabel(r"Im $\lambda$")
     hidden = int((~shown).sum())

@@ -136,7 +136,7 @@ def label_of(survey: Survey, name: str) -> str:
     unit = survey.units.get(name, "")
     if name in words:
         return f"{words[name]} [{unit}]" if unit else words[name]
-    return axis_label(name, unit=unit)
+    return axis_label(name, unit=unit, notation=survey.notation)
 
 
 def _upright(axes: Axes, label: str) -> str:

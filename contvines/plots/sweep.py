@@ -34,6 +34,7 @@ def plot_sweep(
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
     units: Mapping[str, str] | None = None,
+    notation: Mapping[str, str] | None = None,
 ) -> "Figure":
     """Draw the attractors of a sweep.
 
@@ -50,8 +51,11 @@ def plot_sweep(
     legend : whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : a style or rcParams of matplotlib's that come before the house's.
     units : of the parameter and the measure by name, where they have some.
+    notation : labels of axes by name of parameter or measure; the graph's by default.
     """
     said = dict(units or {})
+    if notation is None and graph is not None:
+        notation = graph.notation
     at = ("B at every impact" if graph is None else "B at the first impact") if measure == "B" else ""
     size = 2.4 if measure == "B" else 3.0
     own = axes is None
@@ -70,9 +74,11 @@ def plot_sweep(
             axes.plot([], [], linestyle="none", label=f"simulated: {what}")
         low = own and axes.get_window_extent().height < LOW * figure.dpi
         unit = f" [{said['B']}]" if "B" in said else ""
-        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter)))
+        axes.set_xlabel(axis_label(parameter, unit=said.get(parameter), notation=notation))
         axes.set_ylabel(
-            f"$B$ at the impacts{unit}" if measure == "B" else axis_label(measure, low, said.get(measure))
+            f"$B$ at the impacts{unit}"
+            if measure == "B"
+            else axis_label(measure, low, said.get(measure), notation)
         )
         if graph is not None:
             draw_diagram(axes, graph, parameter, measure, own=own, legend=legend)

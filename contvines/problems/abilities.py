@@ -50,6 +50,19 @@ class Gauged(Protocol):
 
 
 @runtime_checkable
+class Notated(Protocol):
+    """Labels of axes for its parameters and measures, by name, in the field's notation."""
+
+    @property
+    def notation(self) -> Mapping[str, str]: ...
+
+
+def notation_of(*things: Any) -> dict[str, str]:
+    """The labels of the first of these (problems, populations, families) that has any; names without one are shown as they are."""
+    return next((dict(thing.notation) for thing in things if isinstance(thing, Notated)), {})
+
+
+@runtime_checkable
 class Populated(Protocol):
     """Many starts can be simulated; see :mod:`contvines.coexistence.population`."""
 

@@ -38,7 +38,10 @@ def chart_contents(chart: Chart, source: str) -> dict[str, Any]:
     """
     from .. import __version__
 
-    names = {name: plain_label(axis_label(name, unit=chart.units.get(name))) for name in chart.parameters}
+    names = {
+        name: plain_label(axis_label(name, unit=chart.units.get(name), notation=chart.notation))
+        for name in chart.parameters
+    }
     return {
         "version": __version__,
         "source": source,

@@ -55,7 +55,8 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "message": graph.message,
         "axes": {"x": graph.parameter, "y": y},
         "names": {
-            name: plain_label(axis_label(name, unit=graph.units.get(name))) for name in _measures(graph, y)
+            name: plain_label(axis_label(name, unit=graph.units.get(name), notation=graph.notation))
+            for name in _measures(graph, y)
         },
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
         "special": [_point(point, mark(graph, point.label)) for point in graph.special.values()],

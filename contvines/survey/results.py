@@ -40,6 +40,8 @@ class Survey:
         Of parameters and outcomes, where they have some.
     about : dict
         What was surveyed, JSON-able.
+    notation : dict
+        Labels of axes by name of parameter or outcome; names without one are shown as they are.
     """
 
     plan: Plan
@@ -47,9 +49,17 @@ class Survey:
     notes: np.ndarray
     units: dict[str, str] = field(default_factory=dict)
     about: dict[str, Any] = field(default_factory=dict)
+    notation: dict[str, str] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, plan: Plan, rows: Sequence[Row], units: dict[str, str], about: dict[str, Any]) -> Survey:
+    def of(
+        cls,
+        plan: Plan,
+        rows: Sequence[Row],
+        units: dict[str, str],
+        about: dict[str, Any],
+        notation: dict[str, str] | None = None,
+    ) -> Survey:
         """From rows in any order."""
         ordered = sorted(rows, key=lambda row: row.index)
         names = dict.fromkeys(name for row in ordered for name in row.columns)
@@ -62,8 +72,11 @@ class Survey:
         notes = np.full(len(plan), "", dtype=object)
         for row in ordered:
             notes[row.index] = row.note
-        said = {name: units[name] for name in (*plan.names, *columns) if units.get(name)}
-        return cls(plan, columns, notes.reshape(plan.shape), said, about)
+        known = (*plan.names, *columns)
+        said, labels = (
+            {name: table[name] for name in known if table.get(name)} for table in (units, notation or {})
+        )
+        return cls(plan, columns, notes.reshape(plan.shape), said, about, labels)
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name in self.columns:
@@ -80,19 +93,22 @@ class Survey:
         import xarray
 
         dims = self.plan.dimensions
-        units = {name: {"units": unit} for name, unit in self.units.items()}
+        told = {
+            name: {
+                key: table[name]
+                for key, table in (("units", self.units), ("long_name", self.notation))
+                if name in table
+            }
+            for name in (*self.plan.names, *self.columns)
+        }
         variables: dict[str, Any] = {
-            name: (dims, values, units.get(name, {})) for name, values in self.columns.items()
+            name: (dims, values, told[name]) for name, values in self.columns.items()
         }
         variables["note"] = (dims, self.notes.astype(str), {"long_name": "why the system failed"})
-        coords: dict[str, Any] = {
-            name: (name, values, units.get(name, {})) for name, values in self.plan.axes.items()
-        }
+        coords: dict[str, Any] = {name: (name, values, told[name]) for name, values in self.plan.axes.items()}
         if self.plan.samples:
             coords["sample"] = ("sample", np.arange(self.plan.shape[-1], dtype=np.int32))
-            coords |= {
-                name: ("sample", values, units.get(name, {})) for name, values in self.plan.samples.items()
-            }
+            coords |= {name: ("sample", values, told[name]) for name, values in self.plan.samples.items()}
         return xarray.Dataset(variables, coords, {"about": json.dumps(self.about, sort_keys=True)})
 
     def save(self, path: str | Path) -> None:
@@ -184,10 +200,17 @@ def load_survey(path: str | Path) -> Survey:
             axes = {str(name): data[name].values for name in data["note"].dims if name in about["axes"]}
             samples = {str(name): data[name].values for name in data.coords if name in about["samples"]}
             columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
-            units = {str(n): str(v.attrs["units"]) for n, v in data.variables.items() if "units" in v.attrs}
+            units, notation = (
+                {
+                    str(n): str(v.attrs[key])
+                    for n, v in data.variables.items()
+                    if key in v.attrs and n != "note"
+                }
+                for key in ("units", "long_name")
+            )
             notes = data["note"].values.astype(object)
     except FileNotFoundError:
         raise PlanError(f"{path}: there is no such file") from None
     except (OSError, KeyError, ValueError, TypeError):
         raise PlanError(f"{path}: this is not the NetCDF file of a survey") from None
-    return Survey(Plan(axes, samples), columns, notes, units, about)
+    return Survey(Plan(axes, samples), columns, notes, units, about, notation)

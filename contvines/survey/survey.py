@@ -14,6 +14,7 @@ from contvines_ground.near_names import did_you_mean
 
 from ..events.kinds import KINDS
 from ..hints import hinting
+from ..problems.abilities import notation_of
 from . import pools
 from .journal import Rows
 from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
@@ -125,7 +126,7 @@ def survey(
                 if progress is not None:
                     progress(row)
         found = [rows.found[i] for i in range(len(systems))]
-    return Survey.of(plan, found, dict(units or {}), {**told, "digest": digest})
+    return Survey.of(plan, found, dict(units or {}), {**told, "digest": digest}, notation_of(family))
 
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None) -> str:

@@ -24,6 +24,7 @@ from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.returning import returning_cycles
 from orbits.declared.simulation import Trajectory, collect, letter_of, outside
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.machines.notation import STARTS
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
 EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for
@@ -67,6 +68,11 @@ class DeclaredPopulation:
     def about(self) -> dict[str, Any]:
         """The machine's page and settings."""
         return self.machine.settings()
+
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of coordinate; states are shown by the names on the page."""
+        return {"phase": STARTS["phase"]}
 
     across = 60  # starts each way in a picture of basins where no number is given
 

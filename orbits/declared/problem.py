@@ -20,6 +20,7 @@ from orbits.declared.margins import border_kind
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.section import Section
 from orbits.declared.system import DeclaredSystem
+from orbits.machines.notation import SYMBOLS
 from orbits.protocol import Answers
 from orbits.relatives import Relatives
 
@@ -30,6 +31,11 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
     every = True
 
     # ------------------------------------------------------------------ facts
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names on the page."""
+        return {"phase": SYMBOLS["phase"]}
+
     @property
     def units(self) -> dict[str, str]:
         """Units of parameters and measures: a declared machine has plain numbers."""

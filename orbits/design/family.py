@@ -66,6 +66,11 @@ class Family:
     over: str | None = None
     within: tuple[float, float] | None = None
 
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of parameter or measure."""
+        return self.machine.notation
+
     def __call__(self, values: Mapping[str, float], near: Any = None) -> Any:
         """The orbit of the machine with these values, counted in its units.
 

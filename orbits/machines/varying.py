@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contvines_ground.near_names import did_you_mean
+from orbits.machines.notation import SYMBOLS, WORDS
 from orbits.machines.parameters import Parameter, ParameterError
 from orbits.machines.path import single
 
@@ -62,6 +63,11 @@ class Varying:
     def units(self) -> dict[str, str]:
         """Units of parameters and measures by name; none here, where all are numbers."""
         return {}
+
+    @property
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of parameter or measure: in symbols, in words for numbers that have a unit."""
+        return {**SYMBOLS, **{name: WORDS[name] for name in self.units if name in WORDS}}
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
         """A parameter vector by name, ready for JSON."""

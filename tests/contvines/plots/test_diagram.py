@@ -91,7 +91,7 @@ def test_branches_without_the_measure_are_named_in_the_legend():
 
 def test_where_no_branch_has_the_measure_another_is_drawn():
     axes = plot_diagram(impactless(("ss", "", "tt"), (np.nan,) * 3)).axes[0]
-    assert axes.get_ylabel() == "largest $|w|$"
+    assert axes.get_ylabel() == "max abs w"
     assert not any("not drawn" in t.get_text() for t in axes.get_legend().get_texts())
 
 

@@ -1,0 +1,104 @@
+"""Names are the user's: the notation of built-in machines labels the axes of these machines only."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import contvines as cv
+import orbits
+from contvines.plots import plot_multipliers
+from contvines.survey import load_survey
+from contvines.survey.plan import Plan
+from contvines.survey.results import Survey
+from orbits.symbols import cos
+
+OF_MACHINES = ["w", "B", "phase", "amplitude", "friction", "frequency", "half_width", "max_abs_q1"]
+
+
+def labels(figure):
+    found = {text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())}
+    plt.close(figure)
+    return found - {""}
+
+
+@pytest.fixture(scope="module", params=OF_MACHINES)
+def fold(request):
+    """The fold u^2 = 1 - p against a parameter that is called as one of a built-in machine."""
+    name = request.param
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u**2 + p[name] - 1.0 + p["shift"], [1.0], {name: 0.0, "shift": 0.0}, parameter=name
+    )
+    return name, cv.diagram(problem, within=(-1.0, 2.0), depth=0)
+
+
+def test_equations_of_the_users_own(fold):
+    name, graph = fold
+    plain = name.replace("_", " ")
+    assert labels(graph.plot()) == {plain, "u0"}
+    assert labels(graph.plot(y=name)) == {plain}
+
+
+def test_two_parameters_of_the_users_own():
+    cusp = cv.AlgebraicProblem(
+        lambda u, p: p.friction + p.phase * u - u**3, [1.0], {"friction": 0.0, "phase": 1.0}
+    )
+    graph = cv.diagram(cusp, over="friction", within=(-1.0, 1.0), depth=0)
+    chart = cv.chart(graph, over="phase", within=(-1.0, 1.0))
+    assert labels(chart.plot()) == {"friction", "phase"}
+
+
+def test_a_map_of_the_users_own():
+    delayed = cv.MapProblem(lambda x, p: [p.B * x[0] * (1 - x[1]), x[0]], [0.4, 0.4], {"B": 1.7})
+    graph = cv.diagram(delayed, within=(1.2, 2.4))
+    assert labels(graph["NS1"].circles(to=2.02).plot()) == {"x0", "x1", "radius", "turns per period", "B"}
+    assert "B" in labels(plot_multipliers(graph["B1"]))
+
+
+def test_a_page_with_names_of_a_built_in_machine():
+    machine = orbits.Machine(
+        name="oscillator",
+        states=("w", "w_rate"),
+        parameters={"amplitude": 0.5, "frequency": 1.2, "damping": 0.1},
+        phase_rate="frequency",
+        motion=lambda s, phase, p, contact: (
+            s.w_rate,
+            p.amplitude * cos(phase) - p.damping * s.w_rate - s.w,
+        ),
+        contacts=[
+            orbits.Wall("I", gap=lambda s, phase, p: 1.0 - s.w, push={"w_rate": -1.0}, restitution=0.8)
+        ],
+    )
+    figure = cv.basins(machine, "amplitude", at=0.5, plane=("w", "w_rate"), points=2).plot()
+    low, high = figure.axes[0].get_xlim()
+    assert low < high
+    assert labels(figure) == {"w", "w rate"}
+
+
+def test_a_built_in_machine_in_its_notation(tmp_path):
+    absorber = orbits.Absorber(restitution=0.5, friction=0.1, gravity=0.2)
+    graph = cv.diagram(absorber.orbit("LR", amplitude=0.5), over="amplitude", within=(0.45, 0.55), depth=0)
+    wanted = {"amplitude $C$", "velocity at the first impact $B$"}
+    assert labels(graph.plot()) == wanted
+    graph.save(tmp_path / "a.vines")
+    assert labels(cv.load(tmp_path / "a.vines").plot()) == wanted
+    basins = cv.basins(absorber, "amplitude", at=0.5, points=4)
+    figure = basins.plot()
+    low, high = figure.axes[0].get_xlim()
+    assert low > high  # the left wall, w = +1, stands on the left
+    assert labels(figure) == {"position $w$ of the start", "velocity $w'$ of the start"}
+
+
+def test_a_survey_keeps_its_notation(tmp_path):
+    plan = Plan({"friction": np.array([0.1, 0.2, 0.3])}, {})
+    for notation, label in (({}, "friction"), ({"friction": r"friction $\mu$"}, r"friction $\mu$")):
+        survey = Survey(
+            plan,
+            {"peak": np.array([3.0, 2.0, 1.0])},
+            np.full(3, ""),
+            {},
+            {"axes": ["friction"], "samples": []},
+            notation,
+        )
+        assert label in labels(survey.plot())
+        survey.save(tmp_path / "s.nc")
+        assert label in labels(load_survey(tmp_path / "s.nc").plot())
