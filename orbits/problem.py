@@ -157,9 +157,9 @@ class OrbitProblem(Simulated, Relatives, Answers):
     def sibling(
         self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> OrbitProblem:
-        """The problem of another word of the same machine against the same parameter."""
-        own = self.params if params is None else params
-        return OrbitProblem(self.model, word, periods, self.parameter, own, symmetric, self.units)
+        """The problem of another word of the same machine against the same parameter; on half the word only where the machine has a mirror image."""
+        own, half = self.params if params is None else params, symmetric and self.mirrored
+        return OrbitProblem(self.model, word, periods, self.parameter, own, half, self.units)
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""

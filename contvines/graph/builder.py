@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from ..events.watch import Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .identity import parts_further_on
-from .leaving import leave
+from .leaving import SWITCHING, leave, tell_dead_end
 from .marking import mark, origin_index
 from .one_border import is_border, same_border, tie_borders
 from .pending import Origin, Pending
@@ -116,13 +117,23 @@ def tell_dead_ends(run: Run) -> None:
     for point in run.graph.special.values():
         untold = point.kind in BORDERS and point.real and not point.remarks and point.label not in crossed
         if untold and point.problem is not None:
-            run.remark(point.label, point.problem.dead_end(point))
+            tell_dead_end(run, point)
 
 
 def trace_pending(run: Run, pending: Pending) -> None:
     """Trace a branch unless it is known, and queue what leaves it."""
     if pending.reached:
         return
+    if pending.point is None:
+        opened = new_branch(run, pending)
+    else:
+        opened = run.attempt(pending.point, SWITCHING, partial(new_branch, run, pending), None)
+    if opened is not None:
+        trace_new(run, pending, *opened)
+
+
+def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
+    """First point of a pending branch, and whether it is real; None if there is none to trace, or it is known."""
     first = first_point(run, run.engine(pending.problem)[0], pending)
     # the virtual rest of a branch goes on in its own equations, though at the border it repeats a shorter solution
     rest = pending.kind is Origin.REST and not pending.real
@@ -137,21 +148,21 @@ def trace_pending(run: Run, pending: Pending) -> None:
             pending.kind = Origin.ROOT
         first = first_point(run, run.engine(pending.problem)[0], pending)
     if first is None:
-        return
+        return None
     if outside := run.limits.outside(pending.problem, first.u, first.p):
         if pending.point is not None:
             run.remark(pending.point, f"the branch that leaves here is not followed: {outside}")
-        return
-    engine, watch = run.engine(pending.problem)
+        return None
+    engine, _ = run.engine(pending.problem)
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
     if not real and pending.kind is Origin.BORDER:
-        return  # an algebraic solution beyond the border that no machine follows: nothing was crossed
+        return None  # an algebraic solution beyond the border that no machine follows: nothing was crossed
     if not real and not run.virtual:
         if pending.point is not None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
-        return
+        return None
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
         itself = run.engine(known.problem)[0]
@@ -159,11 +170,17 @@ def trace_pending(run: Run, pending: Pending) -> None:
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
             run.remark(pending.point, "the solution found beyond lies on the same branch")
-            return
+            return None
         if pending.kind in (Origin.BORDER, Origin.REST) and pending.point is not None:
             pending.point = same_border(run, pending.point, known)
         run.connect(pending.point, pending.source, known.label, pending.note)
-        return
+        return None
+    return first, real
+
+
+def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
+    """Trace a branch that is not known, label its special points, and queue what leaves it."""
+    engine, watch = run.engine(pending.problem)
     run.serial += 1
     label = run.new_label("B")
     half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)

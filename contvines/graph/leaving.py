@@ -35,6 +35,7 @@ FAMILY = (
 )
 VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
 SEED = ("problem", "u", "p", "tangent", "note", "persistence")
+SWITCHING, CROSSING = "the search for branches that leave here", "the search for solutions beyond the border"
 DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
@@ -43,9 +44,9 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     if point.kind in BORDERS:
         _cross(run, point, branch, depth)
     elif point.met_from is not None and point.branch == branch.label and _from_side(run, point):
-        _root(run, point, branch, depth)
+        run.attempt(point.label, SWITCHING, partial(_root, run, point, branch, depth), None)
     elif point.kind in NAMES:
-        _switch(run, point, branch, depth)
+        run.attempt(point.label, SWITCHING, partial(_switch, run, point, branch, depth), None)
 
 
 def _from_side(run: Run, point: SpecialPoint) -> bool:
@@ -237,7 +238,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     if branch.real:
         seeds = _seeds(run, leaving, depth < run.depth)
         if not seeds:
-            run.remark(point.label, point.problem.dead_end(leaving))
+            tell_dead_end(run, leaving)
         elif all(_cost(seed) + depth > run.depth for seed in seeds):
             run.remark(point.label, DEEPER.format(depth=run.depth))
         for seed in seeds:
@@ -287,6 +288,11 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         )
 
 
+def tell_dead_end(run: Run, point: SpecialPoint) -> None:
+    """Say why nothing goes on at a border."""
+    run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.problem.dead_end, point), ""))
+
+
 def _cost(seed: dict[str, Any]) -> int:
     """How many switches deeper a branch beyond a border is: one that goes on in the same direction is as deep."""
     return 0 if seed["persistence"] else 1
@@ -310,8 +316,10 @@ def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, 
             }
             for i in range(len(problems))
         ]
-    with OPEN, everything(problem, not brief):
-        seeds = list(problem.beyond(point))
+    with everything(problem, not brief):
+        seeds = run.attempt(point.label, CROSSING, lambda: list(problem.beyond(point)), None)
+    if seeds is None:
+        return []
     if known is None and not isinstance(run.journal, NullJournal):
         run.journal.record(key, _recorded(seeds))
     return [{name: getattr(seed, name) for name in SEED} for seed in seeds]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -15,11 +15,14 @@ from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
 from ..events.located import Located
 from ..events.watch import Watch
+from ..interrupts import OPEN
 from ..problems.protocol import Problem
 from .graph import Graph, Switch
 from .identity import Register
 from .limits import NO_LIMITS, Limits
 from .pending import Pending
+
+Found = TypeVar("Found")
 
 
 class Progress(NamedTuple):
@@ -155,6 +158,34 @@ class Run:
         if ending.reason is Reason.REACHES:
             return replace(ending, reason=Reason.MEETS, point=into, other=self.graph.special[into].branch)
         return replace(ending, point=into)
+
+    def attempt(self, label: str, what: str, work: Callable[[], Found], otherwise: Found) -> Found:
+        """Result of work at a special point; if it fails, the point's remarks name the error, and the graph goes on.
+
+        Parameters
+        ----------
+        label : str
+            Label of the special point.
+        what : str
+            Name of the work, for the remark.
+        work : callable
+        otherwise : object
+            Result of work that fails.
+
+        Raises
+        ------
+        KeyboardInterrupt, MemoryError, OSError
+            As the work does: these are no failures of one point.
+        """
+        try:
+            with OPEN:
+                return work()
+        except (MemoryError, OSError):
+            raise
+        except Exception as error:
+            with OPEN:  # an interrupt during the work may be the cause
+                self.remark(label, f"{what} failed: {type(error).__name__}: {error}")
+            return otherwise
 
     def remark(self, label: str, sentence: str) -> None:
         """Add a sentence to the remarks on a special point, if there is one."""

@@ -110,7 +110,13 @@ class Charting:
             )
         if not self.queue and not self.chart.loci:
             checked_ends(point.problem, self.over, self.within)
-        point = regular_side(point)
+        try:
+            point = regular_side(point)
+        except (MemoryError, OSError):
+            raise
+        except Exception as error:
+            self.refused.append(f"{point.label}: {type(error).__name__}: {error}")
+            return
         candidate = Candidate(
             point.problem, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
         )

@@ -114,9 +114,9 @@ def _simplest(
 ) -> tuple[CycleProblem, np.ndarray, np.ndarray | None]:
     """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
     root = orbit.root()
-    if root.periods == problem.periods and root.symmetric == problem.symmetric:
-        return problem, u, tangent
     smallest = problem.sibling(root.word, root.periods, root.symmetric)
+    if smallest.periods == problem.periods and smallest.symmetric == problem.symmetric:
+        return problem, u, tangent
     return smallest, smallest.reduce(root.nodes), None
 
 

@@ -30,8 +30,7 @@ def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
                 orbit = find(problem.model, "ss", 1, None, values)
             except (StartError, ValueError):
                 continue
-            half = orbit.symmetric and orbit.model.has_mirror(orbit.params, problem.parameter)
-            other = problem.sibling(orbit.word, orbit.periods, half)
+            other = problem.sibling(orbit.word, orbit.periods, orbit.symmetric)
             u, q = other.reduce(orbit.nodes), other.value(orbit.params)
             length = orbit.model.natural_units(orbit.params)[0]
             if orbit.real and np.ptp(orbit.sample()["w"]) < CLOSE * length and orbit.replay() < FOLLOWED:

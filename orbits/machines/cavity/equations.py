@@ -163,15 +163,16 @@ def cycle(data, u, work, law, rate):
         if not size <= largest:
             largest = size
     if pinned == 1:
-        largest = max(largest, pin(F, A, D, Q, u, twist, modes, work.pin))
+        middle, d_middle = law.left + law.right, rate.left + rate.right
+        largest = max(largest, pin(F, A, D, Q, u, twist, modes, middle, d_middle, work.pin))
     if not np.isfinite(largest):
         return np.inf
     return largest
 
 
 @kernel
-def pin(F, A, D, Q, u, twist, modes, kept):
-    """Replace the displacement equation of the last flight by w_i + w_{i+1} = 0; what was there goes to `kept`.
+def pin(F, A, D, Q, u, twist, modes, middle, d_middle, kept):
+    """Replace the displacement equation of the last flight by w_i + w_{i+1} = middle, the sum of the walls' places; it goes to `kept`.
 
     Returns what the mean position is off by.
     """
@@ -184,8 +185,8 @@ def pin(F, A, D, Q, u, twist, modes, kept):
     A[last, 1, 1] = 1.0
     D[last, 1, 0] = 0.0
     D[last, 1, 1] = 1.0
-    F[last, 1] = u[2 * last + 1] + (u[2 * last + 3] if last + 1 < F.shape[0] else twist * u[1])
-    Q[last, 1] = 0.0
+    F[last, 1] = u[2 * last + 1] + (u[2 * last + 3] if last + 1 < F.shape[0] else twist * u[1]) - middle
+    Q[last, 1] = -d_middle
     return abs(F[last, 1])
 
 

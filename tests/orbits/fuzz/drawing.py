@@ -14,6 +14,7 @@ MASS_RATIOS = {
     "absorber": (0.0, 0.006, 0.05),
     "cavity": (0.0, 0.006, 0.05),
     "coupled": (0.002, 0.006, 0.05, 0.3),
+    "level": (0.0, 0.006, 0.05),  # a level cavity, alike but for the distances of its walls
 }
 KINDS = tuple(MASS_RATIOS)
 TRIES = 4  # starts from which a periodic motion is looked for
@@ -75,6 +76,15 @@ def _machine(kind: str, rng: np.random.Generator) -> Any:
             forcing=rng.uniform(1.0, 4.0),
             frequency=1.0 + 0.3 * np.sqrt(eps) * rng.uniform(-1.0, 1.0),
             excitation=str(rng.choice(["exact", "truncated"])),
+            **common,
+        )
+    if kind == "level":
+        return Cavity(
+            restitution=_restitution(rng, 0.3),
+            friction=friction,
+            distance_left=rng.uniform(0.6, 1.4),
+            distance_right=rng.uniform(0.6, 1.4),
+            frequency=frequency,
             **common,
         )
     return Cavity(

@@ -20,7 +20,7 @@ SECONDS = 150.0  # of processor time for each part
 LIMITS = {"max_branches": 80}
 
 
-class TooLong(Exception):
+class TooLong(BaseException):
     """A part takes longer than its time."""
 
 

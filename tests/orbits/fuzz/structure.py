@@ -90,6 +90,8 @@ def _certainly_there(branch: Any, extent: float) -> bool:
 
 def _point(graph: Any, point: Any, tally: Tally) -> None:
     where = f"{point.label} at {point.value:.10g}"
+    if " failed: " in point.note:
+        tally.find("exception", f"{where}: {point.note}")
     size = max(1.0, float(np.abs(point.u).max(initial=0.0)))
     if not point.residual < ROUNDOFF * size:
         tally.find("residual", f"{where}: {point.residual:.1e}")

@@ -11,6 +11,12 @@ from scipy.integrate import solve_ivp
 import contvines as cv
 from orbits import Absorber, Cavity, ParameterError
 from orbits.attractors import find_attractor
+from orbits.machines.absorber.closed_forms import (
+    fold_square,
+    friction_number,
+    restitution_ratio,
+    symmetry_breaking_square,
+)
 from orbits.problem import OrbitProblem
 from orbits.simulation import simulate
 from orbits.starts.find import StartError
@@ -48,6 +54,44 @@ def test_level_and_symmetric_it_has_the_absorbers_special_points():
         points.append([(s.kind, s.value) for s in graph.special.values()])
     assert [kind for kind, _ in points[0]] == [kind for kind, _ in points[1]]
     assert np.abs(np.array([v for _, v in points[0]]) - np.array([v for _, v in points[1]])).max() < 1e-12
+
+
+def test_level_with_unlike_distances_it_is_the_absorber_of_their_mean():
+    """Nothing but the walls knows the place of the origin: with the mean distance b of the walls as the unit of length, C and g count as C/b and g/b.
+
+    The orbit LR ends at a border from which simulation also goes on to sliding, a symmetric motion of a machine without mirror image.
+    """
+    b, mass_ratio = 0.95, 0.006
+    machine = Cavity(
+        restitution=0.5, friction=0.5, gravity=0.2, mass_ratio=mass_ratio, distance_left=2 * b - 1
+    )
+    graph = cv.diagram(machine.orbit("LR", amplitude=0.6), over="amplitude", within=(0.3, 1.0), depth=0)
+    R, H = restitution_ratio(0.5), friction_number(0.5, 0.2 / b, mass_ratio)
+    fold, pitchfork = b * np.sqrt(fold_square(R, H)), b * np.sqrt(symmetry_breaking_square(R, H))
+    assert graph["LP1"].value == pytest.approx(fold, abs=1e-12)
+    assert graph["BP1"].value == pytest.approx(pitchfork, abs=1e-12)
+    assert graph["WG1"].branch == "B1" and "failed" not in graph["WG1"].note
+
+
+def test_level_with_unlike_distances_sliding_ends_where_it_fills_the_cavity():
+    """It turns at the mean of the walls' places -+ sqrt(C^2 - H^2), and goes over into LR where that is half the way from wall to wall."""
+    b, mass_ratio = 0.95, 0.006
+    machine = Cavity(
+        restitution=0.5,
+        friction=0.5,
+        gravity=0.2,
+        mass_ratio=mass_ratio,
+        distance_left=0.6,
+        distance_right=1.3,
+    )
+    H = friction_number(0.5, 0.2, mass_ratio)
+    sliding = machine.orbit("tt", amplitude=0.9)
+    turns = np.sort(sliding.nodes[:, 1]) + 0.5 * (1.3 - 0.6)
+    assert turns == pytest.approx(np.sqrt(0.81 - H**2) * np.array([-1, 1]), abs=1e-12)
+    assert sliding.real
+    graph = cv.diagram(sliding, over="amplitude", within=(0.5, 1.0), depth=1)
+    assert graph["WG1"].value == pytest.approx(np.hypot(b, H), abs=1e-12)
+    assert [branch.description["word"] for branch in graph] == ["tt", "LR"]
 
 
 # ---------------------------------------------------------------------------------------------- a ball on a table
