@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -196,77 +196,3 @@ def _flip(draws: Draws, value: Any, table: np.ndarray) -> int | None:
     if np.all(np.isfinite(ratio)) and np.ptp(ratio) < SAME * np.abs(ratio).max():
         return 1 if ratio[0] > 0.0 else -1  # after the impact the gap opens
     return None
-
-
-def check_mirror(
-    equations: Equations, params: np.ndarray, pairs: Mapping[str, str]
-) -> tuple[dict[int, int], frozenset[int]]:
-    """Whether the mirror image of every motion is one: all states change sign, half a forcing period on.
-
-    Returns
-    -------
-    images : dict of int to int
-        Contact -> its mirror image.
-    turned : frozenset of int
-        Switches whose sign turns.
-    """
-    if not isinstance(pairs, Mapping):
-        raise PageError(
-            f"mirror = {pairs!r} must say which contacts change places, for example {{'L': 'R'}}; {{}} where none does"
-        )
-    e, draws = equations, Draws(equations, params)
-    by_letter = {letter: j for j, c in enumerate(e.contacts) for letter in (c.name, *c.letters)}
-    images = {j: j for j in range(len(e.contacts))}
-    for one, other in pairs.items():
-        for letter in (one, other):
-            if letter not in by_letter:
-                raise PageError(
-                    f"mirror = {dict(pairs)!r}: {letter!r} is no contact; there are {', '.join(by_letter)}"
-                )
-        a, b = by_letter[one], by_letter[other]
-        if type(e.contacts[a]) is not type(e.contacts[b]):
-            raise PageError(f"mirror: {one!r} and {other!r} are contacts of different kinds")
-        images[a], images[b] = b, a
-    on = draws.clock + np.pi
-    turned = set()
-
-    def compare(what: str, here: np.ndarray, there: np.ndarray) -> None:
-        gap = np.abs(here - there)
-        if not np.nanmax(gap) <= SAME * (1.0 + np.nanmax(np.abs(here))):
-            k = int(np.nanargmax(gap))
-            state = ", ".join(f"{n} = {v:.4g}" for n, v in zip(e.states, draws.states[k]))
-            when = f", phase = {draws.clock[k]:.4g}" if e.phase_rate is not None else ""
-            raise PageError(
-                f"mirror: {what} is not the mirror image: at {state}{when} it is {float(np.ravel(here)[k]):.6g}, its image gives "
-                f"{float(np.ravel(there)[k]):.6g}; set mirror=None, or correct the formula"
-            )
-
-    for j, contact in enumerate(e.contacts):
-        what, k = described(contact), images[j]
-        if isinstance(contact, Wall):
-            here = draws.of([e.gap[j], e.restitution[j]])
-            there = draws.of([e.gap[k], e.restitution[k]], states=-draws.states, clock=on)
-            compare(f"the gap of {what}", here[:, 0], there[:, 0])
-            compare(f"the restitution of {what}", here[:, 1], there[:, 1])
-        elif isinstance(contact, DryFriction):
-            here = draws.of([e.velocity[j], e.limit[j]])
-            there = draws.of([e.velocity[k], e.limit[k]], states=-draws.states, clock=on)
-            compare(f"the velocity of {what}", here[:, 0], -there[:, 0])
-            compare(f"the limit of {what}", here[:, 1], there[:, 1])
-        else:
-            here = draws.of([e.surface[j]])[:, 0]
-            there = draws.of([e.surface[k]], states=-draws.states, clock=on)[:, 0]
-            if np.abs(here + there).max() < np.abs(here - there).max():
-                turned.add(j)
-                there = -there
-            compare(f"the surface of {what}", here, there)
-    signs = np.empty_like(draws.signs)
-    for place, j in enumerate(e.signed):
-        turns = isinstance(e.contacts[j], DryFriction) or j in turned
-        signs[:, e.signed.index(images[j])] = draws.signs[:, place] * (-1.0 if turns else 1.0)
-    rates = e.pattern(e.pattern_key([1 if j in e.signed else 0 for j in range(len(e.contacts))])).rates
-    here = draws.of(rates)
-    there = draws.of(rates, states=-draws.states, clock=on, signs=signs)
-    for i, name in enumerate(e.states):
-        compare(f"motion's rate of {name}", here[:, i], -there[:, i])
-    return images, frozenset(turned)

@@ -65,9 +65,9 @@ def _simplest(
 ) -> tuple[DeclaredSystem, np.ndarray, np.ndarray | None]:
     """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
     root = DeclaredOrbit.of(problem, u, p).root()
-    if len(root.word) == len(problem.word) and root.symmetric == problem.symmetric:
-        return problem, u, tangent
     smallest = problem.sibling(root.word, root.periods, root.symmetric)
+    if len(smallest.word) == len(problem.word) and smallest.symmetric == problem.symmetric:
+        return problem, u, tangent
     return smallest, smallest.reduce(root.nodes), None
 
 

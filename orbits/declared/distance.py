@@ -23,7 +23,7 @@ def distance(one: DeclaredOrbit, other: DeclaredOrbit, points: int = 300) -> flo
     if not machine.forced:
         return _unlike(one, other, {machine.states[j] for j in loose})
     images = [other]
-    if machine.alphabet.mirror is not None:
+    if machine.has_mirror(other.params):
         images.append(other.mirror())
     return min(_apart(one, image, points, loose) for image in images)
 

@@ -17,6 +17,7 @@ from orbits.declared import checks, names
 from orbits.declared.compiled import Compiled
 from orbits.declared.equations import Equations
 from orbits.declared.formulas import PageError
+from orbits.declared.mirror import MirrorImage
 from orbits.declared.page import Page, page_of
 from orbits.doors import above
 from orbits.machines.parameters import ParameterError
@@ -42,7 +43,8 @@ class Machine:
         2 pi in the phase. Left out: a self-excited machine, whose motions have periods of their own.
     mirror : mapping of str to str, optional
         The machine equals its mirror image: all states change sign, these contacts change places (those not named stay), half a
-        forcing period on. ``{}``: no contact changes its place. Checked at random states.
+        forcing period on. ``{}``: no contact changes its place. Checked at random states with the parameters' own values; with
+        other values (a slope that is not zero) symmetric orbits and mirror images are looked for only if it holds there, too.
     starts : mapping of str to (low, high), optional
         Ranges of the states among which atlases and basins draw their starts; by default twice what the motion from rest reaches.
 
@@ -76,9 +78,9 @@ class Machine:
         self.equations = Equations(self.states, self.parameter_names, phase_rate, motion, self.contacts)
         params = self.vector()
         flips = self.equations.flips = checks.check_contacts(self.equations, params)
-        images, turned = (
-            (None, frozenset()) if mirror is None else checks.check_mirror(self.equations, params, mirror)
-        )
+        image = None if mirror is None else MirrorImage(self.equations, params, mirror)
+        images, turned = (None, frozenset()) if image is None else (image.images, image.turned)
+        self._image = image
         rides = checks.riding(self.equations, params)
         self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
         self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
@@ -160,6 +162,11 @@ class Machine:
                 raise ParameterError(
                     f"{name} = {value:g} is out of range: the limit of friction {contact.name!r} is 0 or above"
                 )
+
+    def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
+        """Whether the mirror image of every motion is one at these parameters, whatever the value of the one that varies."""
+        place = None if varying is None else self.parameter_names.index(varying)
+        return self._image is not None and self._image.holds(params, place)
 
     def absent(self, params: np.ndarray) -> frozenset[int]:
         """Frictions whose limit is zero at these parameters, at random states: they have no events."""

@@ -66,7 +66,7 @@ def with_edits(
     halved = (
         problem.symmetric
         if not empty
-        else bool(edits[0].change.events) and problem.word.mirror_symmetric_halves
+        else problem.mirrored and bool(edits[0].change.events) and problem.word.mirror_symmetric_halves
     )
     if halved:  # the same happens half a period later to the mirror image
         if not empty and any(change.stop > length for change in changes):

@@ -72,7 +72,8 @@ class DeclaredOrbit(Claim):
     def symmetric(self) -> bool:
         """Whether the orbit equals its mirror image after half its period."""
         same, forced = size_of_one(self.nodes), self.machine.forced
-        return len(self.word) > 0 and is_symmetric(self.word, self.periods, self.nodes, same, forced=forced)
+        alike = len(self.word) > 0 and is_symmetric(self.word, self.periods, self.nodes, same, forced=forced)
+        return alike and self.machine.has_mirror(self.params)
 
     @cached_property
     def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
@@ -138,10 +139,15 @@ class DeclaredOrbit(Claim):
         Raises
         ------
         ValueError
-            If the machine declares no mirror.
+            If it is no motion of this machine.
         """
         if self.word.alphabet.mirror is None:
             raise ValueError(f"the machine {self.machine.name!r} declares no mirror symmetry")
+        if not self.machine.has_mirror(self.params):
+            raise ValueError(
+                f"the machine {self.machine.name!r} has no mirror symmetry with these parameters: the image of "
+                f"{self.word.text!r} is not one of its orbits"
+            )
         nodes = -self.nodes
         nodes[:, 0] = self.nodes[:, 0] + (np.pi if self.machine.forced else 0.0)
         return self._with(self.word.mirror(), self.periods, nodes)
@@ -159,13 +165,16 @@ class DeclaredOrbit(Claim):
     # ------------------------------------------------------------------ towards continuation
     def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
         """The orbit's word as a continuation problem against `parameter` (default: the forcing's frequency)."""
-        half = self.symmetric if symmetric is None else symmetric
         name = parameter or self.machine.default_parameter
+        lasting = self.symmetric and self.machine.has_mirror(self.params, name)
+        half = lasting if symmetric is None else symmetric
         return above("DeclaredProblem")(self.machine, self.word, self.periods, name, self.params, half)
 
     def system(self, symmetric: bool) -> DeclaredSystem:
-        """Its equations, against the machine's default parameter."""
-        name = self.machine.default_parameter
+        """Its equations, against the machine's default parameter, or one along which symmetric orbits stay so."""
+        names = (self.machine.default_parameter, *self.machine.parameter_names)
+        lasting = (n for n in names if not symmetric or self.machine.has_mirror(self.params, n))
+        name = next(lasting, names[0])
         return DeclaredSystem(self.machine, self.word, self.periods, name, self.params, symmetric)
 
     def seed(self, problem: DeclaredSystem) -> tuple[np.ndarray, float]:

@@ -307,7 +307,7 @@ class _Sorting:
         )
         self.forms.append(form)
         self.marks.append(self._marks(place, root, False))
-        if root.word.alphabet.mirror is not None and not root.symmetric:
+        if self.machine.has_mirror(root.params) and not root.symmetric:
             self.marks.append(self._marks(place, root.mirror(), True))
         return place, False
 

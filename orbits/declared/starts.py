@@ -90,7 +90,7 @@ def _from_guess(
 
 def _aligned(orbit: DeclaredOrbit, word: PageWord) -> DeclaredOrbit | None:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
-    images = [orbit] + ([orbit.mirror()] if word.alphabet.mirror is not None else [])
+    images = [orbit] + ([orbit.mirror()] if orbit.machine.has_mirror(orbit.params) else [])
     for image in images:
         for place in range(max(1, len(word))):
             if image.word.rotate(place) == word:

@@ -104,6 +104,10 @@ class DeclaredSystem:
             )
         if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):
             raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
+        if symmetric and not machine.has_mirror(np.array(params, dtype=float), parameter):
+            raise ValueError(
+                f"the machine {machine.name!r} has no mirror image along {parameter}, so no symmetric orbits"
+            )
         if not len(word) and not machine.forced:
             raise ValueError(
                 f"the machine {machine.name!r} has no forcing, so a motion without events is no cycle whose period can be "
@@ -112,7 +116,7 @@ class DeclaredSystem:
         self.machine, self.word, self.periods = machine, word, int(periods)
         self.parameter, self.params = parameter, np.array(params, dtype=float)
         self.symmetric, self.forced = bool(symmetric), machine.forced
-        self.mirrored = word.alphabet.mirror is not None
+        self.mirrored = machine.has_mirror(self.params, parameter)
         self.index = machine.parameter_names.index(parameter)
         self.size, self.contacts = machine.size, len(machine.contacts)
         whole = max(1, len(word))
@@ -280,11 +284,12 @@ class DeclaredSystem:
 
     # ------------------------------------------------------------------ identity and other words
     def sibling(self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Self:
-        """The same for another word of the machine, against the same parameter."""
-        given = self.params if params is None else params
-        return type(self)(self.machine, word, periods, self.parameter, given, symmetric)
+        """The same for another word of the machine, against the same parameter; on half the word only where the machine has a mirror image."""
+        given, half = self.params if params is None else params, symmetric and self.mirrored
+        return type(self)(self.machine, word, periods, self.parameter, given, half)
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
         """Key and vector that are equal for one orbit in all its descriptions."""
         nodes = self.expand(u)
-        return canonical(self.word, self.periods, nodes, forced=self.forced, same=size_of_one(nodes))
+        mirror = self.mirrored or self.machine.has_mirror(self.values(p))
+        return canonical(self.word, self.periods, nodes, mirror, forced=self.forced, same=size_of_one(nodes))
