@@ -19,8 +19,8 @@
 //   Functions return a status or a number; they never fail otherwise. NaN and infinity in, NaN and infinity out.
 //
 // Compiled problems
-//   A problem that the continuation march can follow is a table of functions (`Problem` below) whose first argument is the
-//   problem's own struct.
+//   A problem that the continuation march can follow is a `Table` of C functions. `data` and `work` are the problem's own structs, the
+//   first and last argument of the kernels in the protocol (contvines/problems/protocol.py), which says the rest.
 #pragma once
 #include <math.h>
 #include <stdint.h>
@@ -32,3 +32,13 @@
 #endif
 
 using whole = int64_t;
+
+struct Table {
+    double (*linearise)(void* data, const double* u, double p, void* work);  // largest residual, infinity where it cannot be evaluated
+    double (*bordered)(void* data, void* work, const double* border, double target, double* step, double* tangent);  // determinant's sign
+    void (*inspect)(void* data, const double* u, double p, void* work, double* row);  // multipliers and margins
+    // For loci against a second parameter; null where there are none.
+    void (*assign)(void* data, void* other, double value);
+    void (*flip)(void* data, void* work, double sign);
+    void (*transpose)(void* data, void* work, const double* column, void* other);
+};

@@ -1,5 +1,8 @@
 #include "api.h"
-#include "math.hpp"
+#include "cavity.hpp"
+#include "coupled_cycles.hpp"
+#include "loci.hpp"
+#include "scan.hpp"
 
 #if defined(__x86_64__)
 #include <cpuid.h>
@@ -33,4 +36,49 @@ EXPORT void core_sines_cosines(whole count, const double* x, double* sines, doub
 
 EXPORT void core_exponentials(whole count, const double* x, double* values) {
     for (whole i = 0; i < count; i++) values[i] = exponential(x[i]);
+}
+
+// ---- compiled problems -----------------------------------------------------------------------------------------------------------
+// The tables of the built-in machines' cycles, and of loci of any compiled problem.
+EXPORT const Table* core_table(whole which) {
+    static const Table* const tables[] = {&cycles::CycleKernels<cycles::Cavity<cycles::AbsorberLaw>>::table,
+                                          &cycles::CycleKernels<cycles::Cavity<cycles::GeneralLaw>>::table,
+                                          &cycles::CycleKernels<cycles::CoupledCycles>::table, &loci::table};
+    return tables[which];
+}
+
+EXPORT double core_newton(const Table* table, void* data, void* work, whole size, double* u, double* p, double* room, const double* border,
+                          double* step, double* tangent, double tolerance, whole limit, whole* iterations) {
+    return cycles::newton(*table, data, work, size, u, p, room, border, step, tangent, tolerance, limit, iterations);
+}
+
+EXPORT whole core_march(continuation::Frame* frame, double* points, double* values, double* tangents, double* rows, double* signs, double* corrections,
+                        whole first, whole stop, double* h, const continuation::Control* control, continuation::Judge judge, whole* filled) {
+    return continuation::march(*frame, {points, values, tangents, rows, signs, corrections}, first, stop, h, *control,
+                               judge ? judge : continuation::by_angle, filled);
+}
+
+EXPORT whole core_points(continuation::Frame* frame, whole what, const double* chord, double start, double length, const double* places, whole count,
+                         const double* border, const double* along, whole max_sweeps, double* u, double* tangents, double* rows, double* numbers,
+                         const continuation::Aim* aim) {
+    return continuation::points(*frame, what, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
+}
+
+EXPORT void core_mark_segments(const continuation::Scanned* chunk, whole first_margin, whole kind, whole real, double flat, double past,
+                               double of_unknowns, double of_parameter, const continuation::Symmetries* symmetries, whole* flags, double* smallest) {
+    continuation::mark_segments(*chunk, first_margin, kind, real, flat, past, {of_unknowns, of_parameter}, *symmetries, flags, smallest);
+}
+
+// ---- algebra ---------------------------------------------------------------------------------------------------------------------
+EXPORT whole core_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {
+    return algebra::multipliers(A, D, length, int(n), twist, re, im, scratch);
+}
+EXPORT whole core_periodic_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {
+    return algebra::periodic_multipliers(A, D, length, int(n), twist, re, im, scratch);
+}
+EXPORT whole core_through_flights(const double* A, const double* D, whole length, whole n, double* product, double* sizes, double* room) {
+    return cycles::through_flights(A, D, length, n, product, sizes, room);
+}
+EXPORT void core_sides_of_cycles(const double* maps, whole n, const whole* keys, whole count, double* sides, double* products, double* room) {
+    cycles::sides_of_cycles(maps, n, keys, count, sides, products, room);
 }

@@ -5,6 +5,10 @@
 
 constexpr double PI = 3.14159265358979323846, TWO_PI = 2.0 * PI;
 
+template <class T> inline void swap(T& a, T& b) { T c = a; a = b, b = c; }
+inline double larger(double a, double b) { return a < b ? b : a; }   // as Python's max(a, b): a where b is no number
+inline double smaller(double a, double b) { return b < a ? b : a; }
+
 inline whole bits_of(double x) { return __builtin_bit_cast(whole, x); }
 inline double from_bits(whole x) { return __builtin_bit_cast(double, x); }
 
@@ -47,19 +51,75 @@ inline double cosine(double x) {
     return c;
 }
 
-// e^x after fdlibm: x = k ln 2 + r, |r| <= ln 2 / 2, and a rational approximation of e^r.
-inline double exponential(double x) {
-    constexpr double LN2_HIGH = 6.93147180369123816490e-01, LN2_LOW = 1.90821492927058770002e-10;
+// e^r - 1 - r for |r| <= ln 2 / 2: a rational approximation, after fdlibm.
+inline double beyond_linear(double r) {
     constexpr double P1 = 1.66666666666666019037e-01, P2 = -2.77777777770155933842e-03, P3 = 6.61375632143793436117e-05,
                      P4 = -1.65339022054652515390e-06, P5 = 4.13813679705723846039e-08;
+    double z = r * r, c = r - z * (P1 + z * (P2 + z * (P3 + z * (P4 + z * P5))));
+    return r * c / (2.0 - c);
+}
+
+// e^x: x = k ln 2 + r.
+inline double exponential(double x) {
+    constexpr double LN2_HIGH = 6.93147180369123816490e-01, LN2_LOW = 1.90821492927058770002e-10;
     if (!(x > -746.0)) return x != x ? x : 0.0;
     if (x > 710.0) return HUGE_VAL;
     double t = x * 1.44269504088896338700 + ROUNDING, k = t - ROUNDING;
-    double high = x - k * LN2_HIGH, low = k * LN2_LOW, r = high - low, z = r * r;
-    double c = r - z * (P1 + z * (P2 + z * (P3 + z * (P4 + z * P5))));
-    double y = 1.0 - ((low - (r * c) / (2.0 - c)) - high);
+    double high = x - k * LN2_HIGH, low = k * LN2_LOW;
+    double y = 1.0 - ((low - beyond_linear(high - low)) - high);
     whole power = whole(k), first = power / 2;  // in two steps: the result may be subnormal
     return y * from_bits((1023 + first) << 52) * from_bits((1023 + power - first) << 52);
+}
+
+// e^x - 1, without cancellation near 0.
+inline double exponential_less_one(double x) { return fabs(x) < 0.34 ? x + beyond_linear(x) : exponential(x) - 1.0; }
+
+// ln x after fdlibm: x = 2^k (1 + f), a polynomial in f / (2 + f).
+inline double logarithm(double x) {
+    constexpr double LN2_HIGH = 6.93147180369123816490e-01, LN2_LOW = 1.90821492927058770002e-10;
+    constexpr double L1 = 6.666666666666735130e-01, L2 = 3.999999999940941908e-01, L3 = 2.857142874366239149e-01, L4 = 2.222219843214978396e-01,
+                     L5 = 1.818357216161805012e-01, L6 = 1.531383769920937332e-01, L7 = 1.479819860511658591e-01;
+    if (x == 0.0) return -HUGE_VAL;
+    if (!(x > 0.0) || x > 1.7976931348623157e308) return x < 0.0 ? NAN : x;
+    int k;
+    double m = frexp(x, &k) * 2.0;
+    k--;
+    if (m > 1.4142135623730951) m *= 0.5, k++;
+    double f = m - 1.0, s = f / (2.0 + f), z = s * s, w = z * z, half = 0.5 * f * f;
+    double r = z * (L1 + w * (L3 + w * (L5 + w * L7))) + w * (L2 + w * (L4 + w * L6));
+    return k * LN2_HIGH - ((half - (s * (half + r) + k * LN2_LOW)) - f);
+}
+
+// arctan x after fdlibm.
+inline double arctangent(double x) {
+    constexpr double HIGH[] = {0.0, 4.63647609000806093515e-01, 7.85398163397448278999e-01, 9.82793723247329054082e-01, 1.57079632679489655800e+00},
+                     LOW[] = {0.0, 2.26987774529616870924e-17, 3.06161699786838301793e-17, 1.39033110312309984516e-17, 6.12323399573676603587e-17};
+    constexpr double T0 = 3.33333333333329318027e-01, T1 = -1.99999999998764832476e-01, T2 = 1.42857142725034663711e-01,
+                     T3 = -1.11111104054623557880e-01, T4 = 9.09088713343650656196e-02, T5 = -7.69187620504482999495e-02,
+                     T6 = 6.66107313738753120669e-02, T7 = -5.83357013379057348645e-02, T8 = 4.97687799461593236017e-02,
+                     T9 = -3.65315727442169155270e-02, T10 = 1.62858201153657823623e-02;
+    double size = fabs(x), y = size;
+    int part = size < 0.4375 ? 0 : size < 0.6875 ? 1 : size < 1.1875 ? 2 : size < 2.4375 ? 3 : 4;
+    if (part == 1) y = (2.0 * size - 1.0) / (2.0 + size);
+    else if (part == 2) y = (size - 1.0) / (size + 1.0);
+    else if (part == 3) y = (size - 1.5) / (1.0 + 1.5 * size);
+    else if (part == 4) y = -1.0 / size;
+    double z = y * y, w = z * z;
+    double even = z * (T0 + w * (T2 + w * (T4 + w * (T6 + w * (T8 + w * T10)))));
+    double odd = w * (T1 + w * (T3 + w * (T5 + w * (T7 + w * T9))));
+    double found = part == 0 ? y - y * (even + odd) : HIGH[part] - ((y * (even + odd) - LOW[part]) - y);
+    return copysign(found, x);
+}
+
+// x^y for x > 0 as path and laws of parameters need it: exact products and roots for multiples of 1/2.
+inline double power(double x, double y) {
+    double twice = 2.0 * y, size = fabs(twice);
+    if (size > 16.0 || twice != floor(twice)) return pow(x, y);
+    double found = 1.0;
+    whole count = whole(size);
+    for (whole i = 0; i < count / 2; i++) found *= x;
+    if (count % 2) found *= sqrt(x);
+    return y < 0.0 ? 1.0 / found : found;
 }
 
 // sqrt(x^2 + y^2) without overflow.
@@ -105,3 +165,24 @@ inline void shift(double& w, double& low, double step) {
     low = rest - (out - total);
     w = out;
 }
+
+// arcsin x after fdlibm.
+inline double arcsine(double x) {
+    constexpr double P0 = 1.66666666666666657415e-01, P1 = -3.25565818622400915405e-01, P2 = 2.01212532134862925881e-01,
+                     P3 = -4.00555345006794114027e-02, P4 = 7.91534994289814532176e-04, P5 = 3.47933107596021167570e-05;
+    constexpr double Q1 = -2.40339491173441421878e+00, Q2 = 2.02094576023350569471e+00, Q3 = -6.88283971605453293030e-01,
+                     Q4 = 7.70381505559019352791e-02, HALF_PI = 1.57079632679489655800e+00, HALF_PI_LOW = 6.12323399573676603587e-17;
+    double size = fabs(x), z = size < 0.5 ? x * x : 0.5 * (1.0 - size);
+    double r = z * (P0 + z * (P1 + z * (P2 + z * (P3 + z * (P4 + z * P5))))) / (1.0 + z * (Q1 + z * (Q2 + z * (Q3 + z * Q4))));
+    if (size < 0.5) return x + x * r;
+    double s = sqrt(z), found;
+    if (size >= 0.975) found = HALF_PI - (2.0 * (s + s * r) - HALF_PI_LOW);
+    else {
+        double high = from_bits(bits_of(s) & ~whole(0xffffffff)), low = (z - high * high) / (s + high);
+        found = 0.25 * PI - (2.0 * s * r - (HALF_PI_LOW - 2.0 * low) - (0.25 * PI - 2.0 * high));
+    }
+    return copysign(found, x);
+}
+
+// arccos x; near 1 by the half angle, so that no digits are lost.
+inline double arccosine(double x) { return x > 0.5 ? 2.0 * arcsine(sqrt(0.5 * (1.0 - x))) : 0.5 * PI - arcsine(x); }

@@ -1,45 +1,82 @@
-"""Structs of the native core, made from named tuples: arrays become pointers, integers int64, floats double."""
+"""Structs of the native core in numpy arrays: every member has eight bytes, and arrays are pointers.
+
+Native code is handed the address of such an array (`address`), which with all that it points to has to live as long as it is in use.
+"""
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Sequence
-from typing import Any, NamedTuple, get_type_hints
+from functools import lru_cache
+from math import prod
+from typing import Any
 
 import numpy as np
 
-from .library import NUMBER, POINTER, WHOLE, address
+from .library import address
 
 
-def structure(kind: type[NamedTuple] | Any) -> type[ctypes.Structure]:
-    """The struct whose members are the fields of a named tuple class, in their order.
-
-    Fields are annotated as float, int or ndarray; every other type is a pointer, given as an address.
-    """
-    types = {float: NUMBER, int: WHOLE}
-    hints = get_type_hints(kind)
-    members = [(name, types.get(hints[name], POINTER)) for name in kind._fields]
-    return type(kind.__name__, (ctypes.Structure,), {"_fields_": members})
-
-
-def record(form: type[ctypes.Structure], values: Sequence[Any]) -> ctypes.Structure:
-    """A struct filled from a named tuple; it keeps the arrays to which it points alive.
+def pack(*members: Any) -> np.ndarray:
+    """A struct from its members, shape (k,): floats, integers, and arrays as pointers.
 
     Raises
     ------
     TypeError
         If an array is not C-contiguous, or of other numbers than float64 and int64.
     """
-    made = form(*(_plain(value) for value in values))
-    made.kept = values  # type: ignore[attr-defined]
+    made = np.empty(len(members), np.int64)
+    numbers = made.view(np.float64)
+    for i, member in enumerate(members):
+        if isinstance(member, np.ndarray):
+            made[i] = place(member)
+        elif isinstance(member, float):
+            numbers[i] = member
+        else:
+            made[i] = member
     return made
 
 
-def _plain(value: Any) -> Any:
-    if not isinstance(value, np.ndarray):
-        return value
-    if not value.flags.c_contiguous or value.dtype not in (np.float64, np.int64):
+def place(array: np.ndarray) -> int:
+    """Address of an array, which has to be one that native code can read."""
+    if not array.flags.c_contiguous or array.dtype not in (np.float64, np.int64):
         raise TypeError(
-            f"an array of {value.dtype}, strides {value.strides}, cannot be handed to the native core"
+            f"an array of {array.dtype}, strides {array.strides}, cannot be handed to the native core"
         )
-    return address(value)
+    return address(array)
+
+
+@lru_cache(maxsize=1024)
+def _layout(
+    head: int, shapes: tuple[tuple[int, ...], ...]
+) -> tuple[np.ndarray, tuple[tuple[int, int], ...], int]:
+    ends = np.cumsum([head + len(shapes), *map(prod, shapes)])
+    starts = ends[:-1]
+    return 8 * starts, tuple(zip(starts.tolist(), ends[1:].tolist())), int(ends[-1])
+
+
+def block(
+    head: Sequence[float | int], shapes: tuple[tuple[int, ...], ...]
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """One piece of memory: a struct that begins with the numbers of `head`, pointers to arrays, and these arrays, all zero.
+
+    Parameters
+    ----------
+    head : sequence of int and float
+    shapes : tuple of shapes
+
+    Returns
+    -------
+    memory : ndarray of float64
+        Its address is that of the struct.
+    arrays : list of ndarray
+        Views of the memory, float64.
+    """
+    places, parts, total = _layout(len(head), shapes)
+    memory = np.zeros(total)
+    whole, first = memory.view(np.int64), len(head)
+    for i, number in enumerate(head):
+        if isinstance(number, float):
+            memory[i] = number
+        else:
+            whole[i] = number
+    np.add(places, address(memory), out=whole[first : first + len(shapes)])
+    return memory, [memory[a:b].reshape(shape) for (a, b), shape in zip(parts, shapes)]

@@ -1,0 +1,160 @@
+"""Kernels of a compiled problem: a table of C functions behind one pointer (`Table` in native/api.h), called from Python and by native code.
+
+The `data` and the workspaces of such a problem have an attribute ``memory``: the array at whose address the functions find them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from .library import NOTHING, NUMBER, POINTER, WHOLE, address, function
+from .records import place
+
+_PROTOTYPES = (
+    ctypes.CFUNCTYPE(NUMBER, POINTER, POINTER, NUMBER, POINTER),
+    ctypes.CFUNCTYPE(NUMBER, POINTER, POINTER, POINTER, NUMBER, POINTER, POINTER),
+    ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, NUMBER, POINTER, POINTER),
+    ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, NUMBER),
+    ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, NUMBER),
+    ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, POINTER, POINTER),
+)
+"""Of linearise, bordered, inspect, assign, flip, transpose."""
+
+
+class TableKernels:
+    """The kernels of the protocol (`contvines.problems.protocol`), in native code.
+
+    Parameters
+    ----------
+    table : int
+        Address of the table. Its last three functions may be missing (null): then there are no loci against a second parameter.
+    """
+
+    compiled = True
+    column = 3
+    matrix: Any = None
+
+    def __init__(self, table: int) -> None:
+        self.table = table
+        addresses = (ctypes.c_void_p * len(_PROTOTYPES)).from_address(table)
+        calls = [make(at) if at else None for make, at in zip(_PROTOTYPES, addresses)]
+        self._linearise: Any = calls[0]
+        self._bordered: Any = calls[1]
+        self._inspect: Any = calls[2]
+        self._assign: Any = calls[3]
+        self._flip: Any = calls[4]
+        self._transpose: Any = calls[5]
+        if self._transpose is None:
+            self.assign = self.flip = self.transpose = None
+
+    def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
+        """Residual and derivatives into `work`; returns the largest residual."""
+        u = np.ascontiguousarray(u, dtype=float)
+        return self._linearise(address(data.memory), address(u), p, address(work.memory))
+
+    def bordered(
+        self,
+        data: Any,
+        work: Any,
+        border: np.ndarray,
+        target: float,
+        step: np.ndarray,
+        tangent: np.ndarray,
+    ) -> float:
+        """Solve the bordered system with the linearisation in `work`; returns the determinant's sign."""
+        border = np.ascontiguousarray(border, dtype=float)
+        return self._bordered(
+            address(data.memory), address(work.memory), address(border), target, place(step), place(tangent)
+        )
+
+    def inspect(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+        """Multipliers and margins."""
+        u = np.ascontiguousarray(u, dtype=float)
+        self._inspect(address(data.memory), address(u), p, address(work.memory), place(row))
+
+    def assign(self, data: Any, other: Any, value: float) -> None:
+        """Give the parameter that varies in `other` a value in `data`."""
+        self._assign(address(data.memory), address(other.memory), value)
+
+    def flip(self, data: Any, work: Any, sign: float) -> None:
+        """Turn the linearisation's closure round."""
+        self._flip(address(data.memory), address(work.memory), sign)
+
+    def transpose(self, data: Any, work: Any, column: np.ndarray, other: Any) -> None:
+        """Write the transposed system, with another last column, into another workspace."""
+        column = np.ascontiguousarray(column, dtype=float)
+        self._transpose(address(data.memory), address(work.memory), address(column), address(other.memory))
+
+    def newton(
+        self,
+        data: Any,
+        u: np.ndarray,
+        p: float,
+        work: Any,
+        border: np.ndarray,
+        step: np.ndarray,
+        tangent: np.ndarray,
+        tolerance: float,
+        limit: int,
+    ) -> tuple[float, int, float]:
+        """Newton's method at fixed p (or on the hyperplane of `border`), halving steps that do not help.
+
+        Parameters
+        ----------
+        data
+        u : ndarray, shape (N,)
+            Unknowns, changed in place.
+        p : float
+        work
+        border, step, tangent : ndarray, shape (N + 1,)
+            The last two are filled.
+        tolerance : float
+            Of the last correction.
+        limit : int
+            Of iterations.
+
+        Returns
+        -------
+        residual : float
+            Infinite where it does not converge.
+        iterations : int
+        p : float
+        """
+        value, count, room = NUMBER(p), WHOLE(0), np.empty(len(u))
+        residual = _newton()(
+            self.table,
+            address(data.memory),
+            address(work.memory),
+            len(u),
+            place(u),
+            ctypes.addressof(value),
+            address(room),
+            place(border),
+            place(step),
+            place(tangent),
+            tolerance,
+            limit,
+            ctypes.addressof(count),
+        )
+        return residual, count.value, value.value
+
+    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
+        """Residual, and the row of `inspect`, of one solution."""
+        residual = self.linearise(data, u, p, work)
+        self.inspect(data, u, p, work, row)
+        return residual
+
+
+@cache
+def _newton() -> Any:
+    return function("core_newton", NUMBER, *[POINTER] * 3, WHOLE, *[POINTER] * 6, NUMBER, WHOLE, POINTER)
+
+
+@cache
+def native_table(place: int) -> int:
+    """Address of a table of the native core, by its place in `core_table` (native/core.cpp)."""
+    return int(function("core_table", POINTER, WHOLE)(place))

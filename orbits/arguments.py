@@ -1,0 +1,143 @@
+"""The data of a cycle's equations and the arrays to work in, as the kernels are handed them; each is one struct of the native core.
+
+The native core (native/cycles.hpp) sees the same memory as the reference.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contvines.core.records import block
+
+
+class CycleData(NamedTuple):
+    """The equations of cycles with one word against one parameter, which do not change while a branch is traced; see `cycle_data`."""
+
+    events: np.ndarray
+    """Codes of the letters (`orbits.words.alphabet.CODES`), shape (L,)."""
+    modes: np.ndarray
+    """Direction of sliding after each event, 0 while the absorber sticks, shape (L,)."""
+    params: np.ndarray
+    """The machine's numbers, shape (P,)."""
+    path: np.ndarray
+    """How they follow the parameter that varies, shape (2, P); see `orbits.machines.path`."""
+    twist: float
+    """-1 where the second half of the cycle mirrors the first, else 1."""
+    shift: float
+    """Forcing phase from the first event to its return, in radians."""
+    pinned: int
+    """0, or, of a motion without impacts, which may be moved as a whole: 2 of half a cycle, 1 of a whole one."""
+    active: int
+    """Place of the parameter that varies among the amounts."""
+    amounts: np.ndarray
+    """Values of all parameters that may vary, shape (Q,); `params` itself without a law."""
+    law: np.ndarray
+    """The numbers as products of powers of the amounts, shape (Q + 1, P); no rows where they are the numbers themselves."""
+    memory: np.ndarray
+    """All of it, as a struct."""
+
+    def __reduce__(self) -> Any:
+        return cycle_data, tuple(self)[:-1]  # the struct holds addresses
+
+
+def cycle_data(
+    events: Any,
+    modes: Any,
+    params: np.ndarray,
+    path: np.ndarray,
+    twist: float,
+    shift: float,
+    pinned: int,
+    active: int,
+    amounts: np.ndarray,
+    law: np.ndarray,
+) -> CycleData:
+    """The data from its parts, all of which are copied; see `CycleData`."""
+    length, count, powers = len(events), len(params), len(law)
+    free = len(amounts) if powers else 0
+    head = (length, count, len(amounts), powers, int(pinned), int(active), float(twist), float(shift))
+    shapes = ((length,), (length,), (count,), (2, count), (free,), (powers, count))
+    memory, (one, two, own, own_path, own_amounts, own_law) = block(head, shapes)
+    codes, directions = one.view(np.int64), two.view(np.int64)
+    codes[:], directions[:], own[:], own_path[:] = events, modes, params, path
+    if powers:
+        own_amounts[:], own_law[:] = amounts, law
+    else:
+        pointers = memory.view(np.int64)
+        pointers[12] = pointers[10]  # of the amounts: the numbers themselves
+        own_amounts = own
+    return CycleData(
+        codes,
+        directions,
+        own,
+        own_path,
+        float(twist),
+        float(shift),
+        int(pinned),
+        int(active),
+        own_amounts,
+        own_law,
+        memory,
+    )
+
+
+class Workspace(NamedTuple):
+    """Arrays for one system of L nodes with n unknowns: allocated once, used by every kernel; see `workspace`."""
+
+    F: np.ndarray
+    """Residuals, shape (L, n)."""
+    A: np.ndarray
+    """Their derivatives by the node before each segment, shape (L, n, n)."""
+    D: np.ndarray
+    """Their derivatives by the node after it, shape (L, n, n)."""
+    Q: np.ndarray
+    """Their derivatives by the parameter that varies, shape (L, n)."""
+    numbers: np.ndarray
+    """The machine's numbers and their derivatives by that parameter, shape (2 P,)."""
+    pin: np.ndarray
+    """The row that a pinned motion replaces, shape (4 n + 2,)."""
+    sines: np.ndarray
+    """Of the phases of the nodes, the first one's return included, shape (L + 1,)."""
+    cosines: np.ndarray
+    memory: np.ndarray
+    """All of it, and what the native core needs besides, as a struct."""
+
+    def __reduce__(self) -> Any:
+        return workspace, (self.F.shape[0], self.F.shape[1], len(self.numbers) // 2)
+
+
+LANES, SHORTEST = (
+    8,
+    32,
+)  # long cycles of two unknowns per node are eliminated in so many segments (native/elimination.hpp)
+
+
+def workspace(length: int, node: int, parameters: int) -> Workspace:
+    """Arrays for one system of `length` nodes of `node` unknowns and `parameters` numbers."""
+    size, square = length * node, length * node * node
+    lanes = 0
+    if node == 2 and length >= SHORTEST:
+        nodes = LANES + length % LANES
+        lanes = 120 * (length // LANES) + 16 * nodes + 16
+    shapes = (
+        (length, node),  # F, A, D, Q
+        (length, node, node),
+        (length, node, node),
+        (length, node),
+        (2 * parameters,),  # numbers
+        (4 * node + 2,),  # pin
+        (length + 1,),  # sines, cosines
+        (length + 1,),
+        (size * (3 * node + 2),),  # stored
+        (2 * node * (3 * node + 2),),  # panel
+        (node * (node + 2),),  # small
+        (2 * (size + 1),),  # solution
+        (lanes,),
+        (3 * square + 4 * length + 8 * node * (node + 1),),  # scratch of multipliers
+        (node,),  # re, im
+        (node,),
+    )
+    memory, arrays = block((length, node), shapes)
+    return Workspace(*arrays[:8], memory)
