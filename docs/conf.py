@@ -17,7 +17,6 @@ html_theme_options = {
 html_extra_path = ["study.schema.json"]
 myst_heading_anchors = 3
 myst_enable_extensions = ["dollarmath"]
-suppress_warnings = ["myst.xref_missing"]  # links to the repository's own files stay links to files
 
 # notebooks are pages of Markdown whose cells the build runs; a cell that fails, fails the build
 os.environ["PATH"] = os.pathsep.join(

@@ -29,6 +29,30 @@ def test_every_page_is_in_the_contents():
     assert pages == set(re.findall(r"^(\w+)$", listed, re.MULTILINE))
 
 
+def test_every_link_of_a_page_leads_somewhere_on_the_site():
+    # a page of the site, or a file that the site copies; a folder, or a page of Markdown elsewhere, would be a dead link
+    seen = 0
+    for page in DOCS.glob("*.md"):
+        for target in re.findall(r"\]\((?!\w+:|#)([^)#]+)", page.read_text(encoding="utf-8")):
+            seen += 1
+            path = (page.parent / target).resolve()
+            assert path.is_file(), f"{page.name}: {target}"
+            assert path.suffix != ".md" or path.parent == DOCS, f"{page.name}: {target}"
+    assert seen > 30
+
+
+def test_the_labels_in_the_first_study_are_those_of_its_graph():
+    text = (DOCS / "first_study.md").read_text(encoding="utf-8")
+    cells = re.findall(r"```\{code-cell\} ipython3\n(.*?)```", text, re.DOTALL)
+    names: dict = {}
+    for cell in cells[: 1 + next(i for i, cell in enumerate(cells) if "cv.diagram(" in cell)]:
+        if ".plot(" not in cell:
+            exec(cell, names)
+    labels = set(re.findall(r"`([A-Z]{2}\d+)`", text)) | set(re.findall(r'graph\["(\w+)"\]', text))
+    assert len(labels) >= 5
+    assert not [label for label in labels if label not in names["graph"]]
+
+
 def test_every_public_name_is_in_the_reference():
     text = (DOCS / "python.md").read_text(encoding="utf-8")
     rooms = {

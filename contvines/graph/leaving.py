@@ -229,7 +229,7 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 
 def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
-    """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itrun."""
+    """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itself."""
     leaving = point
     if point.index == 0:
         leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later

@@ -9,6 +9,8 @@ from typing import Any, Self
 import numpy as np
 from scipy.sparse import csc_array, diags_array, hstack
 
+from contvines_ground.near_names import did_you_mean
+
 from ..doors import above
 from . import dense, sparse
 from .breaks import find_break
@@ -89,8 +91,17 @@ class CallableProblem(ProblemDefaults):
         """
         for key in ("F", "jacobian", "derivative"):
             given = self.given[key]
-            if not (callable(given) or isinstance(given, Mapping) or (given is None and key != "F")):
-                raise ValueError(f"{key} = {given!r} must be a function of (u, p)")
+            several = key == "derivative" and isinstance(given, Mapping)
+            for name, f in given.items() if several else [("", given)]:
+                place = f"{key}[{name!r}]" if several else key
+                if several and name not in self.parameters:
+                    hint = did_you_mean(str(name), self.parameters)
+                    raise ValueError(
+                        f"{place}: there is no parameter of this name{hint}; the problem has {', '.join(self.parameters)}"
+                    )
+                if not callable(f) and (f is not None or key == "F"):
+                    text = repr(f) if np.ndim(f) == 0 and not hasattr(f, "shape") else f"a {type(f).__name__}"
+                    raise ValueError(f"{place} = {text} must be a function of (u, p)")
         return tuple(pieces.wrap(self.given[key], key) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
 
     # ------------------------------------------------------------------ parameters

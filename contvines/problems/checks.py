@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -22,11 +23,10 @@ def disagreement(
     One random direction tells; entries are looked at one by one only if it does. With `scales`, what is rounding in the units of
     unknowns, parameter and rows is no disagreement.
     """
-    with np.errstate(all="ignore"):
-        try:
-            return _wrong_jacobian(functions, u, p, scales) or _wrong_derivative(functions, u, p, scales)
-        except NotEvaluable:
-            return None
+    try:
+        return _disagreement(functions, u, p, scales)
+    except NotEvaluable:
+        return None
 
 
 def refuse_derivatives(functions: Differentiated, u: np.ndarray, p: float) -> None:
@@ -38,11 +38,23 @@ def refuse_derivatives(functions: Differentiated, u: np.ndarray, p: float) -> No
         With the sentence of `disagreement`.
     """
     try:
-        wrong = disagreement(functions, u, p)
+        wrong = _disagreement(functions, u, p, None)
     except NotEvaluable as error:
-        wrong = str(error)
+        wrong = f"{error}, at the start"
     if wrong is not None:
         raise ValueError(wrong)
+
+
+def _disagreement(functions: Differentiated, u: np.ndarray, p: float, scales: Scales | None) -> str | None:
+    """As `disagreement`.
+
+    Raises
+    ------
+    NotEvaluable
+        If a given derivative cannot be evaluated.
+    """
+    with np.errstate(all="ignore"):
+        return _wrong_jacobian(functions, u, p, scales) or _wrong_derivative(functions, u, p, scales)
 
 
 def empty_row(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
@@ -75,10 +87,19 @@ def _wrong_derivative(
 ) -> str | None:
     if functions.given_slope is None:
         return None
-    given = functions.given_slope(u, p)
-    if len(given) != len(u):
-        return f"derivative returns {len(given)} numbers for {len(u)} equations"
-    near = along(lambda t: functions.value(u, p + t), functions.parameter_length(u, p), functions.noise)
+    n, name = len(u), functions.parameters.varying
+    given = functions.given_slope.raw(u, p)
+    shape = getattr(given, "shape", None)
+    if shape != (n, n) or n == 1:
+        given = functions.given_slope.flat(given, u, p)
+        shape = given.shape
+    if shape != (n,):
+        hint = (
+            f"; the Jacobian by the unknowns is given as jacobian=, the derivative by {name} as derivative="
+        )
+        return f"derivative returns shape {shape}; ({n},) is needed{hint if prod(shape) == n * n else ''}"
+    line = functions.quietly(lambda t: functions.value(u, p + t), n)
+    near = along(line, functions.parameter_length(u, p), functions.noise)
     gap = (
         np.abs(given - near.value) - AGREE * np.maximum(np.abs(given), np.abs(near.value)) - 10.0 * near.error
     )
@@ -103,7 +124,7 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
     else:
         return None
     direction = functions.lengths * np.random.default_rng(4).uniform(0.5, 1.0, n) * (-1.0) ** np.arange(n)
-    near = along(lambda t: functions.value(u + t * direction, p), 0.3, functions.noise)
+    near = along(functions.quietly(lambda t: functions.value(u + t * direction, p), n), 0.3, functions.noise)
     if not np.isfinite(near.value).all():
         return None
     product = matrix @ direction

@@ -219,7 +219,7 @@ class Differentiated:
             if self.complex_step:
                 return np.imag(self._value(u + 1j * COMPLEX_STEP * mask, p)) / COMPLEX_STEP
             direction = np.where(mask, self.lengths, 0.0)
-            line = self._quietly(lambda t: self._value(u + t * direction, p), n)
+            line = self.quietly(lambda t: self._value(u + t * direction, p), n)
             found = self._evaluable(along(line, 1.0, self.noise))
             worst[mask] = found.error.max()
             return found.value
@@ -240,7 +240,7 @@ class Differentiated:
             return self._value(moved, p)
 
         return self._evaluable(
-            along(self._quietly(shifted, len(self.noise)), float(self.lengths[j]), self.noise)
+            along(self.quietly(shifted, len(self.noise)), float(self.lengths[j]), self.noise)
         )
 
     def _evaluable(self, found: Difference) -> Difference:
@@ -254,7 +254,7 @@ class Differentiated:
             return self.given_slope(u, p)
         if self.complex_step:
             return np.imag(self._value(u.astype(complex), complex(p, COMPLEX_STEP))) / COMPLEX_STEP
-        line = self._quietly(lambda t: self._value(u, p + t), len(self.noise))
+        line = self.quietly(lambda t: self._value(u, p + t), len(self.noise))
         found = self._evaluable(along(line, self.parameter_length(u, p), self.noise))
         return found.value
 
@@ -264,7 +264,7 @@ class Differentiated:
         name = self.parameters.varying
         if name not in self.parameter_lengths:
             found = bend(
-                self._quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.grain
+                self.quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.grain
             )
             self.parameter_lengths[name] = found or abs(p) or 1.0
         return self.parameter_lengths[name]
@@ -273,11 +273,11 @@ class Differentiated:
         """u -> f(u, p), NaN where it cannot be evaluated."""
 
         def value(u: np.ndarray) -> np.ndarray:
-            return self._quietly(lambda _: self._value(u, p), n)(0.0)
+            return self.quietly(lambda _: self._value(u, p), n)(0.0)
 
         return value
 
-    def _quietly(self, line: Callable[[float], np.ndarray], n: int) -> Callable[[float], np.ndarray]:
+    def quietly(self, line: Callable[[float], np.ndarray], n: int) -> Callable[[float], np.ndarray]:
         """The function with NaN where it cannot be evaluated."""
 
         def value(t: float) -> np.ndarray:
@@ -291,12 +291,12 @@ class Differentiated:
 
     def _measure_lengths(self, u: np.ndarray, p: float, cost: float, grain: float | np.ndarray) -> None:
         values = self._quietly_at(p, len(u))
-        terms = of_parameter(self._quietly(lambda q: self._value(u, q), len(u)), p)
+        terms = of_parameter(self.quietly(lambda q: self._value(u, q), len(u)), p)
         self.lengths, self.bends, self.known = measured(values, u, grain, cost, terms)
 
     def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))
-        line = self._quietly(lambda t: self._value(u + t * direction, p), len(u))
+        line = self.quietly(lambda t: self._value(u + t * direction, p), len(u))
         with np.errstate(all="ignore"):
             noise = noise_of(line, 1e-6)
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)

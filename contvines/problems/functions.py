@@ -72,6 +72,12 @@ class UserFunction:
             raise NotEvaluable(f"{self.name} returns None; numbers are needed")
         if type(value) is np.ndarray and value.dtype == FLOAT:
             return value.flatten()
+        if hasattr(value, "toarray") and (len(value.shape) == 1 or min(value.shape) <= 1):
+            value = value.toarray()
+        elif hasattr(value, "toarray") or hasattr(value, "matvec"):
+            raise NotEvaluable(
+                f"{self.name} returns a matrix of shape {value.shape}; numbers in a row are needed"
+            )
         try:
             result = np.array(value)
             if result.dtype.kind == "c":

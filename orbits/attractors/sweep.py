@@ -35,7 +35,7 @@ class SweepRow:
     direction : str
         ``up`` or ``down``.
     attractor : str
-        ``periodic``, ``sliding``, ``stuck``, ``chatter`` or ``chaotic``; see `orbits.simulation.Attractor`.
+        ``periodic``, ``sliding``, ``stuck``, ``chatter`` or ``chaotic``; see `orbits.attractors.attractor.Attractor`.
     word : str
         Events of the cycle; empty where nothing recurs.
     periods, impacts : int

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from scipy.sparse.linalg import LinearOperator
+from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
 import contvines as cv
 
@@ -304,6 +304,57 @@ def straight(u, p):
 def test_what_is_no_problem_is_refused_with_a_sentence(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def pair(u, p):
+    return [u[0] ** 2 - p, u[1] - u[0]]
+
+
+def pair_by_unknowns(u, p):
+    return [[2.0 * u[0], 0.0], [-1.0, 1.0]]
+
+
+@pytest.mark.parametrize("form", [np.array, sp.csr_array, lambda m: aslinearoperator(np.array(m)), list])
+@pytest.mark.parametrize("named", [False, True])
+def test_a_jacobian_given_as_derivative_is_refused_with_the_way_out(form, named):
+    def derivative(u, p):
+        return form(pair_by_unknowns(u, p))
+
+    given = {"p": derivative} if named else derivative
+    with pytest.raises(ValueError, match=r"shape \([24],.*jacobian=") as raised:
+        cv.AlgebraicProblem(pair, [1.0, 1.0], 1.0, derivative=given)
+    assert "sequence" not in str(raised.value)
+
+
+@pytest.mark.parametrize("form", [np.array, sp.csr_array])
+def test_a_derivative_may_be_a_column(form):
+    graph = cv.diagram(
+        cv.AlgebraicProblem(
+            pair,
+            [1.0, 1.0],
+            1.0,
+            jacobian=lambda u, p: form(pair_by_unknowns(u, p)),
+            derivative=lambda u, p: form([[-1.0], [0.0]]),
+        ),
+        within=(-0.5, 2.0),
+    )
+    assert [point.value for point in graph.of_kind("fold")] == pytest.approx([0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"derivative": {"q": straight}}, r"derivative\['q'\].* no parameter .* has p"),
+        ({"derivative": {"p": 3}}, r"derivative\['p'\] = 3 must be a function"),
+        ({"derivative": sp.csr_array([[1.0]])}, "derivative = a csr_array must be a function"),
+        ({"jacobian": {"p": straight}}, "jacobian = .* must be a function"),
+        ({"derivative": lambda u, p: 1 / 0}, "derivative raises ZeroDivisionError"),
+        ({"jacobian": lambda u, p: 1 / 0}, "jacobian raises ZeroDivisionError"),
+    ],
+)
+def test_what_is_no_derivative_is_refused_at_once(options, words):
+    with pytest.raises(ValueError, match=words):
+        cv.AlgebraicProblem(straight, [0.0], 0.0, **options)
 
 
 def test_a_jacobian_that_becomes_wrong_is_named_where_the_branch_ends():
