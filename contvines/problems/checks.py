@@ -89,7 +89,7 @@ def _wrong_derivative(
         return None
     n, name = len(u), functions.parameters.varying
     given = functions.given_slope.raw(u, p)
-    shape = getattr(given, "shape", None)
+    shape = tuple(getattr(given, "shape", ()))
     if shape != (n, n) or n == 1:
         given = functions.given_slope.flat(given, u, p)
         shape = given.shape

@@ -72,11 +72,12 @@ class UserFunction:
             raise NotEvaluable(f"{self.name} returns None; numbers are needed")
         if type(value) is np.ndarray and value.dtype == FLOAT:
             return value.flatten()
-        if hasattr(value, "toarray") and (len(value.shape) == 1 or min(value.shape) <= 1):
-            value = value.toarray()
-        elif hasattr(value, "toarray") or hasattr(value, "matvec"):
+        linear: Any = value if hasattr(value, "toarray") or hasattr(value, "matvec") else None
+        if hasattr(linear, "toarray") and (len(linear.shape) == 1 or min(linear.shape) <= 1):
+            value = linear.toarray()
+        elif linear is not None:
             raise NotEvaluable(
-                f"{self.name} returns a matrix of shape {value.shape}; numbers in a row are needed"
+                f"{self.name} returns a matrix of shape {linear.shape}; numbers in a row are needed"
             )
         try:
             result = np.array(value)
