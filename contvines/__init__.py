@@ -71,6 +71,7 @@ lead(
         "graph_page": "contvines.graph.pages:graph_page",
         "learn": "contvines.continuation.learning:learn",
         "load": "contvines.store:load",
+        "mark_locus": "contvines.loci.marking:mark_locus",
         "merge": "contvines.coexistence.merging:merge",
         "plot_basins": "contvines.plots.basins:plot_basins",
         "plot_erosion": "contvines.plots.erosion:plot_erosion",

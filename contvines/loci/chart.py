@@ -148,7 +148,8 @@ class Chart:
         apart = ("loci", "points", "regions")
         yield "chart", "chart", {f.name: getattr(self, f.name) for f in fields(self) if f.name not in apart}
         for locus in self.loci.values():
-            own = {f.name: getattr(locus, f.name) for f in fields(locus) if f.name != "branch"}
+            own = {f.name: getattr(locus, f.name) for f in fields(locus) if f.name not in ("branch", "marked")}
+            own["marks"] = None if locus.marked is None else locus.marks
             own["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
             branch = {f"branch_{name}": value for name, value in content_of(locus.branch).items()}
             yield "locus", locus.label, {**own, **branch}
@@ -167,6 +168,7 @@ def chart_from_entries(
     head["parameters"] = tuple(head["parameters"])
     head["within"] = tuple(tuple(interval) for interval in head["within"])
     chart = Chart(**head)
+    marks: dict[str, list[tuple[int, str]] | None] = {}
     for label, content in entries.get("locus", {}).items():
         own = {k: v for k, v in content.items() if not k.startswith("branch_")}
         parts = {k.removeprefix("branch_"): v for k, v in content.items() if k.startswith("branch_")}
@@ -177,7 +179,7 @@ def chart_from_entries(
             except UnknownFactory:
                 problem = None
         own["parameters"], own["within"] = tuple(own["parameters"]), tuple(own["within"])
-        own["marks"] = tuple((int(i), str(name)) for i, name in own["marks"])
+        marks[label] = own.pop("marks")
         own["turns"] = tuple(Turn(int(i), (float(p), float(q))) for i, p, q in own["turns"])
         chart.loci[label] = Locus(branch=branch_of(parts, problem), **own)
     for label, content in entries.get("plane-point", {}).items():
@@ -189,6 +191,9 @@ def chart_from_entries(
         if problem is not None and problem.dimension != len(own["u"]):
             problem = None
         chart.points[label] = PlanePoint(problem=problem, **own)
+    for label, found in marks.items():
+        if found is not None:
+            chart.loci[label].marked = tuple((int(i), chart.points[name]) for i, name in found)
     for content in entries.get("region", {}).values():
         chart.regions.append(Region(**{**content, "at": tuple(content["at"])}))
     return chart

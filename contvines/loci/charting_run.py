@@ -234,7 +234,7 @@ class Charting:
     def mark(self, locus: Locus) -> list[PlanePoint]:
         """Find the points of codimension two on a locus; returns those that are new."""
         fresh: list[PlanePoint] = []
-        marks: list[tuple[int, str]] = []
+        marked: list[tuple[int, PlanePoint]] = []
         for index, point in find(locus):
             known = next((other for other in self.chart.points.values() if self.same(point, other)), None)
             if known is None:
@@ -245,9 +245,9 @@ class Charting:
                 fresh.append(point)
             elif locus.label not in known.on:
                 known.on.append(locus.label)
-            if all(name != known.label for _, name in marks):
-                marks.append((index, known.label))
-        locus.marks = tuple(marks)
+            if all(point is not known for _, point in marked):
+                marked.append((index, known))
+        locus.marked = tuple(marked)
         return fresh
 
     def same(self, one: PlanePoint, other: PlanePoint) -> bool:

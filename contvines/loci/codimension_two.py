@@ -241,12 +241,11 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
                 guess,
                 max(_gap(problem, places[i], places[i + 1]), 1e-3),
             )
-            if point is not None and not any(
-                _same(point, other) and point.kind == other.kind for _, other in found
-            ):
+            if point is not None and not any(same_point(point, other) for _, other in found):
                 found.append((0 if guess is places[0] else i + 1 if ends else i, point))
     return found
 
 
-def _same(one: PlanePoint, other: PlanePoint) -> bool:
-    return all(abs(a - b) <= 1e-7 * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
+def same_point(one: PlanePoint, other: PlanePoint) -> bool:
+    """Whether two points of one locus are one: of the same kind and at the same place."""
+    return one.kind == other.kind and all(abs(a - b) <= 1e-7 * (1.0 + abs(a)) for a, b in zip(one.value, other.value))

@@ -10,7 +10,9 @@ import numpy as np
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..doors import above
 from ..hints import hinted
+from .plane_point import PlanePoint
 
 
 class Turn(NamedTuple):
@@ -39,7 +41,9 @@ class Locus:
     seed : str or None
         Label of the special point from which it was started.
     marks : tuple of (int, str)
-        Index and label of the points of codimension two on it.
+        Index (of the point before it) and label of each point of codimension two on it.
+    points : dict of PlanePoint
+        The same points by label. Marks and points are sought when one of them is first asked for; a chart has sought them already.
     turns : tuple of Turn
         Where it turns round in the second parameter.
     within : (float, float)
@@ -55,10 +59,10 @@ class Locus:
     branch: Branch = field(repr=False)
     real: np.ndarray = field(repr=False)
     seed: str | None = None
-    marks: tuple[tuple[int, str], ...] = ()
     turns: tuple[Turn, ...] = ()
     within: tuple[float, float] = (-np.inf, np.inf)
     beyond: int = 0
+    marked: tuple[tuple[int, PlanePoint], ...] | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.branch)
@@ -84,6 +88,25 @@ class Locus:
         """(p, q) of the points, shape (n, 2)."""
         unit = self.branch.description.get("unit", 1.0)
         return np.column_stack([unit * self.branch.points[:, self.size], self.branch.values])
+
+    @property
+    def marks(self) -> tuple[tuple[int, str], ...]:
+        """Index and label of each point of codimension two."""
+        return tuple((index, point.label) for index, point in self._marked())
+
+    @property
+    def points(self) -> dict[str, PlanePoint]:
+        """The points of codimension two, by label."""
+        return {point.label: point for _, point in self._marked()}
+
+    def _marked(self) -> tuple[tuple[int, PlanePoint], ...]:
+        if self.marked is None:
+            if self.problem is None:
+                raise ValueError(
+                    f"{self.label} was loaded without its problem; its points of codimension two cannot be sought"
+                )
+            self.marked = above("mark_locus")(self)
+        return self.marked
 
     @property
     def ended(self) -> tuple[str, str]:

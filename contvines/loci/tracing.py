@@ -188,7 +188,7 @@ def trace_locus(
     )
     side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
     return Locus(
-        label, problem.kind, (problem.inner, problem.over), branch, flags, seed, (), turns, within, side
+        label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side
     )
 
 

@@ -1,0 +1,47 @@
+"""The points of codimension two that a locus itself holds, against the closed forms of the Henon map."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def henon(x, p):
+    return np.array([x[1], p.a - p.b * x[0] - x[1] ** 2])
+
+
+@pytest.fixture(scope="module")
+def neimark_sacker():
+    problem = cv.MapProblem(henon, [0.6, 0.6], {"a": 1.0, "b": 0.5}, parameter="b")
+    graph = cv.diagram(problem, over="b", within=(0.5, 1.5), depth=0)
+    return cv.locus(graph["NS1"], over="a", within=(-2.0, 4.0), bounds=(0.5, 1.5))
+
+
+def test_strong_resonances_of_the_henon_map(neimark_sacker):
+    # at b = 1 the fixed point y has multipliers exp(+-i theta) with cos theta = -y, and a = y^2 + 2 y
+    cosines = {"R11": 1.0, "R21": -1.0, "R31": -0.5, "R41": 0.0}
+    points = neimark_sacker.points
+    assert set(points) == set(cosines)  # the map preserves areas all along: it has no Chenciner point
+    for label, cosine in cosines.items():
+        assert points[label].value == pytest.approx((1.0, cosine**2 - 2.0 * cosine), abs=1e-8)
+        assert points[label].u == pytest.approx([-cosine, -cosine], abs=1e-8)
+        assert points[label].on == [neimark_sacker.label]
+
+
+def test_marks_stand_at_their_places(neimark_sacker):
+    values = neimark_sacker.values[:, 1]
+    assert [label for _, label in neimark_sacker.marks] == list(neimark_sacker.points)
+    for index, label in neimark_sacker.marks:
+        ends = values[max(index - 1, 0) : index + 2]
+        assert ends.min() - 1e-6 <= neimark_sacker.points[label].value[1] <= ends.max() + 1e-6
+
+
+def test_a_chart_and_its_loci_hold_the_same_points(tmp_path):
+    problem = cv.MapProblem(henon, [0.6, 0.6], {"a": 1.0, "b": 0.5}, parameter="b")
+    graph = cv.diagram(problem, over="b", within=(0.5, 1.5), depth=0)
+    chart = cv.chart(graph, over="a", within=(-2.0, 4.0), depth=0, regions=False)
+    chart.save(tmp_path / "chart.vines")
+    for one in (chart, cv.load(tmp_path / "chart.vines")):
+        held = {label: point for locus in one.loci.values() for label, point in locus.points.items()}
+        assert held and held == one.points
+        assert one.points["R31"].value == pytest.approx((1.0, 1.25), abs=1e-8)
