@@ -37,10 +37,11 @@ def _size(vector: Any) -> float:
 
 
 class Coefficient(NamedTuple):
-    """A normal-form coefficient with an estimate of its error."""
+    """A normal-form coefficient with an estimate of its error; `size` is the sum of the magnitudes of its terms."""
 
     value: float
     error: float
+    size: float = np.inf
 
 
 class Pair(NamedTuple):
@@ -225,25 +226,17 @@ class Forms:
         v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
         if along is not None and v @ (along / self.units) < 0.0:
             v = -v
-        line, weight = self.line(v, 1.0), float(w @ self.K @ v) or np.nan
-        value = -0.5 * float(w @ line.second @ self.extended(v, 1.0)) / weight
-        return self._timed(value, abs(0.5 * self.n * line.second_error * _size(v) / weight))
-
-    def _timed(self, value: float, error: float) -> Coefficient:
-        """A coefficient of a rate of change, in the user's own unit of time."""
-        return Coefficient(self.rate * value, self.rate * error)
-
-    def size_of_quadratic(self, along: np.ndarray) -> float:
-        """What the quadratic coefficient would be if the second derivative pointed along the left null vector.
-
-        At a cusp it may vanish; what the third derivative makes of it a little further along counts, too.
-        """
-        v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
-        if v @ (along / self.units) < 0.0:
-            v = -v
-        line, x = self.line(v, 1.0), self.extended(v, 1.0)
+        line, weight, x = self.line(v, 1.0), float(w @ self.K @ v) or np.nan, self.extended(v, 1.0)
+        value = -0.5 * float(w @ line.second @ x) / weight
+        # as if the second derivative pointed along the left null vector: at a cusp it may vanish, then the third one counts
         size = float(np.linalg.norm(line.second @ x) + NEAR * np.linalg.norm(line.third @ x))
-        return 0.5 * self.rate * size / (abs(float(w @ self.K @ v)) or np.nan)
+        return self._timed(
+            value, abs(0.5 * self.n * line.second_error * _size(v) / weight), 0.5 * size / abs(weight)
+        )
+
+    def _timed(self, value: float, error: float, size: float) -> Coefficient:
+        """A coefficient of a rate of change, in the user's own unit of time."""
+        return Coefficient(self.rate * value, self.rate * error, self.rate * size)
 
     def cubic(self, factor: float) -> Coefficient:
         """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
@@ -258,10 +251,12 @@ class Forms:
             h = np.linalg.solve(bordered, np.append(-(line.second @ x), 0.0))[:-1]
         else:
             h = self._solve(regular, -(line.second @ x))
-        total = w @ (line.third @ x) + 3.0 * w @ (line.second @ self.extended(h, 1.0))
+        terms = np.array([w @ (line.third @ x), 3.0 * w @ (line.second @ self.extended(h, 1.0))])
         missed = line.third_error * _size(x) + 3.0 * line.second_error * _size(h)
         error = abs(self.n * missed / (6.0 * weight))
-        return self._timed(-float(total) / (6.0 * weight), error)
+        return self._timed(
+            -float(terms.sum()) / (6.0 * weight), error, float(np.abs(terms).sum() / abs(6.0 * weight))
+        )
 
     @staticmethod
     def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
@@ -282,17 +277,22 @@ class Forms:
         one, first = pair.vector, pair.a.second + 1j * pair.b.second
         mixed = 0.0 if self.flow else 1.0
         h11 = np.linalg.solve(self.closed_by(mixed), -np.real(first @ one.conj()))
-        total = (pair.a.third + pair.b.third) @ one  # q q q* = (a^2 + b^2) q
-        total = total + 2.0 * first @ self.extended(h11, 1.0)
-        total = total + first.conj() @ self.extended(pair.h20, multiplier**2)
-        c = complex(-0.5 * (pair.left @ total) / pair.weight)
+        terms = pair.left @ np.column_stack(
+            [
+                (pair.a.third + pair.b.third) @ one,  # q q q* = (a^2 + b^2) q
+                2.0 * first @ self.extended(h11, 1.0),
+                first.conj() @ self.extended(pair.h20, multiplier**2),
+            ]
+        )
+        c = complex(-0.5 * terms.sum() / pair.weight)
+        size = float(0.5 * np.abs(terms).sum() / abs(pair.weight))
         bent = 2.0 * _size(h11) + _size(pair.h20)
         missed = pair.a.third_error * _size(one) + pair.a.second_error * bent
         error = float(abs(self.n * missed / pair.weight))
         if self.flow:
             omega = abs(multiplier.imag)
-            return Coefficient(c.real / omega, error / omega), self.rate * c
-        return Coefficient(float((c / multiplier).real), error), c
+            return Coefficient(c.real / omega, error / omega, size / omega), self.rate * c
+        return Coefficient(float((c / multiplier).real), error, size), c
 
     def _pair(self, multiplier: complex) -> Pair:
         q, w = self.null(multiplier)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .conditions import References, Test, own_conditions, test_of
+from .conditions import COEFFICIENTS, UNKNOWN, References, Test, coefficient_of, own_conditions, test_of
 from .kinds import TOUCH, Look, looks
 from .layout import FLIP, FOLD, MARGIN, PAIR
 from .locus import Locus
@@ -14,7 +14,6 @@ from .problem import LocusProblem
 from .starts import SINGULAR
 from .touching import touching_form
 
-COSTLY = ("quadratic", "cubic", "lyapunov")
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
 ENDING = 1e-8  # a locus that ends at a resonance ends this close to it
 CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
@@ -23,7 +22,7 @@ DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 FEW = 4  # places at which a border is asked whether its equations are singular
 NOISY = 1e-7  # corrections below this may no longer shrink where a test is a coefficient; their size is the point's error
 ROUGHLY = 1e-6  # corrections below this no longer shrink where a test has a few digits only
-VANISHED = 1e-6  # of what it is at the ends of its segment: a coefficient that is zero
+VANISHED = 1e-6  # of its terms, or of what it is at the ends of its segment: a coefficient that is zero
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
 
 
@@ -37,7 +36,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     if problem.condition == MARGIN and _singular(plane, places):
         return []  # nothing can be told from equations that are singular all along
     found: list[tuple[int, PlanePoint]] = []
-    costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COSTLY}
+    costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COEFFICIENTS}
     at: References | None = None
     for i in range(len(places) - 1):
         if not plane.at(places[i]) < 1e300:
@@ -98,16 +97,18 @@ def _at_end(locus: Locus, point: PlanePoint) -> bool:
 
 
 def _along(plane: Plane, places: list[Place], look: Look, problem: LocusProblem) -> list[float]:
-    """A coefficient at all points, to a few digits."""
+    """A coefficient at all points, to a few digits; where its terms cancel it is zero, not the rounding that is left of them."""
     values = []
     at: References | None = None
     for place in places:
         plane.at(place)
         at = References(plane, problem, at)
-        test = test_of(look, problem, at, rough=True)
-        assert test is not None
         plane.at(place)
-        values += _evaluated(plane, place, [(look, test)])
+        try:
+            found = coefficient_of(look, at, plane, rough=True)
+        except (ValueError, np.linalg.LinAlgError):
+            found = UNKNOWN
+        values.append(0.0 if abs(found.value) <= VANISHED * found.size else found.value)
     return values
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..forms.coefficients import Forms
+from ..forms.coefficients import Coefficient, Forms
 from .kinds import Look
 from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null
@@ -15,6 +15,8 @@ from .problem import LocusProblem
 from .touching import slope_along_branch
 
 UNSURE = 1e-3  # a coefficient whose error exceeds this part of its natural size is not known
+COEFFICIENTS = ("quadratic", "cubic", "lyapunov")  # tests that are coefficients of normal forms
+UNKNOWN = Coefficient(np.nan, np.inf)
 
 Test = Callable[[Plane], float]
 
@@ -78,12 +80,8 @@ def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False
     Coefficients are computed to a few digits with ``rough``.
     """
     plus, minus = at.plus, at.minus
-    if look.test == "quadratic":
-        return lambda x: _bend(x, plus, rough)
-    if look.test == "cubic":
-        return lambda x: _forms(x, rough).cubic(-1.0).value
-    if look.test == "lyapunov":
-        return lambda x: _lyapunov(x, at.reference, rough)
+    if look.test in COEFFICIENTS:
+        return lambda x: coefficient_of(look, at, x, rough).value
     if look.test == "plus":
         return lambda x: x.singular_test(plus.column, plus.row)
     if look.test == "minus":
@@ -99,14 +97,22 @@ def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False
     return lambda x: x.pair(at.reference)[1] - look.value
 
 
-def _bend(plane: Plane, null: Null, rough: bool = False) -> float:
-    """The quadratic coefficient of a fold, along the null vector that goes with the reference; NaN if it is not known."""
+def coefficient_of(look: Look, at: References, plane: Plane, rough: bool = False) -> Coefficient:
+    """The coefficient of a normal form that is looked at, to a few digits with ``rough``; NaN where it is not known."""
+    if look.test == "quadratic":
+        return _bend(plane, at.plus, rough)
+    if look.test == "cubic":
+        return _forms(plane, rough).cubic(-1.0)
+    return _lyapunov(plane, at.reference, rough)
+
+
+def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
+    """The quadratic coefficient of a fold, along the null vector that goes with the reference."""
     v, _ = plane.first.null(null.column, null.row)
-    forms = _forms(plane, rough)
-    found = forms.quadratic(v)
-    if found.error <= UNSURE * forms.size_of_quadratic(v):
-        return found.value
-    return _bend(plane, null) if rough else np.nan
+    found = _forms(plane, rough).quadratic(v)
+    if found.error <= UNSURE * found.size:
+        return found
+    return _bend(plane, null) if rough else UNKNOWN
 
 
 def _forms(plane: Plane, rough: bool = False) -> Forms:
@@ -120,14 +126,14 @@ def critical_eigenvalue(forms: Forms) -> complex | None:
     return complex(upper[np.argmin(np.abs(upper.real))]) if len(upper) else None
 
 
-def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> float:
+def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> Coefficient:
     place = plane.pair(reference)[1]
     if plane.flow:
         if place <= 0.0:
-            return np.nan
+            return UNKNOWN
         forms = _forms(plane, rough)
         critical = critical_eigenvalue(forms)
-        return np.nan if critical is None else forms.lyapunov(critical)[0].value
+        return UNKNOWN if critical is None else forms.lyapunov(critical)[0]
     if abs(place) >= 1.0:
-        return np.nan
-    return _forms(plane, rough).lyapunov(complex(place, np.sqrt(1.0 - place * place)))[0].value
+        return UNKNOWN
+    return _forms(plane, rough).lyapunov(complex(place, np.sqrt(1.0 - place * place)))[0]
