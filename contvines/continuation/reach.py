@@ -1,9 +1,9 @@
 """Reach: how far a branch is from its start, whether it runs away, and how long its steps may be there.
 
 Where typical sizes of the unknowns are known (they were given, or are 1) a branch has run away when it is further from its start
-than so many of them. Sizes that were learned near the start say little of what lies far from it: there a branch has run away
+than so many of them. Where points are dear steps may grow with the distance. Sizes that were learned near the start say little of what lies far from it: there a branch has run away
 when its distance doubles within ever smaller changes of the parameter, so small that it would be out of all bounds long before the
-end of the interval. Powers of the parameter double within ever larger ones and are followed, with steps that grow with the distance.
+end of the interval. Powers of the parameter double within ever larger ones and are followed.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class Reach:
         self.moved, self.turned = np.inf, False
 
     def growth(self, point: Solved) -> float:
-        """Factor of the longest step at a point."""
-        if not self.learned:
+        """Factor of the longest step at a point; 1 where points are cheap."""
+        if self.engine.compiled:
             return 1.0
         return max(1.0, float(self._distances(point.u[None, :])[0]) / GROW)
 

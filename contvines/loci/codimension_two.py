@@ -24,6 +24,7 @@ NOISY = 1e-7  # corrections below this may no longer shrink where a test is a co
 ROUGHLY = 1e-6  # corrections below this no longer shrink where a test has a few digits only
 VANISHED = 1e-6  # of its terms, or of what it is at the ends of its segment: a coefficient that is zero
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
+BISECTIONS = 4  # after which a coefficient has grown if it changes its sign through infinity
 
 
 def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
@@ -66,6 +67,8 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
             if look in costly:  # first with a few digits
                 rough = test_of(look, problem, at, rough=True)
                 assert rough is not None
+                if _through_infinity(plane, (look, rough), places[i : i + 2], (a, b)):
+                    continue
                 near = solved(plane, problem, at, look.kind, rough, guess, gap, ROUGHLY)
                 if near is not None:
                     guess, gap = Place(near.u, *near.value), 0.1 * gap
@@ -121,6 +124,21 @@ def _evaluated(plane: Plane, place: Place, tests: list[tuple[Look, Test]]) -> li
         except (ValueError, np.linalg.LinAlgError):
             values.append(np.nan)
     return values
+
+
+def _through_infinity(
+    plane: Plane, test: tuple[Look, Test], ends: list[Place], values: tuple[float, float]
+) -> bool:
+    """Whether a coefficient of opposite signs at two places grows between them, as it does where one more multiplier is critical."""
+    (one, other), (a, b) = ends, values
+    for _ in range(BISECTIONS):
+        middle = _between(one, other, 0.5)
+        value = _evaluated(plane, middle, [test])[0]
+        if (value >= 0.0) == (a >= 0.0):
+            one, a = middle, value
+        else:
+            other, b = middle, value
+    return abs(a) + abs(b) > abs(values[0]) + abs(values[1])
 
 
 def _between(a: Place, b: Place, share: float) -> Place:
