@@ -24,7 +24,7 @@ from .crossings import crossings
 from .departures import Candidate, leaving
 from .kinds import PREFIXES, condition
 from .known_motions import KnownMotions, together
-from .layout import MARGIN
+from .layout import BRANCH, FOLD, MARGIN
 from .locus import Locus
 from .plane_point import PlanePoint
 from .regions import divide
@@ -33,6 +33,7 @@ from .tracing import checked_ends, trace_locus
 
 SAME = 1e-7  # points of the plane closer than this part of its sides are one
 END = 1e-5  # of them: a locus ends there
+BESIDE = 0.1  # of them: a segment so far away may belong to an arc through a place
 LARGEST = 120  # loci; a chart that was cut there says so
 
 
@@ -190,7 +191,10 @@ class Charting:
         """The locus on which a candidate lies already, or None."""
         wanted = condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
-            if locus.kind != candidate.kind or locus.problem is None:
+            if locus.problem is None:
+                continue
+            # where branches cross they do not fold
+            if locus.kind != candidate.kind and (wanted, locus.problem.condition) != (FOLD, BRANCH):
                 continue
             if self.passes(locus, candidate, border=wanted == MARGIN):
                 return locus
@@ -209,20 +213,20 @@ class Charting:
             return False  # a doubled motion ends where it is the motion itself, which goes on
         form = candidate.problem.canonical(candidate.u, candidate.p)
         engine = self.forms.setdefault(locus.label, Engine(locus.problem, self.within, self.settings))
-        gaps = values[:, 1] - candidate.q
-        segments = np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) | (near[:-1] < 1e-6) | (near[1:] < 1e-6))
-        for i in segments:
-            share = (
-                0.0 if gaps[i] == gaps[i + 1] else float(np.clip(gaps[i] / (gaps[i] - gaps[i + 1]), 0.0, 1.0))
-            )
+        steps, way = np.diff(values, axis=0) / unit, (place - values[:-1]) / unit
+        shares = (way * steps).sum(axis=1) / np.maximum((steps**2).sum(axis=1), 1e-300)
+        beside = (np.abs(shares - 0.5) <= 0.6) & (np.abs(way - shares[:, None] * steps).max(axis=1) < BESIDE)
+        for i in np.flatnonzero(beside | (near[:-1] < 1e-6) | (near[1:] < 1e-6)):
+            share = float(np.clip(shares[i], 0.0, 1.0))
             guess = (1.0 - share) * locus.branch.points[i] + share * locus.branch.points[i + 1]
-            if abs(locus.problem.split(guess)[1] - candidate.p) > 0.1 * unit[0]:
-                continue
-            found = engine.at_value(guess, candidate.q)
-            U = guess if found is None else found.u
-            reach = 1e-4 if found is None else SAME
+            q = float((1.0 - share) * values[i, 1] + share * values[i + 1, 1])
+            # the point of the locus on the line through the place across the segment, whichever way the segment goes
+            across = np.zeros(len(guess) + 1)
+            across[size], across[-1] = steps[i] / unit * (locus.problem.unit, 1.0)
+            found = engine.solve(guess, q, across, float(steps[i] / unit @ place)) if across.any() else None
+            U, q = (guess, q) if found is None else (found.u, found.p)
             u, p = locus.problem.split(U)
-            if abs(p - candidate.p) > reach * unit[0]:
+            if np.abs(([p, q] - place) / unit).max() > (1e-4 if found is None else SAME):
                 continue
             if border:
                 return True

@@ -267,4 +267,6 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
 
 def same_point(one: PlanePoint, other: PlanePoint) -> bool:
     """Whether two points of one locus are one: of the same kind and at the same place."""
-    return one.kind == other.kind and all(abs(a - b) <= 1e-7 * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
+    return one.kind == other.kind and all(
+        abs(a - b) <= 1e-7 * (1.0 + abs(a)) for a, b in zip(one.value, other.value)
+    )

@@ -187,9 +187,7 @@ def trace_locus(
         if e.kind == "fold"
     )
     side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
-    return Locus(
-        label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side
-    )
+    return Locus(label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side)
 
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:

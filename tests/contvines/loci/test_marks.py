@@ -45,3 +45,26 @@ def test_a_chart_and_its_loci_hold_the_same_points(tmp_path):
         held = {label: point for locus in one.loci.values() for label, point in locus.points.items()}
         assert held and held == one.points
         assert one.points["R31"].value == pytest.approx((1.0, 1.25), abs=1e-8)
+
+
+def test_a_locus_across_the_second_parameter_is_charted_once():
+    # the Neimark-Sacker line b = 1 is met at both of its ends: at (a, b) = (-1, 1) on the fold, at (3, 1) on the doubling
+    problem = cv.MapProblem(henon, [0.2, 0.2], {"a": 0.3, "b": 0.5}, parameter="a")
+    graph = cv.diagram(problem, over="a", within=(-1.5, 3.5), depth=0)
+    chart = cv.chart(graph, over="b", within=(-1.5, 1.5), depth=1, regions=False)
+    (line,) = [locus for locus in chart.loci.values() if locus.kind == "neimark-sacker"]
+    ends = sorted(chart.points[label].value[0] for _, label in line.marks)
+    assert ends == pytest.approx([-1.0, 0.0, 1.25, 3.0], abs=1e-8)
+
+
+def test_branches_that_cross_do_not_fold_there():
+    # Kopel's duopoly: x = y = 1 - 1/mu, multipliers 1 - rho +- rho (mu - 2): the pitchfork mu = 3 meets the doubling at rho = 1
+    def kopel(u, p):
+        return u * (1 - p.rho) + p.rho * p.mu * u[::-1] * (1 - u[::-1])
+
+    problem = cv.MapProblem(kopel, [0.5, 0.5], {"mu": 2.0, "rho": 0.8}, parameter="mu")
+    graph = cv.diagram(problem, over="mu", within=(1.5, 3.8), depth=0)
+    chart = cv.chart(graph, over="rho", within=(0.5, 1.4), depth=1, regions=False)
+    assert all(locus.kind != "fold" for locus in chart.loci.values())
+    (meeting,) = [point for point in chart.points.values() if point.kind == "fold-flip"]
+    assert meeting.value == pytest.approx((3.0, 1.0), abs=1e-8)
