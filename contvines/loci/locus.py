@@ -100,13 +100,14 @@ class Locus:
         return {point.label: point for _, point in self._marked()}
 
     def _marked(self) -> tuple[tuple[int, PlanePoint], ...]:
-        if self.marked is None:
+        marked = self.marked
+        if marked is None:
             if self.problem is None:
                 raise ValueError(
                     f"{self.label} was loaded without its problem; its points of codimension two cannot be sought"
                 )
-            self.marked = above("mark_locus")(self)
-        return self.marked
+            self.marked = marked = tuple(above("mark_locus")(self))
+        return marked
 
     @property
     def ended(self) -> tuple[str, str]:
