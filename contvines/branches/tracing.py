@@ -69,7 +69,7 @@ def trace_half(
         scan = watch.scan(chunk, real)
         if known is None:
             events = watch.look(chunk, scan, real)
-            if not isinstance(journal, NullJournal):
+            if len(chunk) > 1 and not isinstance(journal, NullJournal):
                 journal.record(name, pack(events, engine))
         else:
             events = unpack(known)

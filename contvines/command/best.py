@@ -56,6 +56,7 @@ def choose(
     cluster: str | None,
     plot: Path | None,
     json_: bool,
+    fresh: bool,
     quiet: bool,
 ) -> None:
     """Survey, choose, refine, and say what is sacrificed."""
@@ -90,7 +91,7 @@ def choose(
         if known.get(outcome, outcome) not in study.survey.outcomes and not _comes(outcome, study):
             survey = study.survey.model_copy(update={"outcomes": [*study.survey.outcomes, outcome]})
             study = dataclasses.replace(study, survey=survey)
-    found = surveyed(study, target, workers, cluster, quiet)
+    found = surveyed(study, target, workers, cluster, fresh, quiet)
     if outcome not in found.columns:
         raise ValueError(
             f"--best {text!r}: the survey has no outcome {outcome}; it has {', '.join(found.columns) or 'none'}."

@@ -6,9 +6,10 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import interval
-from contvines.command.options import TrustOption
+from contvines.command.options import FreshOption, TrustOption
+from contvines.command.place import held
 from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
-from contvines.command.stored import refuse_detached
+from contvines.command.stored import finished_of, refuse_detached
 
 
 def chart(
@@ -35,55 +36,49 @@ def chart(
         ),
     ] = None,
     plot: PlotOption = None,
+    fresh: FreshOption = False,
     virtual: VirtualOption = False,
     quiet: QuietOption = False,
     trust: TrustOption = False,
 ) -> None:
     """Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted."""
-    from contvines.command.compose import beside, check_place, say
-    from contvines.store import Store
+    from contvines.command.compose import beside, check_place
 
     target = output or beside(file, "-chart.vines")
     check_place(target)
     check(plot, target, file)
-    graph, over, ends = _diagram(file, over, within, trust, quiet)
+    graph, over, ends = _diagram(file, over, within, trust, fresh)
     refuse_detached(
         graph, (label for label, point in graph.special.items() if point.kind not in ("end", "user"))
     )
-    fingerprint = _fingerprint(graph, over, ends, virtual)
-    found: Any = None
-    if target.exists():
-        with Store.open(target) as store:
-            store.require(fingerprint)
-            if store.finished:
-                found = store.graph(problems=False)
-                say(f"{target} holds the finished chart; nothing to compute.", quiet)
-            else:
-                say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
-    if found is None:
-        from contvines.command.progress import shown
-        from contvines.command.run import interruptible
-        from contvines.loci.charting import chart as make
-
-        note = f"all finished points are kept in {target}; the same command goes on from there"
-        begun = False
-        try:
-            with Store.attach(target, fingerprint, {"chart": [over, *ends]}) as store:
-                with interruptible(note), shown(quiet=quiet) as progress:
-                    try:
-                        found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
-                    finally:
-                        begun = store.records > 0
-                store.tidy()
-        except ValueError:
-            if not begun:  # refused before any work: nothing is left behind
-                target.unlink(missing_ok=True)
-            raise
+    with held(target, quiet, fresh):
+        found = _chart(graph, over, ends, virtual, target, quiet)
     tell(found, target, plot, quiet)
 
 
+def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, target: Path, quiet: bool) -> Any:
+    """The chart of a diagram: from its file if that is finished, computed else."""
+    from contvines.command.compose import say
+    from contvines.command.progress import shown
+    from contvines.command.run import interruptible
+    from contvines.loci.charting import chart as make
+    from contvines.store import Store
+
+    fingerprint = _fingerprint(graph, over, ends, virtual)
+    found = finished_of(target, fingerprint, quiet, problems=False)
+    if found is not None:
+        say(f"{target} holds the finished chart; nothing to compute.", quiet)
+        return found
+    note = f"all finished points are kept in {target}; the same command goes on from there"
+    with Store.attach(target, fingerprint, {"chart": [over, *ends]}) as store:
+        with interruptible(note), shown(quiet=quiet) as progress:
+            found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
+        store.tidy()
+    return found
+
+
 def _diagram(
-    file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, quiet: bool
+    file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, fresh: bool
 ) -> tuple[Any, str, tuple[float, float]]:
     """The diagram to chart, made first if a study is given, and what to chart it over."""
     from contvines.command.study import is_database
@@ -111,7 +106,7 @@ def _diagram(
             f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
             "parameter and within."
         )
-    diagram(file, quiet=True)
+    diagram(file, quiet=True, fresh=fresh)
     graph = load(beside(file, ".vines"))
     ends = said if within is None else interval("--within", within, over, graph.units)
     assert ends is not None

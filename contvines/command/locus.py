@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from contvines.command.amounts import interval
-from contvines.command.options import FileArgument, TrustOption
+from contvines.command.options import FileArgument, FreshOption, TrustOption
+from contvines.command.place import held
 from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
 from contvines.command.stored import refuse_detached
 
@@ -31,6 +32,7 @@ def locus(
         ),
     ] = None,
     plot: PlotOption = None,
+    fresh: FreshOption = False,
     virtual: VirtualOption = False,
     quiet: QuietOption = False,
     trust: TrustOption = False,
@@ -59,5 +61,6 @@ def locus(
 
     with shown(quiet=quiet) as progress:
         found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress)
-    found.save(target)
+    with held(target, quiet, fresh):
+        found.save(target)
     tell(found, target, plot, quiet)

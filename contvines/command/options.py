@@ -25,3 +25,10 @@ SizeOption = Annotated[
         "--size", metavar="WIDTH HEIGHT", help="Of the picture, in inches; 3.4 2.4 is a column of a journal."
     ),
 ]
+
+FreshOption = Annotated[
+    bool,
+    typer.Option(
+        "--fresh", help="Begin anew: a file that is there is set aside, FILE.vines as FILE.old.vines."
+    ),
+]

@@ -8,6 +8,7 @@ import typer
 
 from contvines.command.amounts import interval
 from contvines.command.options import TrustOption
+from contvines.command.place import held
 from contvines.text_table import fitted
 
 
@@ -91,6 +92,13 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
 
 
 def _of_file(
+    file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
+) -> dict[str, Any]:
+    with held(file, quiet=False):
+        return _proved(file, labels, bits, trust, within)
+
+
+def _proved(
     file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
 ) -> dict[str, Any]:
     from contvines.command.run import interruptible

@@ -8,7 +8,8 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.compare import CompareOption, check_compared
-from contvines.command.options import TrustOption
+from contvines.command.options import FreshOption, TrustOption
+from contvines.command.place import held
 
 StudyArgument = Annotated[
     Path, typer.Argument(metavar="STUDY.toml", help="The study: model, start, what to continue.")
@@ -59,6 +60,7 @@ def diagram(
     study: StudyArgument,
     output: OutputOption = None,
     plot: PlotOption = None,
+    fresh: FreshOption = False,
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
@@ -72,13 +74,14 @@ def diagram(
     compare: CompareOption = None,
 ) -> None:
     """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
-    _run("diagram", study, output, plot, quiet, x, y, compare, look)
+    _run("diagram", study, output, plot, fresh, quiet, x, y, compare, look)
 
 
 def atlas(
     study: StudyArgument,
     output: AtlasOutputOption = None,
     plot: PlotOption = None,
+    fresh: FreshOption = False,
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
@@ -89,19 +92,20 @@ def atlas(
     starts at each, drawn with which seed, and how many further values in a
     row must meet nothing new. An interrupted run goes on.
     """
-    _run("atlas", study, output, plot, quiet, x, y)
+    _run("atlas", study, output, plot, fresh, quiet, x, y)
 
 
 def trace(
     study: StudyArgument,
     output: TraceOutputOption = None,
     plot: PlotOption = None,
+    fresh: FreshOption = False,
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
 ) -> None:
     """Follow the study's one branch, without switching."""
-    _run("trace", study, output, plot, quiet, x, y)
+    _run("trace", study, output, plot, fresh, quiet, x, y)
 
 
 def switch(
@@ -111,30 +115,8 @@ def switch(
     trust: TrustOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
-    from contvines.command.progress import shown
-    from contvines.store import Store, load
-
-    graph = load(file, trust=trust)
-    if not graph.finished:
-        raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
-    if label not in graph.special:
-        what = "is a branch" if label in graph.branches else "is no label of it"
-        raise ValueError(
-            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
-        )
-
-    from contvines.continuation.settings import Settings
-    from contvines.graph.automatic import switch as leave
-
-    own = Settings().to_dict()
-    settings = {
-        k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
-    }  # trace allows one only
-    with interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
-        new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
-    if new:
-        with Store.open(file, write=True) as store:
-            store.checkpoint(graph)
+    with held(file, quiet):
+        graph, new = _switched(file, label, quiet, trust)
     if not quiet:
         if not new:
             where = {"end": "nothing leaves an end", "fold": "nothing leaves a fold"}
@@ -147,11 +129,40 @@ def switch(
             )
 
 
+def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, list[Any]]:
+    """The graph of a file with what leaves a special point, and the branches that are new."""
+    from contvines.command.progress import shown
+    from contvines.continuation.settings import Settings
+    from contvines.graph.automatic import switch as leave
+    from contvines.store import Store, load
+
+    graph = load(file, trust=trust)
+    if not graph.finished:
+        raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
+    if label not in graph.special:
+        what = "is a branch" if label in graph.branches else "is no label of it"
+        raise ValueError(
+            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
+        )
+    own = Settings().to_dict()
+    settings = {
+        k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
+    }  # trace allows one only
+    with interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
+        new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
+    if new:
+        with Store.open(file, write=True) as store:
+            store.checkpoint(graph)
+            store.tidy()
+    return graph, new
+
+
 def _run(
     command: str,
     path: Path,
     output: Path | None,
     plot: Path | None,
+    fresh: bool,
     quiet: bool,
     x: str | None,
     y: str | None,
@@ -163,14 +174,10 @@ def _run(
         check_place,
         check_shaken,
         checked_study,
-        first_orbit,
         machine,
-        run_atlas,
-        run_diagram,
         say,
     )
     from contvines.command.measures import check_axes, check_bounds
-    from contvines.store import Store
 
     study = checked_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
@@ -183,26 +190,8 @@ def _run(
         raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
     if plot is not None:
         _check_picture(plot)
-    fingerprint = study.fingerprint(command)
-    graph: Any = None
-    if target.exists():
-        with Store.open(target) as store:
-            store.require(fingerprint)
-            if store.finished:
-                graph = store.graph(problems=plot is not None)
-                if graph.looked or not look:
-                    say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
-            else:
-                say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
-    if graph is None:
-        if command == "atlas":
-            graph = _continue(study, machine(study), command, target, fingerprint, quiet, run_atlas)
-        else:
-            seed = first_orbit(study)
-            graph = _continue(study, seed, command, target, fingerprint, quiet, run_diagram)
-        say(f"kept in {target}", quiet)
-    if look and not graph.looked:
-        graph = _look(study, target)
+    with held(target, quiet, fresh):
+        graph = _graph(study, command, target, quiet, problems=plot is not None, look=look)
     if not quiet:
         typer.echo(str(graph))
     if compare and not quiet:
@@ -219,21 +208,28 @@ def _run(
         say(f"drawn in {plot}", quiet)
 
 
-def _continue(
-    study: Any, seed: Any, command: str, target: Path, fingerprint: str, quiet: bool, run: Any
-) -> Any:
+def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
+    """The graph of a study: from its file if that is finished, computed else."""
+    from contvines.command.compose import first_orbit, machine, run_atlas, run_diagram, say
     from contvines.command.progress import shown
+    from contvines.command.stored import finished_of
     from contvines.store import Store
 
-    alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
-    with Store.attach(target, fingerprint, study.describe()) as store:
-        note = f"all finished points are kept in {target}; the same command goes on from there"
-        with interruptible(note), shown(quiet=quiet) as progress:
-            graph = run(study, seed, journal=store, progress=progress, **alone)
-        if not store.finished:
-            store.checkpoint(graph)
-        store.tidy()
-    return graph
+    fingerprint = study.fingerprint(command)
+    graph = finished_of(target, fingerprint, quiet, problems=problems)
+    if graph is None:
+        alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
+        run = run_atlas if command == "atlas" else run_diagram
+        seed = machine(study) if command == "atlas" else first_orbit(study)
+        with Store.attach(target, fingerprint, study.describe()) as store:
+            note = f"all finished points are kept in {target}; the same command goes on from there"
+            with interruptible(note), shown(quiet=quiet) as progress:
+                graph = run(study, seed, journal=store, progress=progress, **alone)
+            store.tidy()
+        say(f"kept in {target}", quiet)
+    elif graph.looked or not look:
+        say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
+    return _look(study, target) if look and not graph.looked else graph
 
 
 @contextmanager

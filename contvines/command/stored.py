@@ -1,4 +1,4 @@
-"""What is said of a stored graph when it is loaded."""
+"""Results in files: what is said of them when they are loaded, and those that need not be computed again."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -32,3 +32,24 @@ def say_unfinished(file: Path) -> None:
     typer.echo(
         f"{file} is unfinished: its run goes on, or was stopped; the same command continues it.", err=True
     )
+
+
+def finished_of(target: Path, fingerprint: str, quiet: bool, *, problems: bool) -> Any:
+    """The finished result of a run in its file; None if the run is still to be done, or to be gone on with.
+
+    Raises
+    ------
+    ValueError
+        If the file is refused, or belongs to another run.
+    """
+    from contvines.command.compose import say
+    from contvines.store import Store
+
+    if not target.exists():
+        return None
+    with Store.open(target) as store:
+        store.require(fingerprint)
+        if store.finished:
+            return store.graph(problems=problems)
+        say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
+        return None

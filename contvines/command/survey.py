@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from contvines.command.options import FreshOption
+
 if TYPE_CHECKING:
     from contvines.survey import Survey
 
@@ -44,6 +46,7 @@ def survey(
         list[str] | None,
         typer.Option("--over", metavar="NAME", help="With --best: what may be chosen, one or two."),
     ] = None,
+    fresh: FreshOption = False,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
@@ -63,11 +66,11 @@ def survey(
     if best is not None:
         from contvines.command.best import choose
 
-        choose(read, best, over or [], target, workers, cluster, plot, json_, quiet)
+        choose(read, best, over or [], target, workers, cluster, plot, json_, fresh, quiet)
         return
     from contvines.command.surveying import surveyed
 
-    found = surveyed(read, target, workers, cluster, quiet)
+    found = surveyed(read, target, workers, cluster, fresh, quiet)
     if json_:
         from contvines.export import json_text
 

@@ -5,13 +5,59 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.command.place import held
+
 if TYPE_CHECKING:
     from contvines.command.study import Study
     from contvines.survey import Survey
 
 
-def surveyed(study: "Study", target: Path, workers: int | None, cluster: str | None, quiet: bool) -> "Survey":
-    """The survey of a study, from its file if that is finished."""
+def surveyed(
+    study: "Study", target: Path, workers: int | None, cluster: str | None, fresh: bool, quiet: bool
+) -> "Survey":
+    """The survey of a study, from its file if that is finished.
+
+    Raises
+    ------
+    ValueError
+        If the file holds another survey, or the study cannot be surveyed.
+    """
+    from contvines.command.sweep_rows import journal_of
+
+    with held(target, quiet, fresh, (target.with_suffix(".csv"), journal_of(target))):
+        found = _finished(study, target, quiet)
+        return _computed(study, target, workers, cluster, quiet) if found is None else found
+
+
+def _finished(study: "Study", target: Path, quiet: bool) -> "Survey | None":
+    """The survey in its file; None if there is none, or its run was ended before it had written all."""
+    from contvines.command.compose import say
+    from contvines.command.survey_study import asked_of, plan_and_machine
+    from contvines.command.sweep_rows import journal_of, refuse_another
+    from contvines.survey import load_survey
+    from contvines.survey.survey import digest_of
+
+    plan, _ = plan_and_machine(study)
+    digest = digest_of(plan, study.parameter, study.within, asked_of(study))
+    refuse_another(target, {"contvines": "unfinished survey", "of": digest})
+    if not target.exists():
+        return None
+    kept = load_survey(target)
+    if kept.about.get("digest") != digest:
+        raise ValueError(
+            f"{target}: this file holds another survey (or this one before it was edited); --fresh sets it aside, "
+            "-o gives another name."
+        )
+    if journal_of(target).exists():
+        return None
+    say(f"{target} holds the finished result of this survey; nothing to compute.", quiet)
+    return kept
+
+
+def _computed(
+    study: "Study", target: Path, workers: int | None, cluster: str | None, quiet: bool
+) -> "Survey":
+    """The survey, machine by machine; those that an unfinished run has kept are not computed again."""
     from contvines.command.compose import Interrupted, say
     from contvines.command.survey_study import (
         asked_of,
@@ -22,27 +68,19 @@ def surveyed(study: "Study", target: Path, workers: int | None, cluster: str | N
         units_of,
         ways_of,
     )
-    from contvines.survey import load_survey
-    from contvines.survey.survey import digest_of
+    from contvines.command.sweep_rows import journal_of
     from contvines.survey.survey import survey as run
     from orbits.precompile import compile_ahead
 
     plan, model = plan_and_machine(study)
-    asked = asked_of(study)
-    if target.exists():
-        kept = load_survey(target)
-        if kept.about.get("digest") == digest_of(plan, study.parameter, study.within, asked):
-            say(f"{target} holds the finished result of this survey; nothing to compute.", quiet)
-            return kept
-    outcomes, family = outcomes_of(study), family_of(study, model)
-    journal = target.with_name(target.name + ".unfinished")
+    outcomes, family, journal = outcomes_of(study), family_of(study, model), journal_of(target)
     if study.machine is None:
         compile_ahead(study.name, "contvines.events.scan:prepare")
     with without_main(), counted(len(plan), quiet) as tell:
         try:
             found = run(
                 family, plan, over=study.parameter, within=study.within, outcomes=outcomes, workers=workers, cluster=cluster,
-                journal=journal, units=units_of(study, model), about=asked, progress=tell, **ways_of(study), **options_of(study),
+                journal=journal, units=units_of(study, model), about=asked_of(study), progress=tell, **ways_of(study), **options_of(study),
             )  # fmt: skip
         except KeyboardInterrupt:
             raise Interrupted(

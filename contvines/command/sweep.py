@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import SizeOption
+from contvines.command.options import FreshOption, SizeOption
+from contvines.command.place import held
 from contvines.text_table import Table, terminal_width
 
 if TYPE_CHECKING:
@@ -32,11 +33,13 @@ def sweep(
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
     ] = None,
+    fresh: FreshOption = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
 ) -> None:
     """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
     from contvines.command.compose import beside, check_shaken, say
     from contvines.command.study import read_study
+    from contvines.command.sweep_rows import header_of, journal_of, refuse_another
     from contvines.export import check_target
 
     read = read_study(study)
@@ -57,7 +60,9 @@ def sweep(
 
         check_picture(plot)
         check_size(size)
-    rows = _simulate(read, down, target, quiet)
+    with held(target, quiet, fresh, (journal_of(target),)):
+        refuse_another(target, header_of(read, down))
+        rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
     if not quiet:
         typer.echo(_summary(rows, read.parameter))

@@ -120,6 +120,37 @@ def _impacts(found: Any) -> list[float]:
     return [float(b * found.model.gauge("velocity", found.params)) for b in jumps]
 
 
+def journal_of(target: Path) -> Path:
+    """Where the rows of an unfinished sweep or survey are kept."""
+    return target.with_name(target.name + ".unfinished")
+
+
+def refuse_another(target: Path, header: dict[str, str]) -> None:
+    """Refuse to lose the rows of an unfinished run of another study.
+
+    Parameters
+    ----------
+    target : Path
+    header : dict
+        First line of this study's journal.
+
+    Raises
+    ------
+    ValueError
+    """
+    try:
+        first, *rows = journal_of(target).read_text(encoding="utf-8", errors="replace").split("\n")
+        found = json.loads(first)
+    except (OSError, ValueError, RecursionError):
+        return
+    ours = isinstance(found, dict) and found.get("contvines") == header["contvines"]
+    if ours and found != header and len(rows) > 1:
+        raise ValueError(
+            f"{target}: here {len(rows) - 1} rows of an {header['contvines']} of another study (or of this one before it "
+            "was edited) are kept; --fresh sets them aside, -o gives another name."
+        )
+
+
 class Rows:
     """The rows of a sweep on disk, each kept as soon as it is there.
 
@@ -134,8 +165,8 @@ class Rows:
             "value": units.get(study.parameter, ""),
             **{name: units.get(name, "") for name in names},
         }
-        self.journal = target.with_name(target.name + ".unfinished")
-        self.header = {"contvines": "unfinished sweep", "of": _digest(study, down)}
+        self.journal = journal_of(target)
+        self.header = header_of(study, down)
         self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
         self.rows: list[Kept] = []
         self.files: list[IO[str]] = []
@@ -206,9 +237,9 @@ class Rows:
         return found
 
 
-def _digest(study: "Study", down: bool) -> str:
-    """What decides a sweep's rows: two runs that must give the same CSV share it."""
+def header_of(study: "Study", down: bool) -> dict[str, str]:
+    """First line of a sweep's journal, with a digest of all that decides its rows: runs that must give the same CSV share it."""
     text = json.dumps(
         {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}, sort_keys=True
     )
-    return hashlib.sha256(text.encode()).hexdigest()
+    return {"contvines": "unfinished sweep", "of": hashlib.sha256(text.encode()).hexdigest()}

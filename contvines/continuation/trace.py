@@ -109,7 +109,8 @@ def chunks(
                 chunk.status = Status.CREEPING
             elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
                 chunk.status = Status.MAX_POINTS
-            if journal is not None and not isinstance(journal, NullJournal):
+            # a step that failed at once is nothing to keep: a start that is refused leaves no journal
+            if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
                 values: dict[str, Any] = {part: getattr(chunk, part) for part in source.Points._fields}
                 values["rows"] = chunk.rows.copy()
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})

@@ -4,16 +4,17 @@ import json
 import os
 import sqlite3
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..interrupts import HELD
-from .header import APPLICATION_ID, VERSION, StoreError, check_header, damaged, pending
+from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, cut_short, damaged, pending
 from .packing import digest_of, packed, split, unpacked
-from .publishing import publish
+from .publishing import draft_of, publish
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -27,15 +28,31 @@ CREATE TABLE array (
 """
 
 
+_OBJECTS = "SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"
+
+
+def _objects_of_ours() -> list[tuple[str, str, str, str | None]]:
+    """Tables and indices of a file of ours, with the text of their definitions."""
+    with closing(sqlite3.connect(":memory:")) as db:
+        db.executescript(_SCHEMA)
+        return db.execute(_OBJECTS).fetchall()
+
+
 class Store:
     """An open .vines file; the journal of a run and the home of its graph.
 
     Use `create`, `open` or `attach`; close it or use it as a context manager.
     """
 
-    def __init__(self, connection: sqlite3.Connection, path: Path):
-        self._db = connection
+    def __init__(
+        self,
+        connection: sqlite3.Connection | None,
+        path: Path,
+        promised: tuple[str, Mapping[str, Any] | None] | None = None,
+    ):
+        self._connection = connection
         self.path = path
+        self._promised = promised  # fingerprint and study of a file that is made with its first entry
         self._kept: dict[tuple[str, str], tuple[str, dict[str, np.ndarray]]] = {}
         self._version = 0
 
@@ -49,29 +66,11 @@ class Store:
             If the path exists or cannot be written.
         """
         path = Path(path)
-        draft = path.with_name(f".{path.name}.{os.getpid()}")
         try:
-            db = sqlite3.connect(draft, isolation_level=None)
-            try:
-                db.executescript(
-                    f"PRAGMA application_id={APPLICATION_ID}; PRAGMA user_version={VERSION}; BEGIN; {_SCHEMA}"
-                )
-                db.executemany(
-                    "INSERT INTO meta VALUES (?, ?)",
-                    [("fingerprint", fingerprint), ("study", json.dumps(study)), ("finished", "false")],
-                )
-                db.execute("COMMIT")
-            finally:
-                db.close()
-            publish(draft, path)
+            _make(path, fingerprint, study)
         except FileExistsError:
             raise StoreError(f"{path}: this file exists already; choose another name with -o.") from None
-        except (sqlite3.Error, OSError) as error:
-            raise StoreError(f"{path}: cannot be written ({error}); choose another place with -o.") from None
-        finally:
-            with suppress(OSError):
-                draft.unlink()
-        return cls._connect(path, write=True)
+        return cls(_connected(path, write=True), path)
 
     @classmethod
     def open(cls, path: str | Path, *, write: bool = False) -> "Store":
@@ -84,47 +83,51 @@ class Store:
         """
         path = Path(path)
         check_header(path)
-        with cls._connect(path, write=False) as reader:
+        with cls(_connected(path, write=False), path) as reader:
             reader._check_whole()
-        return cls._connect(path, write=write)
+        return cls(_connected(path, write=write), path)
 
     @classmethod
     def attach(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> "Store":
-        """The file of this study, to write: created where there is none, else checked and opened.
+        """The file of this study, to write: checked and opened, or made with its first entry where there is none.
 
         Raises
         ------
         StoreError
-            If the file is refused, or belongs to another study.
+            If the file is refused, belongs to another study, or cannot be written.
         """
-        if not Path(path).exists():
-            return cls.create(path, fingerprint, study)
+        path = Path(path)
+        if not path.exists():
+            if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+                why = "its folder is read-only" if path.parent.is_dir() else "there is no such folder"
+                raise StoreError(f"{path}: cannot be written ({why}); choose another place with -o.")
+            return cls(None, path, (fingerprint, study))
         with cls.open(path) as reader:
             reader.require(fingerprint)
-        return cls._connect(Path(path), write=True)
+        return cls(_connected(path, write=True), path)
 
-    @classmethod
-    def _connect(cls, path: Path, *, write: bool) -> "Store":
-        # Reading a file without a log must not leave one beside it.
-        mode = "mode=rw" if write else "mode=ro" if pending(path) else "immutable=1"
-        try:
-            db = sqlite3.connect(
-                f"{path.absolute().as_uri()}?{mode}", uri=True, isolation_level=None, timeout=30
-            )
-            if write:
-                db.execute("PRAGMA journal_mode=WAL")
-                db.execute("PRAGMA synchronous=NORMAL")
-                db.execute("PRAGMA foreign_keys=ON")
-        except sqlite3.Error as error:
-            raise StoreError(f"{path}: cannot be opened ({error}).") from None
-        return cls(db, path)
+    @property
+    def _db(self) -> sqlite3.Connection:
+        """The connection; a file that is promised is made now."""
+        if self._connection is None:
+            if self._promised is None:
+                raise StoreError(f"{self.path}: this file has been closed; open it again.")
+            with suppress(FileExistsError):  # another run of the same study was quicker
+                _make(self.path, *self._promised)
+            other = Store.attach(self.path, *self._promised)
+            self._connection, self._promised = other._connection, None
+            return self._db
+        return self._connection
 
     # -- state ---------------------------------------------------------------------------------------------
 
     def _meta(self, key: str) -> str:
+        if self._promised is not None:
+            fingerprint, study = self._promised
+            return {"fingerprint": fingerprint, "study": json.dumps(study), "finished": "false"}[key]
         with self._guard():
             row = self._db.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
-        if row is None:
+        if row is None or not isinstance(row[0], str):
             raise damaged(self.path, f"its {key} is missing")
         return row[0]
 
@@ -137,8 +140,8 @@ class Store:
         """Refuse a file that belongs to another study."""
         if self.fingerprint != fingerprint:
             raise StoreError(
-                f"{self.path}: this file belongs to another study or to another command; "
-                "choose another name with -o, or move the file away."
+                f"{self.path}: this file belongs to another study (or to this one before it was edited) or to another command; "
+                "--fresh sets it aside, -o gives another name."
             )
 
     @property
@@ -154,6 +157,8 @@ class Store:
     @property
     def records(self) -> int:
         """Number of journal records."""
+        if self._promised is not None:
+            return 0
         with self._guard():
             return self._db.execute("SELECT count(*) FROM entry WHERE kind = 'journal'").fetchone()[0]
 
@@ -169,12 +174,18 @@ class Store:
             self.put("journal", key, content)
 
     def checkpoint(self, graph: Any) -> None:
-        """Keep the graph as it stands, replacing what was kept of it before, in one transaction."""
+        """Keep the graph as it stands, replacing what was kept of it before, in one transaction.
+
+        One that is unfinished does not replace one that is finished.
+        """
         from contvines.graph.persistence import graph_entries
 
         # some numbers are worked out when they are asked for: before the write, which nothing may interrupt
         entries: Any = list(graph.entries() if hasattr(graph, "entries") else graph_entries(graph))
+        finished = bool(graph.finished)
         with self.transaction():
+            if self.finished and not finished:
+                return
             # changes when another process has written, which then may have replaced what was kept here
             version = self._db.execute("PRAGMA data_version").fetchone()[0]
             if version != self._version:
@@ -186,7 +197,6 @@ class Store:
             for place in self._kept.keys() - present:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
                 del self._kept[place]
-            finished = bool(graph.finished)
             self._db.execute("UPDATE meta SET value = ? WHERE key = 'finished'", (json.dumps(finished),))
             if finished:  # the journal has done its work
                 self._db.execute("DELETE FROM entry WHERE kind = 'journal'")
@@ -207,11 +217,11 @@ class Store:
         """
         from contvines.graph.persistence import graph_from_entries
 
-        kinds = ("graph", "branch", "special", "switch", "proof", "attractor", "missing")
-        kinds += ("chart", "locus", "plane-point", "region")
-        entries = {kind: dict(self.entries(kind)) for kind in kinds}
+        entries: dict[str, dict[str, Any]] = {}
+        for kind, key, content in self._entries("e.kind != 'journal'"):  # as one checkpoint has left them
+            entries.setdefault(kind, {})[key] = content
         try:
-            if entries["chart"]:
+            if "chart" in entries:
                 from contvines.loci.chart import chart_from_entries
 
                 return chart_from_entries(entries, problems=problems, trust=trust)
@@ -258,35 +268,58 @@ class Store:
         self, kind: str | None = None, key: str | None = None
     ) -> Iterator[tuple[str, dict[str, Any]]]:
         """Entries as (key, content) in the order in which they were written, digests checked."""
+        # the plus sign: in the order of the table, not of its index
+        wanted = {"+e.kind = ?" if key is None else "e.kind = ?": kind, "e.key = ?": key}
+        wanted = {condition: value for condition, value in wanted.items() if value is not None}
+        for _, key_, content in self._entries(" AND ".join(wanted) or "1", *wanted.values()):
+            yield key_, content
+
+    def _entries(self, condition: str, *values: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """Entries as (kind, key, content), all as they stand at one moment: one statement reads them and their arrays."""
+        if self._promised is not None:
+            return
         with self._guard():
-            for identity, kind_, key_, scalars, digest in self._db.execute(
-                "SELECT id, kind, key, scalars, digest FROM entry "
-                "WHERE (?1 IS NULL OR kind = ?1) AND (?2 IS NULL OR key = ?2) ORDER BY id",
-                (kind, key),
-            ):
-                rows = self._db.execute(
-                    "SELECT name, dtype, shape, data FROM array WHERE entry = ? ORDER BY name", (identity,)
-                ).fetchall()
-                if digest != digest_of(kind_, key_, scalars, rows):
-                    raise damaged(self.path, f"the entry {kind_} {key_!r} has changed since it was written")
-                content = json.loads(scalars)
-                content.update((name, unpacked(*row)) for name, *row in rows)
-                yield key_, content
+            rows = self._db.execute(
+                "SELECT e.id, e.kind, e.key, e.scalars, e.digest, a.name, a.dtype, a.shape, a.data FROM entry e "
+                f"LEFT JOIN array a ON a.entry = e.id WHERE {condition} ORDER BY e.id, a.name",
+                values,
+            )
+            for _, parts in groupby(rows, key=lambda row: row[0]):
+                yield self._entry(list(parts))
+
+    def _entry(self, rows: list[tuple[Any, ...]]) -> tuple[str, str, dict[str, Any]]:
+        _, kind, key, scalars, digest = rows[0][:5]
+        arrays = [row[5:] for row in rows if row[5] is not None]
+        texts = (kind, key, scalars, *(part for row in arrays for part in row[:3]))
+        if not all(isinstance(text, str) for text in texts) or any(
+            type(row[3]) is not bytes for row in arrays
+        ):
+            raise damaged(self.path, "its content is broken")
+        if digest != digest_of(kind, key, scalars, arrays):
+            raise damaged(self.path, f"the entry {kind} {key!r} has changed since it was written")
+        try:
+            content = json.loads(scalars)
+            content.update((name, unpacked(*row)) for name, *row in arrays)
+        except (ValueError, AttributeError, RecursionError):
+            raise damaged(self.path, f"the entry {kind} {key!r} is none that contvines writes") from None
+        return kind, key, content
 
     def _check_whole(self) -> None:
+        """Refuse a file that does not hold our tables and nothing else, before anything else is read of it."""
         with self._guard():
-            verdict = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
-            tables = {
-                row[0] for row in self._db.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
-            }
-        missing = {"meta", "entry", "array"} - tables
-        if verdict != "ok" or missing:
-            why = (
-                "its pages do not fit together"
-                if verdict != "ok"
-                else f"it lacks the table {sorted(missing)[0]!r}"
-            )
-            raise damaged(self.path, why)
+            ours = _objects_of_ours()
+            found = self._db.execute(_OBJECTS).fetchmany(len(ours) + 1)
+            if found != ours:
+                names = {name for kind, name, *_ in found if kind == "table"}
+                missing = [name for kind, name, *_ in ours if kind == "table" and name not in names]
+                raise damaged(
+                    self.path,
+                    f"it lacks the table {missing[0]!r}"
+                    if missing
+                    else "its tables are not those that contvines makes",
+                )
+            if self._db.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
+                raise damaged(self.path, "its pages do not fit together")
         _ = self.fingerprint, self.study, self.finished
         for _ in self.entries():
             pass
@@ -298,7 +331,9 @@ class Store:
         except sqlite3.OperationalError as error:
             raise StoreError(f"{self.path}: cannot be used now ({error}).") from None
         except (sqlite3.DatabaseError, UnicodeDecodeError, json.JSONDecodeError, RecursionError):
-            raise damaged(self.path, "its content is broken") from None
+            raise damaged(
+                self.path, "it is cut short" if cut_short(self.path) else "its content is broken"
+            ) from None
 
     def settle(self) -> None:
         """Fold the log into the file, so that it stands alone, and give free pages back."""
@@ -308,6 +343,8 @@ class Store:
 
     def tidy(self) -> None:
         """`settle`, if nobody else uses the file now and there is room for it."""
+        if self._promised is not None:
+            return
         with suppress(sqlite3.OperationalError):
             self._db.execute("PRAGMA busy_timeout=0")
             if self._db.execute("PRAGMA journal_mode=DELETE").fetchone()[0] == "delete":
@@ -315,13 +352,67 @@ class Store:
 
     def close(self) -> None:
         """Close the file; nothing is lost if this is never called."""
-        self._db.close()
+        if self._connection is not None:
+            self._connection.close()
 
     def __enter__(self) -> "Store":
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _make(path: Path, fingerprint: str, study: Mapping[str, Any] | None) -> None:
+    """Make a new file, whole from the first moment it is visible.
+
+    Raises
+    ------
+    FileExistsError
+    StoreError
+        If it cannot be written.
+    """
+    draft = draft_of(path)
+    try:
+        with closing(sqlite3.connect(draft, isolation_level=None)) as db:
+            db.executescript(
+                "PRAGMA journal_mode=OFF; "
+                f"PRAGMA application_id={APPLICATION_ID}; PRAGMA user_version={VERSION}; BEGIN; {_SCHEMA}"
+            )
+            db.executemany(
+                "INSERT INTO meta VALUES (?, ?)",
+                [("fingerprint", fingerprint), ("study", json.dumps(study)), ("finished", "false")],
+            )
+            db.execute("COMMIT")
+        publish(draft, path)
+    except FileExistsError:
+        raise
+    except (sqlite3.Error, OSError) as error:
+        raise StoreError(f"{path}: cannot be written ({error}); choose another place with -o.") from None
+    finally:
+        with suppress(OSError):
+            draft.unlink()
+
+
+def _connected(path: Path, *, write: bool) -> sqlite3.Connection:
+    """A connection that takes SQLite's locks wherever another process may write."""
+    may_write = os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
+    tails = [tail for tail in TAILS if path.with_name(path.name + tail).exists()]
+    if write or (may_write and ("-journal" in tails or not pending(path))):
+        mode = "mode=rw"  # of a reader, too: it completes a write that was cut short, and leaves nothing beside the file
+    else:  # with the log of a live or killed run, or where nobody may write
+        mode = "mode=ro" if tails else "immutable=1"
+    try:
+        db = sqlite3.connect(f"{path.absolute().as_uri()}?{mode}", uri=True, isolation_level=None, timeout=30)
+        db.execute("PRAGMA trusted_schema=OFF")
+        if write:
+            db.execute("PRAGMA journal_mode=WAL")
+            db.execute("PRAGMA synchronous=NORMAL")
+            db.execute("PRAGMA foreign_keys=ON")
+        else:
+            db.execute("PRAGMA query_only=ON")
+    except sqlite3.Error as error:
+        raise StoreError(f"{path}: cannot be opened ({error}).") from None
+    return db
 
 
 def _same_arrays(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 from ..hints import hinting
 from .database import Store
 from .header import TAILS, check_header
+from .publishing import draft_of
 
 
 @hinting
@@ -22,7 +23,7 @@ def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
     path = Path(path)
     if path.exists():
         check_header(path)
-    draft = path.with_name(f".{path.name}.{os.getpid()}.save")
+    draft = draft_of(path)
     try:
         with Store.create(draft, fingerprint or "saved from Python", getattr(graph, "model", None)) as store:
             store.checkpoint(graph)

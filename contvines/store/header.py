@@ -6,7 +6,7 @@ from pathlib import Path
 
 APPLICATION_ID = 0x56494E45  # "VINE"
 VERSION = 1
-TAILS = ("-wal", "-shm")  # of the files that SQLite keeps beside one in use
+TAILS = ("-wal", "-shm", "-journal")  # of the files that SQLite keeps beside one in use
 MAGIC = b"SQLite format 3\x00"
 
 
@@ -24,7 +24,6 @@ def check_header(path: Path, *, reading: bool = False) -> None:
     try:
         with path.open("rb") as file:
             head = file.read(100)
-            size = os.fstat(file.fileno()).st_size
     except FileNotFoundError:
         raise StoreError(
             f"{path}: there is no such file; {other}."
@@ -43,14 +42,20 @@ def check_header(path: Path, *, reading: bool = False) -> None:
             f"{path}: this file has format {version}, written by a newer contvines; this one knows format {VERSION}: "
             f"update contvines, or {'give another file' if reading else 'choose another name with -o'}."
         )
+
+
+def cut_short(path: Path) -> bool:
+    """Whether a file is shorter than its header says."""
+    with path.open("rb") as file:
+        head = file.read(100)
+        size = os.fstat(file.fileno()).st_size
     page = struct.unpack(">H", head[16:18])[0] or 512
     page = 65536 if page == 1 else page
-    if not pending(path) and (size % page or size < page * struct.unpack(">I", head[28:32])[0]):
-        raise damaged(path, "it is cut short")
+    return not pending(path) and (size % page != 0 or size < page * struct.unpack(">I", head[28:32])[0])
 
 
 def damaged(path: Path, why: str) -> StoreError:
-    """The error of a file that is damaged; what lies beside it, and would be taken for its log, is named, too."""
+    """The error of a file that is damaged; the logs beside it, which SQLite would take for those of the next file, are named, too."""
     logs = [path.name + tail for tail in TAILS if path.with_name(path.name + tail).exists()]
     beside = f" and with it {' and '.join(logs)}" if logs else ""
     return StoreError(f"{path}: this file is damaged ({why}); move it away{beside}, and run again.")

@@ -6,10 +6,14 @@ JSON text that round-trips exactly; every entry carries a digest of all its part
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+
+DTYPES = {"f": "<f8", "c": "<c16", "b": "|b1", "i": "<i8", "u": "<i8"}
+"""Types of arrays in a file by numpy's letter for the kind."""
 
 
 def split(content: Mapping[str, Any]) -> tuple[str, dict[str, np.ndarray]]:
@@ -28,12 +32,24 @@ def _plain(value: Any) -> Any:
 
 
 def packed(array: np.ndarray) -> tuple[str, str, bytes]:
-    dtype = {"c": "<c16", "b": "|b1", "i": "<i8", "u": "<i8"}.get(array.dtype.kind, "<f8")
+    dtype = DTYPES.get(array.dtype.kind, DTYPES["f"])
     return dtype, json.dumps(array.shape), np.ascontiguousarray(array, dtype=dtype).tobytes()
 
 
 def unpacked(dtype: str, shape: str, data: bytes) -> np.ndarray:
-    return np.frombuffer(data, dtype=dtype).reshape(json.loads(shape)).copy()
+    """The array that `packed` took apart.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be one of `packed`.
+    """
+    sizes = json.loads(shape)
+    if dtype not in DTYPES.values() or not isinstance(sizes, list) or any(type(n) is not int for n in sizes):
+        raise ValueError(f"an array of type {dtype!r} and shape {shape!r}")
+    if min(sizes, default=0) < 0 or math.prod(sizes) * np.dtype(dtype).itemsize != len(data):
+        raise ValueError(f"an array of shape {shape!r} in {len(data)} bytes")
+    return np.frombuffer(data, dtype=dtype).reshape(sizes).copy()
 
 
 def digest_of(kind: str, key: str, scalars: str, rows: list[tuple[str, str, str, bytes]]) -> bytes:

@@ -1,10 +1,41 @@
 """A finished draft gets the name of a file that does not exist yet."""
 
 import os
+import re
 from contextlib import suppress
+from itertools import count
 from pathlib import Path
 
 from .header import TAILS
+
+_number = count()
+
+
+def draft_of(path: Path) -> Path:
+    """A name beside a file for its draft."""
+    return path.with_name(f".{path.name}.{os.getpid()}-{next(_number)}.draft")
+
+
+def remove_drafts(path: Path) -> None:
+    """Remove the drafts of a file that killed processes have left."""
+    name = re.compile(rf"\.+{re.escape(path.name)}\.(\d+)-\d+\.draft.*")  # with drafts and logs of their own
+    for file in path.parent.iterdir():
+        found = name.fullmatch(file.name)
+        if found and not _alive(int(found[1])):
+            with suppress(OSError):
+                file.unlink()
+
+
+def _alive(process: int) -> bool:
+    if os.name == "nt":  # where signal 0 is not only a question
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        pass
+    return True
 
 
 def publish(draft: Path, path: Path) -> None:

@@ -121,3 +121,20 @@ def test_what_another_run_replaced_is_written_again(tmp_path, alone):
         slow.checkpoint(type(alone)(parameter=alone.parameter))
         fast.checkpoint(alone)
     assert same_graph(cv.load(path, problems=False), alone)
+
+
+def test_a_branch_that_dies_at_its_start_leaves_no_file(tmp_path):
+    """u = p solves the equation at p = 0 and nowhere else can it be computed."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: u - p if p == 0.0 else u * np.nan,
+        [0.0],
+        0.0,
+        jacobian=lambda u, p: [[1.0]],
+        derivative=lambda u, p: [-1.0],
+    )
+    with (
+        pytest.raises(ValueError, match="dies at its first point"),
+        cv.resume(tmp_path / "x.vines") as journal,
+    ):
+        cv.diagram(problem, within=(-1.0, 1.0), journal=journal)
+    assert not list(tmp_path.iterdir())

@@ -1,15 +1,18 @@
 """The store: identity of save and load, the journal, and the files that are refused and left untouched."""
 
+import signal
 import sqlite3
 import struct
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from contvines.branches.ending import Ending
+from contvines.command.place import held
 from contvines.graph.persistence import same_graph
 from contvines.store import APPLICATION_ID, VERSION, Store, StoreError, load, save
 from tests.contvines import fakes
@@ -294,3 +297,135 @@ def test_a_file_that_does_not_fit_the_log_beside_it_says_so(tmp_path):
         for name in ("x.vines-wal", "x.vines-shm"):
             (tmp_path / name).unlink(missing_ok=True)
     assert same_graph(load(path, problems=False), fakes.pitchfork_graph())
+
+
+# ------------------------------------------------------------------ schemas that are not ours
+
+
+def _generated(db):
+    """Rows that need no room in the file and 200 MB each in memory."""
+    db.execute("DROP TABLE array")
+    db.execute(
+        "CREATE TABLE array (entry INTEGER NOT NULL, name TEXT NOT NULL, dtype TEXT NOT NULL, shape TEXT NOT NULL, "
+        "data BLOB GENERATED ALWAYS AS (zeroblob(200000000)) VIRTUAL, PRIMARY KEY (entry, name)) WITHOUT ROWID"
+    )
+    db.executemany("INSERT INTO array (entry, name, dtype, shape) VALUES (1, ?, '<f8', '[25000000]')", [("a",), ("b",)])  # fmt: skip
+
+
+def _trigger(db):
+    """A write that never ends."""
+    db.execute(
+        "CREATE TRIGGER t AFTER INSERT ON entry BEGIN INSERT INTO meta WITH RECURSIVE n(i) AS "
+        "(SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, i FROM n; END"
+    )
+
+
+def _view(db):
+    db.execute("ALTER TABLE entry RENAME TO hidden")
+    db.execute("CREATE VIEW entry AS SELECT * FROM hidden")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        _generated,
+        _trigger,
+        _view,
+        lambda db: db.execute("CREATE TABLE more (x)"),
+        lambda db: db.execute("CREATE INDEX slow ON entry (length(scalars))"),
+        lambda db: db.execute("ALTER TABLE meta ADD COLUMN more TEXT"),
+    ],
+    ids=["generated column", "trigger", "view", "table", "index", "column"],
+)
+def test_a_schema_that_is_not_ours_is_refused_before_anything_is_read(tmp_path, change):
+    path = tmp_path / "x.vines"
+    save(fakes.pitchfork_graph(), path)
+    with sqlite3.connect(path) as db:
+        change(db)
+    db.close()
+    before = folder(tmp_path)
+    tracemalloc.start()
+    for attempt in (lambda: load(path), lambda: Store.open(path, write=True)):
+        with pytest.raises(StoreError, match=r"x\.vines: this file is damaged \(it"):
+            attempt()
+    assert tracemalloc.get_traced_memory()[1] < 20e6
+    tracemalloc.stop()
+    assert folder(tmp_path) == before
+
+
+# ------------------------------------------------------------------ several processes at once
+
+
+def test_an_entry_is_read_as_it_stood_at_one_moment(tmp_path):
+    """Another process replaces an entry between the reading of the first one and of the second one."""
+    path = tmp_path / "x.vines"
+    with Store.create(path, "f") as writer:
+        for key in "abc":
+            writer.record(key, {"x": np.full(4, 1.0), "more": np.arange(3)})
+        with Store.open(path) as reader:
+            entries = reader.entries("journal")
+            next(entries)
+            for key in "abc":
+                writer.record(key, {"x": np.full(5, 2.0)})
+            assert [(key, len(content["x"]), content["x"][0]) for key, content in entries] == [
+                ("b", 4, 1.0),
+                ("c", 4, 1.0),
+            ]
+            again = reader.recall("c")
+            assert again is not None and again["x"].tolist() == [2.0] * 5
+
+
+def test_a_graph_that_is_finished_is_not_replaced_by_one_that_is_not(tmp_path):
+    path = tmp_path / "x.vines"
+    whole = fakes.pitchfork_graph(True)
+    part = fakes.pitchfork_graph(False)
+    del part.branches["B3"]
+    with Store.create(path, "f") as fast, Store.open(path, write=True) as slow:
+        fast.checkpoint(whole)
+        slow.checkpoint(part)
+        assert slow.finished and same_graph(slow.graph(problems=False), whole)
+    assert same_graph(load(path, problems=False), whole)
+
+
+def test_nothing_is_made_until_something_is_kept(tmp_path):
+    path = tmp_path / "x.vines"
+    with Store.attach(path, "f", {"a": 1}) as one, Store.attach(path, "f") as other:
+        assert one.recall("k") is None and one.records == 0 and not one.finished and one.study == {"a": 1}
+        assert not list(one.entries()) and not path.exists()
+        one.record("k", {"x": 1})
+        other.record("l", {"x": 2})  # made by the other one meanwhile
+        assert one.recall("l") == {"x": 2} and other.recall("k") == {"x": 1}
+    with Store.attach(tmp_path / "y.vines", "f"):
+        pass
+    assert [p.name for p in tmp_path.iterdir()] == ["x.vines"]
+
+
+FOLDED = """
+import resource, signal, sys
+from contvines.store import Store
+store = Store.open(sys.argv[1], write=True)
+resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]),) * 2)  # the write that goes beyond ends the process
+store.tidy()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of sizes ends a process there")
+@pytest.mark.parametrize("size", [600, 5_000, 14_000])
+def test_killed_while_its_log_is_folded(tmp_path, size):
+    """The log of the folding itself, which SQLite leaves, is used by the next reader and removed by the next command."""
+    path = tmp_path / "x.vines"
+    graph = fakes.pitchfork_graph(True)
+    with Store.create(path, "f") as store:
+        for i in range(40):
+            store.record(str(i), {"x": np.full(300, float(i))})
+        store.checkpoint(graph)
+    done = subprocess.run([sys.executable, "-c", FOLDED, str(path), str(size)], check=False)
+    assert done.returncode == -signal.SIGXFSZ
+    assert len(list(tmp_path.iterdir())) > 1
+    assert same_graph(load(path, problems=False), graph)
+    with held(path, quiet=True):
+        pass
+    assert [p.name for p in tmp_path.iterdir()] == ["x.vines"]
+    assert same_graph(load(path, problems=False), graph)

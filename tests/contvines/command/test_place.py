@@ -1,0 +1,219 @@
+"""The places of results: failed starts leave nothing, --fresh sets aside the file that is there, runs on one file wait for one another."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from contvines.command.place import held
+from contvines.graph.persistence import same_graph
+from contvines.store import load
+from contvines.store.turns import set_aside
+
+STUDY = """
+[model]
+name = "absorber"
+restitution = 0.76
+friction = 0.5
+gravity = 0.211
+mass_ratio = 0.006
+[start]
+word = "LR"
+amplitude = 0.55
+[continue]
+parameter = "amplitude"
+within = [0.5, 0.62]
+depth = 0
+{more}
+[sweep]
+count = 3
+transient = 30
+[survey]
+vary = {{ friction = {{ values = [0.5, 0.55] }} }}
+gaps = 0
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text(STUDY.format(more=""))
+    return path
+
+
+def names(path: Path) -> list[str]:
+    return sorted(p.name for p in path.iterdir())
+
+
+@pytest.mark.parametrize("command", ["diagram", "trace"])
+def test_a_failed_start_leaves_nothing_and_the_mended_study_runs(run, tmp_path, study, command):
+    study.write_text(STUDY.format(more="bounds = { B = [10.0, 20.0] }"))  # the start lies outside
+    status, _, err = run(command, study, "-o", "x.vines", "-q")
+    assert status == 1 and "Traceback" not in err
+    assert names(tmp_path) == ["s.toml"]
+    study.write_text(STUDY.format(more=""))
+    assert run(command, study, "-o", "x.vines", "-q")[0] == 0
+    assert names(tmp_path) == ["s.toml", "x.vines"]
+
+
+def test_a_chart_that_is_refused_leaves_nothing(run, tmp_path, study):
+    assert run("diagram", study, "-q", "--no-look")[0] == 0
+    there = names(tmp_path)
+    for over, within in (("friction", ("0.6", "0.7")), ("colour", ("0", "1"))):
+        status, _, err = run("chart", "s.vines", "--over", over, "--within", *within, "-q")
+        assert status == 1 and "Traceback" not in err
+        assert names(tmp_path) == there
+
+
+def test_an_edited_study_is_refused_and_fresh_sets_the_old_file_aside(run, tmp_path, study):
+    assert run("diagram", study, "-q", "--no-look")[0] == 0
+    first = load("s.vines", problems=False)
+    study.write_text(STUDY.format(more="max_step = 0.02"))
+    status, _, err = run("diagram", study, "-q", "--no-look")
+    assert status == 1 and "s.vines: this file belongs to another study" in err and "--fresh" in err
+    status, _, err = run("diagram", study, "--no-look", "--fresh")
+    assert status == 0 and "s.vines is set aside as s.old.vines" in err
+    assert same_graph(load("s.old.vines", problems=False), first)
+    assert not same_graph(load("s.vines", problems=False), first)
+    assert run("diagram", study, "-q", "--no-look", "--fresh")[0] == 0  # nothing that was set aside is lost
+    assert names(tmp_path) == ["s.old.vines", "s.old2.vines", "s.toml", "s.vines"]
+    assert same_graph(load("s.old.vines", problems=False), first)
+
+
+def test_fresh_sets_aside_what_cannot_be_read(run, tmp_path, study):
+    (tmp_path / "s.vines").write_bytes(b"mine")
+    assert run("diagram", study, "-q", "--no-look")[0] == 1
+    assert run("diagram", study, "-q", "--no-look", "--fresh")[0] == 0
+    assert (tmp_path / "s.old.vines").read_bytes() == b"mine"
+
+
+def test_fresh_of_sweeps_and_surveys(run, tmp_path, study):
+    for command, kind, others in (("sweep", "csv", ()), ("survey", "nc", ("csv",))):
+        assert run(command, study, "-o", f"{command}.{kind}", "-q")[0] == 0
+        before = (tmp_path / f"{command}.{kind}").read_bytes()
+        assert run(command, study, "-o", f"{command}.{kind}", "-q", "--fresh")[0] == 0
+        assert (tmp_path / f"{command}.old.{kind}").read_bytes() == before
+        made = {f"{command}.{kind}", *(f"{command}.{other}" for other in others)}
+        assert {name for name in names(tmp_path) if name.startswith(command)} == made | {
+            name.replace(".", ".old.") for name in made
+        }
+
+
+def test_rows_of_another_study_are_not_lost(run, tmp_path, study, monkeypatch):
+    """An edited study neither replaces a finished survey nor throws the rows of an unfinished one away."""
+    assert run("survey", study, "-o", "s.nc", "-q", "--workers", "1")[0] == 0
+    before = (tmp_path / "s.nc").read_bytes()
+    study.write_text(STUDY.format(more="max_step = 0.02"))
+    status, _, err = run("survey", study, "-o", "s.nc", "-q", "--workers", "1")
+    assert status == 1 and "--fresh" in err and (tmp_path / "s.nc").read_bytes() == before
+
+    for command, target in (("sweep", "t.csv"), ("survey", "t.nc")):
+        journal = tmp_path / f"{target}.unfinished"
+        journal.write_text(f'{{"contvines": "unfinished {command}", "of": "another"}}\n{{"row": 1}}\n')
+        status, _, err = run(command, study, "-o", target, "-q")
+        assert status == 1 and "--fresh" in err and '"row": 1' in journal.read_text()
+        assert run(command, study, "-o", target, "-q", "--fresh")[0] == 0
+        assert '"row": 1' in (tmp_path / f"t.old.{target[2:]}.unfinished").read_text()
+
+
+def test_a_survey_that_was_ended_before_its_last_file(run, tmp_path, study):
+    """Its NetCDF file is there, the CSV is not, and its rows are still beside it."""
+    assert run("survey", study, "-o", "s.nc", "-q", "--workers", "1")[0] == 0
+    whole = {name: (tmp_path / name).read_bytes() for name in ("s.nc", "s.csv")}
+    (tmp_path / "s.csv").unlink()
+    (tmp_path / "s.nc.unfinished").write_text("")
+    assert run("survey", study, "-o", "s.nc", "-q", "--workers", "1")[0] == 0
+    assert {name: (tmp_path / name).read_bytes() for name in names(tmp_path) if name != "s.toml"} == whole
+
+
+def test_names_that_are_set_aside(tmp_path):
+    for name in ("a.b.vines", "a.b.vines-wal", "a.b.old.vines-wal"):
+        (tmp_path / name).write_text(name)
+    assert set_aside(tmp_path / "a.b.vines", tmp_path / "a.b.vines-wal") == tmp_path / "a.b.old2.vines"
+    assert (tmp_path / "a.b.old.vines-wal").read_text() == "a.b.old.vines-wal"
+    assert (tmp_path / "a.b.old2.vines-wal").read_text() == "a.b.vines-wal"
+    assert set_aside(tmp_path / "a.b.vines") is None
+
+
+HOLDING = """
+import sys
+from pathlib import Path
+from contvines.command.place import held
+with held(Path(sys.argv[1]), quiet=False):
+    print("held", flush=True)
+    sys.stdin.read(1)
+"""
+
+
+@pytest.mark.parametrize("end", ["by itself", "killed"])
+def test_a_second_run_waits_until_the_first_has_ended(tmp_path, end):
+    target = tmp_path / "x.vines"
+    first, second = (
+        subprocess.Popen(
+            [sys.executable, "-c", HOLDING, str(target)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(2)
+    )
+    try:
+        # whichever was first: only one of them holds it, the other one says that it waits
+        holds, waits = (first, second) if _says(first, second) is first else (second, first)
+        assert waits.stderr is not None and waits.stdout is not None
+        assert "another run is at work on" in waits.stderr.readline()
+        assert names(tmp_path) == [".x.vines.lock"]
+        if end == "killed":
+            holds.kill()
+        else:
+            holds.communicate("\n")
+        holds.wait()
+        assert waits.stdout.readline() == "held\n"
+        waits.communicate("\n")
+        assert waits.returncode == 0
+        assert names(tmp_path) == []
+    finally:
+        for process in (first, second):
+            process.kill()
+            process.wait()
+
+
+def _says(*processes):
+    """The process that is the first to say something on its standard output."""
+    import selectors
+
+    with selectors.DefaultSelector() as ready:
+        for process in processes:
+            ready.register(process.stdout, selectors.EVENT_READ, process)
+        key, _ = ready.select()[0]
+    assert key.data.stdout.readline() == "held\n"
+    return key.data
+
+
+def test_drafts_of_killed_runs_are_removed_and_those_of_others_are_not(tmp_path):
+    done = subprocess.Popen([sys.executable, "-c", "pass"])
+    done.wait()
+    dead, alive = f".x.vines.{done.pid}-3.draft", ".x.vines.1-0.draft"
+    for name in (dead, f"{dead}-wal", f".{dead}.{done.pid}-4.draft", alive, ".y.vines.lock"):
+        (tmp_path / name).write_text("")
+    with held(tmp_path / "x.vines", quiet=True):
+        pass
+    assert names(tmp_path) == sorted([alive, ".y.vines.lock"])
+
+
+def test_a_folder_in_which_nothing_can_be_written(run, tmp_path, study):
+    """A finished result can be asked for again there."""
+    assert run("diagram", study, "-q", "--no-look", "-o", "d.vines")[0] == 0
+    folder = tmp_path / "locked"
+    folder.mkdir()
+    shutil.copy(tmp_path / "d.vines", folder)
+    folder.chmod(0o500)
+    try:
+        status, out, _ = run("diagram", study, "--no-look", "-o", folder / "d.vines")
+        assert status == 0 and "B1" in out
+        assert names(folder) == ["d.vines"]
+    finally:
+        folder.chmod(0o700)
