@@ -20,6 +20,7 @@ _HOME = {
     "AlgebraicProblem": ".problems.algebraic",
     "Branch": ".branches.branch",
     "Embedding": ".problems.protocol",
+    "FlowProblem": ".flows",
     "Graph": ".graph.graph",
     "Kernels": ".problems.kernels",
     "MapProblem": ".problems.maps",
@@ -92,6 +93,7 @@ __all__ = [
     "Branch",
     "Chart",
     "Embedding",
+    "FlowProblem",
     "Graph",
     "Kernels",
     "Locus",
@@ -143,6 +145,7 @@ if TYPE_CHECKING:
     from .continuation.settings import Settings
     from .continuation.step_rule import StepRule
     from .continuation.trace import trace
+    from .flows import FlowProblem
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
     from .journal import MemoryJournal, NullJournal

@@ -22,6 +22,7 @@ class Reason(StrEnum):
     CLOSED = "closed"
     ESCAPED = "escaped"
     CREEPING = "creeping"
+    COARSE = "coarse"
     LEAVES = "leaves"
     GOES_ON = "goes-on"
     REACHES = "reaches"

@@ -13,10 +13,13 @@ from ..events.landing import OTHER
 from ..events.located import Role
 from ..events.watch import Watch
 from ..journal import NullJournal
+from ..problems.abilities import Adaptive
 from .half_branch import HalfBranch, Piece, piece_of, single
 from .opening import SHORTER, opening, without_rounding
 from .records import pack, unpack
 
+# a branch that has come to an end like this is followed again where its mesh is too coarse
+UNFINISHED = (Status.RUNNING, Status.STEP_TOO_SMALL, Status.BORDER, Status.LEFT_INTERVAL, Status.CREEPING)
 AGAIN = {Role.LEAP: SHORTER, Role.LANDING: OTHER}  # parts of the steps that are traced again
 
 
@@ -62,6 +65,7 @@ def trace_half(
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
     retrace = None
+    adaptive: Any = engine.problem if isinstance(engine.problem, Adaptive) else None
     for number in count_from(0):
         chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"
@@ -105,6 +109,8 @@ def trace_half(
                 half.events.append((total, event))
             here, total = where, total + 1
         half.pieces += [whole.part(here, count)] if count > here else []
+        if adaptive is not None and status in UNFINISHED and adaptive.too_coarse(chunk.points[count - 1]):
+            status = Status.COARSE
         half.status = status
         if notice is not None:
             notice(len(half), half.end)

@@ -19,6 +19,7 @@ class Status(IntEnum):
     CLOSED = 6
     ESCAPED = 7
     CREEPING = 8
+    COARSE = 9
 
     def sentence(self, parameter: str = "p", value: float = float("nan"), unit: float = 1.0) -> str:
         """The status as a sentence about a branch at this parameter value; beside ``unit`` rounding is zero."""
@@ -32,5 +33,6 @@ class Status(IntEnum):
             Status.MAX_POINTS: f"the largest number of points is reached at {parameter} = {short}",
             Status.ESCAPED: f"the unknowns run away near {parameter} = {short}",
             Status.CREEPING: f"creeps near {parameter} = {long}: very many points with next to no progress",
+            Status.COARSE: f"the mesh is too coarse beyond {parameter} = {long}",
             Status.CLOSED: "closed: the branch returns to its start",
         }[self]

@@ -11,6 +11,7 @@ import numpy as np
 from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
+from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from . import loop as source
 from .chunk import Chunk
@@ -64,6 +65,7 @@ def chunks(
     settings = engine.settings
     n, capacity = engine.n, settings.first_chunk
     retrace: Retrace | None = None
+    adaptive = isinstance(engine.problem, Adaptive)
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
@@ -95,6 +97,8 @@ def chunks(
             if not engine.compiled:
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
+            if adaptive:
+                room = min(room, engine.problem.chunk)
             room = min(room, max(settings.max_points - total, 1))
             apart = _apart(engine, max(h, longest))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
@@ -123,7 +127,27 @@ def chunks(
         total += len(chunk) - 1
         number += 1
         history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
+        if adaptive:
+            history = _on_a_better_mesh(engine, history)
         capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
+
+
+def _on_a_better_mesh(engine: Engine, history: list[Solved]) -> list[Solved]:
+    """The last points on a mesh that suits the last one; as they are where their mesh is good."""
+    problem: Any = engine.problem
+    image = problem.adapted(history[-1].u)
+    if image is None:
+        return history
+    found = []
+    for point in history:
+        u = image(point.u)
+        tangent = engine.unit(engine.join(image(point.tangent[:-1], True), float(point.tangent[-1])))
+        border = engine.weights * tangent
+        new = engine.solve(u, point.p, border, float(border @ engine.join(u, point.p)), tangent)
+        if new is None:
+            return history
+        found.append(new)
+    return found
 
 
 def _march(

@@ -51,6 +51,7 @@ _ALONG = (
     Kind("switch-graze", "SG", "switch graze", "d", True, True),
     Kind("corner", "CO", "two events at once", "P", True, True),
     Kind("switch", "SW", "switch", "d", False, True),
+    Kind("homoclinic", "HC", "homoclinic orbit", "H", True, True),
     Kind("user", "US", "user function", "*", True),
     Kind("end", "EP", "end of the interval", "|"),
 )

@@ -184,6 +184,13 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.serial += 1
     label = run.new_label("B")
     half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)
+    while any(ending.reason is Reason.COARSE for ending in endings):
+        finer = refined(run, engine, pending, first)
+        if finer is None:
+            break
+        run.serial += 1
+        engine, watch, first = finer
+        half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)
     if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
         name = pending.problem.parameter
         raise ValueError(
@@ -216,6 +223,36 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.points += len(branch)
     run.checkpoint()
     run.tell(f"{label} finished", float(branch.values[-1]))
+
+
+def refined(
+    run: Run, engine: Engine, pending: Pending, first: Solved
+) -> tuple[Engine, Watch, Solved] | None:
+    """The same pending branch with more unknowns; None where it cannot be started there."""
+    coarse: Any = pending.problem
+    problem = coarse.refined()
+    finer, watch = run.engine(problem)
+
+    def image(point: Solved | None, solve: bool = True) -> Solved | None:
+        if point is None:
+            return None
+        u = coarse.halved(point.u)
+        tangent = finer.unit(
+            finer.join(coarse.halved(point.tangent[:-1], True), float(point.tangent[-1]))
+        )
+        if not solve:
+            return point._replace(u=u, tangent=tangent)
+        border = finer.weights * tangent
+        return finer.solve(u, point.p, border, float(border @ finer.join(u, point.p)), tangent)
+
+    begin = image(first)
+    if begin is None:
+        return None
+    pending.problem, pending.u = problem, begin.u
+    pending.tangent = begin.tangent if pending.tangent is not None else None
+    pending.origin = image(pending.origin, solve=False)
+    pending.ahead, pending.back = image(pending.ahead), image(pending.back)
+    return finer, watch, begin
 
 
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:

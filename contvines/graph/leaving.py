@@ -47,6 +47,8 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         run.attempt(point.label, SWITCHING, partial(_root, run, point, branch, depth), None)
     elif point.kind in NAMES:
         run.attempt(point.label, SWITCHING, partial(_switch, run, point, branch, depth), None)
+    elif point.kind == "hopf":
+        run.attempt(point.label, SWITCHING, partial(_cycles, run, point, branch, depth), None)
 
 
 def _from_side(run: Run, point: SpecialPoint) -> bool:
@@ -126,6 +128,44 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     origin=departure.origin,
                     ahead=departure.ahead,
                     back=departure.back,
+                    first_step=min(run.settings.first_step, departure.amplitude),
+                )
+            )
+
+
+def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """The cycles that are born at a Hopf point, of problems that have cycles."""
+    if depth + 1 > run.depth:
+        return
+    problem = point.problem
+    for child in problem.offspring("hopf", point.u, point.value, point.tangent, 1j):
+        target, _ = run.engine(child.problem)
+        direction = target.unit(np.asarray(child.tangent, dtype=float))
+        found = departures(
+            target,
+            np.asarray(child.u, dtype=float),
+            point.value,
+            np.zeros(target.n + 1),
+            run.settings.amplitude,
+            one_sided=True,
+            directions=[direction],
+        )
+        if not found:
+            run.remark(point.label, "no cycle that leaves here was found")
+        for departure in found:
+            if departure.upright(run.unit(point.value)):
+                run.remark(point.label, VERTICAL)
+            run.queue.append(
+                Pending(
+                    departure.problem,
+                    departure.origin.u,
+                    departure.origin.p,
+                    kind=Origin.SWITCH,
+                    depth=depth + 1,
+                    source=branch.label,
+                    point=point.label,
+                    origin=departure.origin,
+                    ahead=departure.ahead,
                     first_step=min(run.settings.first_step, departure.amplitude),
                 )
             )

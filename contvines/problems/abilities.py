@@ -176,3 +176,19 @@ class Doubling(Protocol):
     """In other pieces it has cycles of twice the length."""
 
     def doubled_with(self, pieces: Any) -> Any: ...
+
+
+@runtime_checkable
+class Adaptive(Protocol):
+    """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
+
+    ``adapted(u)`` returns how unknowns, and directions of unknowns (``image(v, direction=True)``), read on a better mesh, or None;
+    ``too_coarse(u)`` tells whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these.
+    """
+
+    chunk: int
+
+    def adapted(self, u: np.ndarray) -> Any: ...
+    def too_coarse(self, u: np.ndarray) -> bool: ...
+    def refined(self) -> Any: ...
+    def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray: ...

@@ -1,0 +1,138 @@
+"""What a motion settles on: simulated until it recurs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .simulation import rates
+
+RECURS = 1e-5  # distance of two returns, relative to the size of the motion, that count as one
+STILL = 1e-9  # size of a motion, relative to the state, that is rest
+SAMPLES = 400  # states of a period that are handed over
+FIRST = 50.0  # time scales of the first transient
+DOUBLINGS = 12  # of the transient
+
+
+def recurrence(
+    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Times and states of one period of the cycle on which a motion settles, and after how many periods of the forcing it recurs.
+
+    Raises
+    ------
+    ValueError
+        If the motion escapes, comes to rest, or does not recur.
+    """
+    if field.forced:
+        return _forced(field, p, x, transient, longest)
+    return _free(field, p, x, transient, longest)
+
+
+def _run(
+    field: Any, p: float, x: np.ndarray, start: float, stop: float, events: Any = None, dense: bool = False
+) -> Any:
+    from scipy.integrate import solve_ivp
+
+    size: Any = 1e-12 * (field.lengths + np.abs(x))
+    found = solve_ivp(
+        rates(field, p),
+        (start, stop),
+        x,
+        method="LSODA",
+        rtol=1e-10,
+        atol=size,
+        events=events,
+        dense_output=dense,
+    )
+    if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > 1e12:
+        raise ValueError(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
+    return found
+
+
+def _forced(
+    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int
+) -> tuple[np.ndarray, np.ndarray, int]:
+    period = float(field.length_of_period(p))
+    count = 100 if transient is None else max(1, int(np.ceil(transient / period)))
+    for _ in range(DOUBLINGS if transient is None else 1):
+        x = _run(field, p, x, 0.0, count * period).y[:, -1]
+        points = [x]
+        low = high = x
+        for k in range(1, longest + 1):
+            run = _run(field, p, points[-1], 0.0, period)
+            points.append(run.y[:, -1])
+            low, high = np.minimum(low, run.y.min(axis=1)), np.maximum(high, run.y.max(axis=1))
+            size = np.maximum(high - low, 1e-3 * (high - low).max() + 1e-12)
+            if (np.abs(points[-1] - points[0]) <= RECURS * size).all():
+                whole = _run(field, p, points[0], 0.0, k * period, dense=True)
+                times = np.linspace(0.0, k * period, SAMPLES * k + 1)
+                return times, whole.sol(times).T, k
+        x, count = points[-1], 2 * count
+        if count > 20000:
+            break
+    raise ValueError(
+        f"the motion has not become periodic after {count} periods of the forcing; it may be chaotic: try another x0 or other parameters"
+    )
+
+
+def _free(
+    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int
+) -> tuple[np.ndarray, np.ndarray, int]:
+    rate = rates(field, p)
+    matrix = field.jacobian(x[None, :], p)[0]
+    fastest = float(np.abs(np.linalg.eigvals(matrix)).max())
+    span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
+    if not rate(0.0, x).any():
+        x = x + 1e-3 * field.lengths * (-1.0) ** np.arange(len(x))
+    for _ in range(DOUBLINGS):
+        x = _run(field, p, x, 0.0, span).y[:, -1]
+        run = _run(field, p, x, 0.0, span)
+        ranges = np.ptp(run.y, axis=1)
+        if (ranges <= STILL * (field.lengths + np.abs(x))).all():
+            raise ValueError(
+                f"the motion comes to rest at {np.array2string(x, precision=6)}; contvines.diagram of the flow follows equilibria"
+            )
+        # a plane across the motion where it is fastest, in units of its size
+        unit = np.where(ranges > 0.0, ranges, 1.0)
+        speeds = np.linalg.norm([rate(0.0, y) / unit for y in run.y.T], axis=1)
+        best = int(np.argmax(speeds))
+        place = run.y[:, best]
+        normal = rate(0.0, place) / unit**2
+        found = _returns(field, p, place, normal, place, unit, span, longest)
+        if found is not None:
+            period, start = found
+            whole = _run(field, p, start, 0.0, period, dense=True)
+            times = np.linspace(0.0, period, SAMPLES + 1)
+            return times, whole.sol(times).T, 1
+        x, span = run.y[:, -1], 2.0 * span
+    raise ValueError(
+        "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
+    )
+
+
+def _returns(
+    field: Any,
+    p: float,
+    place: np.ndarray,
+    normal: np.ndarray,
+    x: np.ndarray,
+    unit: np.ndarray,
+    span: float,
+    longest: int,
+) -> tuple[float, np.ndarray] | None:
+    def crossing(t: float, y: np.ndarray) -> float:
+        return float(normal @ (y - place))
+
+    crossing.direction = 1.0  # type: ignore[attr-defined]
+    run = _run(field, p, x, 0.0, span, events=crossing)
+    times, states = run.t_events[0], run.y_events[0]
+    if len(times) < 2:
+        return None
+    # the last returns are nearest to the cycle
+    last = states[-1]
+    for k in range(2, min(longest + 1, len(times)) + 1):
+        if (np.abs(states[-k] - last) <= RECURS * unit).all():
+            return float(times[-1] - times[-k]), states[-k]
+    return None

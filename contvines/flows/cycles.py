@@ -1,0 +1,462 @@
+"""CycleProblem: cycles of a flow by orthogonal collocation, as F(u, p) = 0."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from typing import Any
+
+import numpy as np
+
+from ..problems.functions import NotEvaluable
+from ..problems.images import in_order, linear_part
+from ..problems.protocol import Embedding, ProblemDefaults, Seed, Symmetry
+from ..problems.scales import Scales
+from . import mesh
+from .collocation import Rule, rule
+from .field import Field
+from .kernels import KERNELS, CycleWork
+from .measures import CycleMeasures
+
+SAME = 1e-7  # points closer than this, in units of the scale, are one
+AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
+ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
+CLOSE = 1e-5  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
+FINE = 1e-7  # estimated error between mesh points, in units of the size of the cycle, above which intervals are halved
+MOST = 1280  # intervals
+
+
+class CycleProblem(CycleMeasures, ProblemDefaults):
+    """Cycles of x' = f(x, p), or of x' = f(x, p, t) with a given period in t.
+
+    Unknowns are the values at the nodes of each interval of the mesh, shape (N, m, d), the period (autonomous flows), and the widths
+    of the intervals in units of the period, which stay as they are while equations are solved. Equations are those at the Gauss
+    points, the phase condition (corrections are orthogonal to the direction of motion, in the mean over the cycle), and one for each width.
+
+    Parameters
+    ----------
+    flow : FlowProblem
+    field : Field
+    u : ndarray
+        Unknowns to begin with.
+    intervals : int
+    rounds : int
+        Of forced flows: periods of the forcing after which the motion repeats.
+    copies : int
+        The mesh consists of so many equal parts.
+    scale : ndarray, shape (d,)
+        What counts as large in each coordinate.
+    clock : float
+        What counts as large in the period.
+    unit : float
+        What counts as large in the parameter.
+    """
+
+    spectrum = "map"
+    flip_kind = "period-doubling"
+    kernels = KERNELS
+    trouble = ""
+    scales_learned = True
+    chunk = 8  # points after which the mesh is adapted
+
+    def __init__(
+        self,
+        flow: Any,
+        field: Field,
+        u: np.ndarray,
+        intervals: int,
+        rounds: int = 1,
+        copies: int = 1,
+        scale: np.ndarray | None = None,
+        clock: float = 1.0,
+        unit: float = 1.0,
+    ) -> None:
+        self.flow, self.field, self.values = flow, field, field.values
+        self.rule: Rule = rule(flow.degree)
+        self.node, self.intervals, self.rounds, self.copies = field.node, int(intervals), rounds, copies
+        self.free_period = 0 if field.forced else 1
+        self.states = self.intervals * self.rule.degree * self.node
+        self.dimension = self.states + self.free_period + self.intervals
+        self.n_multipliers = self.node - self.free_period
+        self.n_margins = self.free_period
+        self.u0 = np.array(u, dtype=float)
+        if len(self.u0) != self.dimension:
+            raise ValueError(f"{len(self.u0)} unknowns; {self.dimension} are needed")
+        self.node_scale = np.ones(self.node) if scale is None else np.array(scale, dtype=float)
+        self.clock, self.parameter_scale = float(clock), float(unit)
+        self.missed = 0.0  # by which the trivial multiplier, as computed last, misses 1
+        self._size()
+
+    def _size(self) -> None:
+        tiled = np.tile(self.node_scale, self.intervals * self.rule.degree)
+        period = np.full(self.free_period, self.clock)
+        ones = np.ones(self.intervals)
+        self.column_scale = np.concatenate([tiled, period, ones])
+        self.row_scale = np.concatenate([tiled, np.ones(self.free_period), ones])
+        self.scales = Scales(self.column_scale, self.parameter_scale, self.row_scale)
+        self.symmetries = tuple(self._symmetries())
+
+    # ------------------------------------------------------------------ parameters
+    @property
+    def data(self) -> CycleProblem:
+        """The problem itself."""
+        return self
+
+    def workspace(self) -> CycleWork:
+        """Arrays for the kernels."""
+        return CycleWork(self.dimension)
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter that varies."""
+        return self.values.varying
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name."""
+        return dict(self.values.values)
+
+    @property
+    def p0(self) -> float:
+        """Value of the varying parameter at the start."""
+        return self.values.start
+
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> CycleProblem:
+        """The same cycles with another parameter varying, and with other values of some parameters."""
+        other = copy(self)
+        other.values = self.values.against(parameter, values)
+        other.field = self.field.against(other.values)
+        if parameter != self.parameter:
+            other.parameter_scale = 1.0
+        other._size()
+        return other
+
+    def with_unknowns(
+        self, u: np.ndarray, p: float, intervals: int, copies: int, rounds: int | None = None
+    ) -> CycleProblem:
+        """Cycles with another number of intervals."""
+        values = self.values.against(self.parameter, {self.parameter: p})
+        rounds = self.rounds if rounds is None else rounds
+        clock = self.clock * intervals / self.intervals if copies != self.copies else self.clock
+        return CycleProblem(
+            self.flow,
+            self.field.against(values),
+            u,
+            intervals,
+            rounds,
+            copies,
+            self.node_scale,
+            clock,
+            self.parameter_scale,
+        )
+
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        """Typical sizes of unknowns and parameter."""
+        return self.scales.vector
+
+    def amplitude(self, direction: np.ndarray) -> float:
+        """Root mean square of a direction over the nodes."""
+        x = direction[: self.states].reshape(-1, self.node)
+        return float(np.sqrt((x**2).sum(axis=1).mean()))
+
+    # ------------------------------------------------------------------ unknowns
+    def parts(self, u: np.ndarray, p: float) -> tuple[np.ndarray, float, np.ndarray]:
+        """Values at the nodes (N, m, d), period, widths (N,)."""
+        x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)
+        period = float(u[self.states]) if self.free_period else self.rounds * self.field.length_of_period(p)
+        return x, period, u[self.states + self.free_period :]
+
+    def joined(self, x: np.ndarray, period: float, widths: np.ndarray) -> np.ndarray:
+        """Unknowns from their parts."""
+        own = [period] if self.free_period else []
+        return np.concatenate([np.reshape(x, -1), own, widths])
+
+    # ------------------------------------------------------------------ equations
+    def evaluate(self, u: np.ndarray, p: float, work: CycleWork) -> None:
+        """Residual and derivatives into a workspace.
+
+        Raises
+        ------
+        NotEvaluable
+            If the right-hand side fails, or the period is not positive.
+        """
+        r, count, d, m = self.rule, self.intervals, self.node, self.rule.degree
+        x, period, widths = self.parts(u, p)
+        if not period > 0.0:
+            raise NotEvaluable(f"the period would be {period:.3g}")
+        ends = mesh.closed(x)
+        points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
+        slopes = np.einsum("cj,ijk->ick", r.slopes, ends)
+        steps = period * widths
+        begins = np.append(0.0, np.cumsum(widths)[:-1])
+        places = (begins[:, None] + widths[:, None] * r.points).reshape(-1) if self.field.forced else None
+        times = None if places is None else period * places
+        f = self.field(points, p, times).reshape(count, m, d)
+        residual = slopes - steps[:, None, None] * f
+        jacobian = self.field.jacobian(points, p, times).reshape(count, m, d, d)
+        scaled = jacobian * (self.node_scale / self.node_scale[:, None])
+        blocks = np.einsum("cj,icab->icajb", r.values, -steps[:, None, None, None] * scaled)
+        diagonal = np.arange(d)
+        blocks[:, :, diagonal, :, diagonal] += r.slopes
+        work.blocks = blocks.reshape(count, m * d, (m + 1) * d)
+        work.residual[:], work.derivative[:] = 0.0, 0.0
+        work.residual[: self.states] = residual.reshape(-1)
+        if places is not None:
+            by = self.field.along(lambda q: self._moved(points, q, places, widths), p)
+            work.derivative[: self.states] = -by.reshape(-1)
+            return
+        by = self.field.slope(points, p).reshape(count, m, d)
+        work.derivative[: self.states] = -(steps[:, None, None] * by).reshape(-1)
+        direction = f / self.node_scale
+        work.by_period = -(widths[:, None, None] * direction * self.clock).reshape(count, m * d)
+        row = np.einsum("cj,ica->ija", r.values, (widths[:, None] * r.weights)[:, :, None] * direction)
+        phase = row[:, :-1].copy()
+        phase[:, 0] += np.roll(row[:, -1], 1, axis=0)
+        size = np.sqrt((phase**2).sum())
+        work.phase = (phase / size if size > 0.0 else self._first_phase(phase)).reshape(count, m * d)
+        work.speeds = self.field(x[:, 0], p) / self.node_scale
+        push = np.einsum("icab,ica->icb", scaled, direction)
+        with np.errstate(all="ignore"):
+            near = (direction**2).sum(axis=2) / np.sqrt((push**2).sum(axis=2))
+        work.closeness = float(np.nanmin(near)) if np.isfinite(near).any() else np.inf
+
+    def _first_phase(self, phase: np.ndarray) -> np.ndarray:
+        """A row where the cycle is an equilibrium, which moves in no direction."""
+        row = np.zeros_like(phase)
+        row[0, 0, 0] = 1.0
+        return row
+
+    def _moved(self, points: np.ndarray, p: Any, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
+        """Period times width times f, of forced flows, as a function of the parameter alone."""
+        period = self.rounds * self.field.length_of_period(p)
+        f = self.field(points, p, period * places).reshape(self.intervals, self.rule.degree, self.node)
+        return period * widths[:, None, None] * f
+
+    # ------------------------------------------------------------------ margins
+    def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
+        """How far the cycle stays away from equilibria, relative to its size: log10 of the distance over the one at which a branch ends."""
+        x = u[: self.states].reshape(-1, self.node) / self.node_scale
+        size = float(np.ptp(x, axis=0).max())
+        if not size > 0.0 or not np.isfinite(work.closeness):
+            return np.array([np.inf])
+        return np.array([np.log10(max(work.closeness / size, 1e-300) / CLOSE)])
+
+    def margin_kind(self, j: int) -> str:
+        """A cycle that comes near to an equilibrium ends as a homoclinic orbit."""
+        return "homoclinic"
+
+    def beyond(self, point: Any) -> list[Seed]:
+        """Nothing goes on from a homoclinic orbit."""
+        return []
+
+    def dead_end(self, point: Any) -> str:
+        """The equilibrium to which an orbit is homoclinic, and its eigenvalues."""
+        x, period, _ = self.parts(point.u, point.value)
+        return self.flow.told_homoclinic(x.reshape(-1, self.node), period, point.value, self.values)
+
+    # ------------------------------------------------------------------ mesh
+    def estimated_error(self, u: np.ndarray) -> float:
+        """Estimated largest error of the curve between the mesh points, in units of the size of the cycle."""
+        x, widths = self._curve(u)
+        return mesh.error(self.rule, widths, x, self._sizes(x))
+
+    def _curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)
+        return x, u[self.states + self.free_period :]
+
+    def _sizes(self, x: np.ndarray) -> np.ndarray:
+        ranges = np.ptp(x.reshape(-1, self.node), axis=0)
+        return np.maximum(
+            ranges, 1e-6 * self.node_scale * (ranges / self.node_scale).max() + 1e-12 * self.node_scale
+        )
+
+    def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
+        """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
+        x, widths = self._curve(u)
+        if np.ptp(x.reshape(-1, self.node) / self.node_scale, axis=0).max() < AT_REST:
+            return None
+        new = mesh.equidistributed(self.rule, widths, x, self._sizes(x), self.copies)
+        if new is None:
+            return None
+
+        def image(v: np.ndarray, direction: bool = False) -> np.ndarray:
+            y = v[: self.states].reshape(x.shape)
+            moved = mesh.onto(self.rule, widths, y, new)
+            rest = v[self.states : self.states + self.free_period]
+            return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
+
+        return image
+
+    def too_coarse(self, u: np.ndarray) -> bool:
+        """Whether a cycle asks for more intervals."""
+        return self.intervals < MOST and self.estimated_error(u) > FINE
+
+    def refined(self) -> CycleProblem:
+        """The same cycles with twice as many intervals."""
+        u = self.halved(self.u0)
+        return self.with_unknowns(u, self.p0, 2 * self.intervals, self.copies)
+
+    def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
+        """Unknowns, or a direction of unknowns, with every interval halved."""
+        x, widths = self._curve(u)
+        r = self.rule
+        ends = mesh.closed(x)
+        both = [
+            np.einsum("cj,ijk->ick", r.interpolation(s + 0.5 * r.nodes[:-1]), ends)[:, None]
+            for s in (0.0, 0.5)
+        ]
+        finer = np.concatenate(both, axis=1).reshape(-1)
+        rest = u[self.states : self.states + self.free_period]
+        return np.concatenate([finer, rest, np.repeat(0.0 * widths if direction else 0.5 * widths, 2)])
+
+    # ------------------------------------------------------------------ relatives
+    def _symmetries(self) -> list[Symmetry]:
+        found = []
+        even = self.intervals % 2 == 0
+        if even and self.copies % 2 == 0 and (self.free_period or self.rounds % 2 == 0):
+            found.append(Symmetry("period-doubling", self._half_later, self._root))
+        elif even and self.free_period:
+            found.append(Symmetry("hopf", self._half_later, self._root))
+        mirror = self.flow.mirror
+        if mirror is not None:
+            if even and (self.free_period or self.flow.mirror_shifted != (self.rounds % 2 == 0)):
+                found.append(Symmetry("symmetry-breaking", lambda u: self._mirrored(self._half_later(u))))
+            if self.free_period or not self.flow.mirror_shifted:
+                found.append(Symmetry("symmetry-breaking", self._mirrored))
+        return found
+
+    def _half_later(self, u: np.ndarray) -> np.ndarray:
+        v = np.array(u, dtype=float)
+        x = v[: self.states].reshape(self.intervals, -1)
+        v[: self.states] = np.roll(x, self.intervals // 2, axis=0).reshape(-1)
+        return v
+
+    def _mirrored(self, u: np.ndarray) -> np.ndarray:
+        v = np.array(u, dtype=float)
+        x = v[: self.states].reshape(-1, self.node)
+        v[: self.states] = np.array([self.flow.mirror(y) for y in x]).reshape(-1)
+        return v
+
+    def _mirrored_direction(self, x: np.ndarray) -> np.ndarray:
+        image = linear_part(self.flow.mirror, self.node)
+        return np.array([image(y) for y in x])
+
+    def _root(self, u: np.ndarray) -> tuple[Any, np.ndarray]:
+        return self.root(u, self.p0, loose=1e-3) or (self, u)
+
+    def root(self, u: np.ndarray, p: float, loose: float = SAME) -> tuple[Any, np.ndarray] | None:
+        """The equilibrium, or the cycle of half the period, that a solution only repeats; else None."""
+        x, widths = self._curve(u)
+        y = x.reshape(-1, self.node)
+        if (np.ptp(y, axis=0) <= AT_REST * self.node_scale).all() and self.free_period:
+            return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p}), y.mean(
+                axis=0
+            )
+        half = self.intervals // 2
+        if self.copies % 2 or (self.free_period == 0 and self.rounds % 2):
+            return None
+        apart = np.abs(x[:half] - x[half:]).max(axis=(0, 1)) / self.node_scale
+        if not (apart <= loose * (1.0 + np.abs(y).max(axis=0) / self.node_scale)).all():
+            return None
+        period = u[self.states] / 2.0 if self.free_period else 0.0
+        shorter = np.concatenate(
+            [
+                0.5 * (x[:half] + x[half:]).reshape(-1),
+                [period] if self.free_period else [],
+                2.0 * widths[:half],
+            ]
+        )
+        rounds = self.rounds if self.free_period else self.rounds // 2
+        return self.with_unknowns(shorter, p, half, self.copies // 2, rounds), shorter
+
+    def offspring(
+        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
+    ) -> list[Embedding]:
+        """At a period doubling: the cycle of twice the period."""
+        if kind != "period-doubling":
+            return []
+        x, widths = self._curve(u)
+        y = tangent[: self.states].reshape(x.shape)
+        both = np.concatenate([x, x]).reshape(-1)
+        own = [2.0 * u[self.states]] if self.free_period else []
+        doubled = np.concatenate([both, own, np.tile(0.5 * widths, 2)])
+        direction = np.concatenate(
+            [
+                np.concatenate([y, y]).reshape(-1),
+                [2.0 * tangent[self.states]] if self.free_period else [],
+                np.zeros(2 * self.intervals),
+                [tangent[-1]],
+            ]
+        )
+        rounds = self.rounds if self.free_period else 2 * self.rounds
+        problem = self.with_unknowns(doubled, p, 2 * self.intervals, 2 * self.copies, rounds)
+        return [Embedding(problem, doubled, direction, kind)]
+
+    # ------------------------------------------------------------------ identity
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
+        """Means over the shortest period of powers and products of the coordinates, the same for all meshes and phases; of mirror images the smaller."""
+        shorter = self.root(u, p)
+        if shorter is not None:
+            return shorter[0].canonical(shorter[1], p)
+        x, period, widths = self.parts(u, p)
+        forms = [x]
+        if self.flow.mirror is not None:
+            forms.append(self._mirrored(u)[: self.states].reshape(x.shape))
+        found = [self._means(form, widths, period) for form in forms]
+        best = min(found, key=in_order(np.full(len(found[0]), SAME)))
+        scale = np.resize(self.column_scale, len(best))
+        return ("cycle", self.rounds if not self.free_period else 0, self.node), best * scale
+
+    def _means(self, x: np.ndarray, widths: np.ndarray, period: float) -> np.ndarray:
+        r, d = self.rule, self.node
+        ends = mesh.closed(x / self.node_scale)
+        points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
+        slopes = np.einsum("cj,ijk->ick", r.slopes, ends).reshape(-1, d)
+        share = (widths[:, None] * r.weights).reshape(-1)
+        turns = np.repeat(r.weights[None, :], len(widths), axis=0).reshape(-1)
+        mean = share @ points
+        rest = points - mean
+        size = np.sqrt(share @ rest**2)
+        unit = rest / np.where(size > 0.0, size, 1.0)
+        second = np.einsum("i,ia,ib->ab", share, rest, unit)
+        area = np.einsum("i,ia,ib->ab", turns, unit, slopes)
+        upper = np.triu_indices(d)
+        third = np.einsum("i,ia,ib->ab", share, unit**2, rest)
+        clock = period / self.clock if self.free_period else 1.0
+        return np.concatenate([[clock], mean, second[upper], area[np.triu_indices(d, 1)], third.reshape(-1)])
+
+    # ------------------------------------------------------------------ files, checks
+    def describe(self) -> dict[str, Any]:
+        """Name, discretisation, and how to build the problem again."""
+        about = self.flow.describe()
+        return {
+            **about,
+            "word": "cycle",
+            "periods": self.rounds,
+            "parameter": self.parameter,
+            "p0": self.values.given(),
+            "cycle": {
+                "intervals": self.intervals,
+                "rounds": self.rounds,
+                "copies": self.copies,
+                "scale": self.node_scale.tolist(),
+                "clock": self.clock,
+                "unit": self.parameter_scale,
+            },
+            "factory": "contvines.flows:from_description" if about.get("factory") else None,
+        }
+
+    def uncertainty(self) -> float:
+        """Relative accuracy of the equations: of rounding."""
+        return ROUNDING * 8
+
+    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
+        """Why a branch ends where Newton's method fails."""
+        if not evaluable:
+            return self.trouble
+        error = self.estimated_error(u)
+        return f"with {self.intervals} intervals the error of the cycle is about {error:.1g} of its size"
+
+    def measures_of_start(self) -> Sequence[str]:
+        """Names of what is drawn of it by default."""
+        return (self.default_measure,)

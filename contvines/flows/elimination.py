@@ -1,0 +1,204 @@
+"""Orthogonal elimination of collocation equations: intervals condensed, then a block-cyclic system, and its multipliers.
+
+All intervals are handled at once, as stacks of small matrices. The unknowns inside an interval are eliminated by QR factorisation,
+then every other mesh point, again by QR factorisations of two neighbouring rows of blocks, until one block row is left
+(S. J. Wright, SIAM J. Sci. Stat. Comput. 13, 1992: stable where elimination without orthogonal matrices is not). A few more
+columns (period, parameter) and rows (phase, border) go along.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+FAR = 1e6  # condition of a product of transfer matrices from which on its factors are kept apart
+SWEEPS = 40  # of the periodic QR iteration
+PARTED = 1e-13  # coupling of two blocks of multipliers, relative to the larger one, that is rounding
+ALIKE = 4.0  # multipliers whose moduli differ by less stay in one block
+LEAST = 1e-18  # singular values of a singular system, relative to the largest
+
+
+class Condensed(NamedTuple):
+    """Equations between neighbouring mesh points: ``left[i] x_i + right[i] x_(i + 1) + columns[i] e = 0``.
+
+    The unknowns inside are ``-(maps @ (x_i, x_(i + 1), e))``; ``sign`` is that of the determinant of the eliminated part.
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    columns: np.ndarray
+    maps: np.ndarray
+    sign: float
+
+
+def condense(blocks: np.ndarray, columns: np.ndarray, d: int) -> Condensed:
+    """Eliminate the unknowns inside of each interval.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (N, m d, (m + 1) d)
+        Derivatives of the collocation equations by the values at the nodes of their interval.
+    columns : ndarray, shape (N, m d, k)
+        Of the shared unknowns, right-hand sides (with the opposite sign) among them.
+    d : int
+    """
+    inner = blocks.shape[1] - d
+    q, r = np.linalg.qr(blocks[:, :, d:-d], mode="complete")
+    whole = np.concatenate([blocks[:, :, :d], blocks[:, :, -d:], columns], axis=2)
+    turned = np.matmul(q.transpose(0, 2, 1), whole)
+    maps = np.linalg.solve(r[:, :inner], turned[:, :inner])
+    rest = turned[:, inner:]
+    return Condensed(rest[:, :, :d], rest[:, :, d : 2 * d], rest[:, :, 2 * d :], maps, _sign(q, r))
+
+
+def _sign(q: np.ndarray, r: np.ndarray) -> float:
+    """Sign of the product of the determinants of Q and of the triangle in R."""
+    odd = np.count_nonzero(np.diagonal(r, axis1=1, axis2=2) < 0.0) + np.count_nonzero(np.linalg.det(q) < 0.0)
+    return -1.0 if odd % 2 else 1.0
+
+
+class Solution(NamedTuple):
+    """Mesh points x_0 ... x_N, shape (N + 1, d, s), the shared unknowns, (k, s), and the sign of the determinant."""
+
+    mesh: np.ndarray
+    shared: np.ndarray
+    sign: float
+
+
+def solve_cyclic(
+    left: np.ndarray,
+    right: np.ndarray,
+    columns: np.ndarray,
+    rows: np.ndarray,
+    foot: np.ndarray,
+    closure: float = 1.0,
+) -> Solution:
+    """Solve ``left[i] x_i + right[i] x_(i + 1) + columns[i] (e, -1) = 0``, ``sum rows[i] x_i + foot (e, -1) = 0``, x_N = closure x_0.
+
+    Parameters
+    ----------
+    left, right : ndarray, shape (N, d, d)
+    columns : ndarray, shape (N, d, k + s)
+        Of the k shared unknowns, then s right-hand sides.
+    rows : ndarray, shape (N + 1, k, d)
+    foot : ndarray, shape (k, k + s)
+    closure : float
+    """
+    d, k = left.shape[1], foot.shape[0]
+    foot, sign, steps = foot.copy(), 1.0, []
+    while len(left) > 1:
+        n = len(left)
+        pairs = n // 2
+        one, two = slice(0, 2 * pairs, 2), slice(1, 2 * pairs, 2)
+        q, r = np.linalg.qr(np.concatenate([right[one], left[two]], axis=1), mode="complete")
+        zero = np.zeros((pairs, d, d))
+        whole = np.concatenate(
+            [
+                np.concatenate([left[one], zero, columns[one]], axis=2),
+                np.concatenate([zero, right[two], columns[two]], axis=2),
+            ],
+            axis=1,
+        )
+        turned = np.matmul(q.transpose(0, 2, 1), whole)
+        maps = np.linalg.solve(r[:, :d], turned[:, :d])
+        sign *= _sign(q, r)
+        passed = np.matmul(rows[two], maps)
+        foot -= passed[:, :, 2 * d :].sum(axis=0)
+        rows = np.concatenate([rows[one], rows[2 * pairs :]])
+        rows[:pairs] -= passed[:, :, :d]
+        rows[1 : pairs + 1] -= passed[:, :, d : 2 * d]
+        rest, last = turned[:, d:], slice(2 * pairs, n)
+        left = np.concatenate([rest[:, :, :d], left[last]])
+        right = np.concatenate([rest[:, :, d : 2 * d], right[last]])
+        columns = np.concatenate([rest[:, :, 2 * d :], columns[last]])
+        steps.append(maps)
+    matrix = np.empty((d + k, d + k))
+    matrix[:d, :d], matrix[:d, d:] = left[0] + closure * right[0], columns[0][:, :k]
+    matrix[d:, :d], matrix[d:, d:] = rows[0] + closure * rows[1], foot[:, :k]
+    small, own = _solve(matrix, np.concatenate([columns[0][:, k:], foot[:, k:]]))
+    shared = small[d:]
+    mesh = np.stack([small[:d], closure * small[:d]])
+    weights = np.concatenate([shared, -np.eye(shared.shape[1])])
+    for maps in reversed(steps):
+        pairs = len(maps)
+        middle = -(
+            np.matmul(maps[:, :, :d], mesh[:pairs])
+            + np.matmul(maps[:, :, d : 2 * d], mesh[1 : pairs + 1])
+            + np.matmul(maps[:, :, 2 * d :], weights)
+        )
+        wider = np.empty((len(mesh) + pairs, *mesh.shape[1:]))
+        wider[0 : 2 * pairs : 2], wider[1 : 2 * pairs : 2] = mesh[:pairs], middle
+        wider[2 * pairs :] = mesh[pairs:]
+        mesh = wider
+    return Solution(mesh, shared, sign * own)
+
+
+def _solve(matrix: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
+    """Solutions and the sign of the determinant; 0 and solutions large along the null vectors of a singular matrix."""
+    if not np.isfinite(matrix).all():
+        return np.full(sides.shape, np.nan), 0.0
+    rows = np.abs(matrix).max(axis=1)
+    rows[rows == 0.0] = 1.0
+    matrix, sides = matrix / rows[:, None], sides / rows[:, None]
+    sign = float(np.linalg.slogdet(matrix)[0])
+    if sign != 0.0:
+        return np.linalg.solve(matrix, sides), sign
+    left, values, right = np.linalg.svd(matrix)
+    values = np.maximum(values, LEAST * max(values[0], 1e-200))
+    return right.T @ ((left.T @ sides) / values[:, None]), 0.0
+
+
+def product_eigenvalues(factors: np.ndarray) -> np.ndarray:
+    """Eigenvalues of ``factors[-1] @ ... @ factors[0]``, each with its own relative accuracy, however small or large they are.
+
+    Factors are multiplied while their product stays well conditioned; of the others a periodic QR iteration finds the blocks.
+
+    Parameters
+    ----------
+    factors : ndarray, shape (N, k, k)
+    """
+    k = factors.shape[1]
+    if k == 0:
+        return np.zeros(0, dtype=complex)
+    if k == 1:
+        values = factors[:, 0, 0]
+        if not values.all():
+            return np.zeros(1, dtype=complex)
+        size = np.exp(np.log(np.abs(values)).sum())
+        return np.array([size * (-1.0 if np.count_nonzero(values < 0.0) % 2 else 1.0)], dtype=complex)
+    factors = _gathered(factors)
+    if len(factors) == 1:
+        return np.linalg.eigvals(factors[0]).astype(complex)
+    basis = np.eye(k)
+    for _ in range(SWEEPS):
+        start, triangles = basis, []
+        for factor in factors:
+            basis, triangle = np.linalg.qr(factor @ basis)
+            triangles.append(triangle)
+        sizes = sum(np.log(np.maximum(np.abs(np.diagonal(t)), 1e-300)) for t in triangles)
+        turn = start.T @ basis
+        cuts = [j for j in range(1, k) if np.abs(turn[j:, :j]).max() <= PARTED]
+        close = np.flatnonzero(np.abs(np.diff(sizes)) > np.log(ALIKE)) + 1
+        if all(j in cuts for j in close):
+            break
+    found = []
+    for a, b in zip([0, *cuts], [*cuts, k]):
+        product, exponent = turn[a:b, a:b], 0.0
+        for triangle in reversed(triangles):
+            product = product @ triangle[a:b, a:b]
+            size = np.abs(product).max() or 1.0
+            product, exponent = product / size, exponent + np.log(size)
+        found.append(np.linalg.eigvals(product) * np.exp(min(exponent, 700.0)))
+    return np.concatenate(found).astype(complex)
+
+
+def _gathered(factors: np.ndarray) -> np.ndarray:
+    """Products of neighbouring factors, as long as these are well conditioned."""
+    while len(factors) > 1:
+        pairs = len(factors) // 2
+        products = np.matmul(factors[1 : 2 * pairs : 2], factors[0 : 2 * pairs : 2])
+        if not (np.linalg.cond(products) < FAR).all():
+            break
+        factors = np.concatenate([products, factors[2 * pairs :]])
+    return factors

@@ -1,0 +1,97 @@
+"""Equilibria of an autonomous flow: an AlgebraicProblem from whose Hopf points cycles leave."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..problems.algebraic import AlgebraicProblem
+from ..problems.protocol import Embedding
+from . import mesh
+from .cycles import CycleProblem
+
+FIRST = 20  # intervals of a cycle that has just been born
+
+
+class Equilibria(AlgebraicProblem):
+    """Equilibria of x' = f(x, p).
+
+    Parameters
+    ----------
+    flow : FlowProblem
+    **options
+        Of :class:`contvines.AlgebraicProblem`.
+    """
+
+    flow: Any
+
+    def __init__(self, flow: Any, *arguments: Any, **options: Any) -> None:
+        self.flow = flow
+        super().__init__(*arguments, spectrum="flow", **options)
+
+    default_measure = "max x0"
+
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Norm and coordinates; what is measured on cycles has the values of a cycle that stands still."""
+        names = [f"{word}x{j}" for word in ("", "max ", "min ", "mean ") for j in range(self.node)]
+        return (*super().measure_names, *names, "period")
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures for an array of solutions."""
+        own = [name for name in names if name in super(Equilibria, self).measure_names]
+        found = super().measures(own, u, p)
+        states = np.atleast_2d(u)
+        for name in names:
+            if name in found:
+                continue
+            if name not in self.measure_names:
+                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
+            if name == "period":
+                found[name] = np.full(len(states), np.nan)
+            else:
+                found[name] = states[:, int(name.rpartition("x")[2])].copy()
+        return found
+
+    def offspring(
+        self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
+    ) -> list[Embedding]:
+        """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows."""
+        if kind != "hopf" or self.functions.structure != "dense":
+            return []
+        matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
+        values, vectors = np.linalg.eig(matrix)
+        upper = np.flatnonzero(values.imag > 0.0)
+        if not len(upper):
+            return []
+        k = upper[int(np.argmin(np.abs(values[upper].real)))]
+        return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k])]
+
+    def describe(self) -> dict[str, Any]:
+        """Name, start, and how to build the problem again."""
+        about = super().describe()
+        if about.get("factory"):
+            about["factory"] = "contvines.flows:from_description"
+        return {**about, "word": "equilibrium", "flow": self.flow.described()}
+
+
+def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.ndarray) -> Embedding:
+    """The problem of the cycles that are born at a Hopf point, the equilibrium as a cycle, and the direction of the cycles."""
+    flow, d = problem.flow, problem.node
+    scales = problem.scales
+    scale = np.ones(d) if scales is None else scales.unknowns[:d]
+    unit = 1.0 if scales is None else scales.parameter
+    values = problem.values.against(problem.parameter, {problem.parameter: p})
+    widths = np.full(FIRST, 1.0 / FIRST)
+    period = 2.0 * np.pi / omega
+    field = flow.field.against(values)
+    m = flow.degree
+    still = np.concatenate([np.tile(u[:d], FIRST * m), [period], widths])
+    cycles = CycleProblem(flow, field, still, FIRST, scale=scale, clock=period, unit=unit)
+    angles = 2.0 * np.pi * mesh.node_places(cycles.rule, widths)
+    q = q / np.linalg.norm(q / scale)
+    wave = np.real(np.exp(1j * angles)[:, None] * q)
+    direction = np.concatenate([wave.reshape(-1), np.zeros(1 + FIRST + 1)])
+    return Embedding(cycles, still, direction, "hopf")

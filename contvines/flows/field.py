@@ -1,0 +1,226 @@
+"""Field: a user's right-hand side and its derivatives at many points at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from copy import copy
+from typing import Any
+
+import numpy as np
+
+from ..problems.derivatives import COMPLEX_STEP, Differentiated
+from ..problems.functions import NotEvaluable
+from ..problems.parameters import ParameterSet
+
+STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
+SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
+AGREE = 1e-10  # relative difference between a call with many points and calls with one
+
+
+class Field:
+    """x' = f(x, p) or f(x, p, t), at points of shape (n, d) and times of shape (n,).
+
+    Parameters
+    ----------
+    f : callable
+        (x, p) or (x, p, t) -> d numbers.
+    jacobian : callable, optional
+        df/dx, shape (d, d), of the same arguments.
+    derivative : callable, or mapping of str to callable, optional
+        df/dp, shape (d,); of several parameters by name.
+    start : ndarray, shape (d,)
+    values : ParameterSet
+    period : callable, optional
+        p -> period of f in t; None for autonomous flows.
+
+    Raises
+    ------
+    ValueError
+        If f, or a derivative that is given, is wrong at the start.
+    """
+
+    def __init__(
+        self,
+        f: Callable,
+        jacobian: Callable | None,
+        derivative: Callable | Mapping[str, Callable] | None,
+        start: np.ndarray,
+        values: ParameterSet,
+        period: Callable | None = None,
+    ) -> None:
+        self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
+        self.values, self.period, self.node = values, period, len(start)
+        fixed = tuple(_at_zero(g, period) for g in (f, jacobian))
+        slope = (
+            {name: _at_zero(g, period) for name, g in derivative.items()}
+            if isinstance(derivative, Mapping)
+            else _at_zero(derivative, period)
+        )
+        self.functions = Differentiated(fixed[0], fixed[1], slope, start, values, "the right-hand side")
+        self.lengths, self.complex_step = self.functions.lengths, self.functions.complex_step
+        if not self.complex_step and not self.functions.noise.any():
+            self.complex_step = self.functions._complex_step_works(start, values.start)
+        self.many = self.many_jacobian = False
+        self._find_vectorised(start)
+
+    def against(self, values: ParameterSet) -> Field:
+        """The same field with other values of the parameters."""
+        other = copy(self)
+        other.values, other.functions = values, self.functions.against(values)
+        return other
+
+    @property
+    def forced(self) -> bool:
+        """Whether f depends on time."""
+        return self.period is not None
+
+    def length_of_period(self, p: Any) -> Any:
+        """Period of f in time.
+
+        Raises
+        ------
+        NotEvaluable
+            If it is not positive.
+        """
+        assert self.period is not None
+        period = self.period(self.values.at(p))
+        if not np.real(period) > 0.0:
+            raise NotEvaluable(f"period = {period!r} must be positive")
+        return period
+
+    # ------------------------------------------------------------------ values
+    def __call__(self, x: np.ndarray, p: Any, t: np.ndarray | None = None) -> np.ndarray:
+        """f at the points, shape (n, d).
+
+        Raises
+        ------
+        NotEvaluable
+            If f fails or does not return d numbers.
+        """
+        parameters = self.values.at(p)
+        if self.many:
+            return self._stacked(self.f, x, parameters, t, (self.node,))
+        times = [None] * len(x) if t is None else t
+        return np.array(
+            [self._one(self.f, y, parameters, s, (self.node,)) for y, s in zip(x, times, strict=True)]
+        )
+
+    def _arguments(self, x: np.ndarray, parameters: Any, t: Any) -> tuple[Any, ...]:
+        return (x, parameters) if self.period is None else (x, parameters, t)
+
+    def _one(
+        self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]
+    ) -> np.ndarray:
+        try:
+            value = np.array(f(*self._arguments(x.copy(), parameters, t)))
+        except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:
+            raise NotEvaluable(f"the right-hand side fails: {error}") from error
+        if value.shape != shape:
+            raise NotEvaluable(f"the right-hand side has shape {value.shape}; {shape} is needed")
+        return value
+
+    def _stacked(
+        self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]
+    ) -> np.ndarray:
+        try:
+            given = f(*self._arguments(x.T.copy(), parameters, t))
+            return _broadcast(given, len(x), shape)
+        except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:
+            raise NotEvaluable(f"the right-hand side fails: {error}") from error
+
+    def _find_vectorised(self, start: np.ndarray) -> None:
+        """Whether many points can be handed over at once, tried at points beside the start."""
+        noise = np.random.default_rng(5).uniform(-0.1, 0.1, (7, self.node))
+        x, p = start + noise * self.lengths, self.values.start
+        t = np.linspace(0.05, 0.95, 7) * self.length_of_period(p) if self.forced else None
+        parameters = self.values.at(p)
+        with np.errstate(all="ignore"):
+            self.many = self._agrees(self.f, x, parameters, t, (self.node,))
+            if self.given_jacobian is not None:
+                shape = (self.node, self.node)
+                self.many_jacobian = self._agrees(self.given_jacobian, x, parameters, t, shape)
+
+    def _agrees(self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]) -> bool:
+        times = [None] * len(x) if t is None else t
+        try:
+            single = np.array([self._one(f, y, parameters, s, shape) for y, s in zip(x, times, strict=True)])
+        except NotEvaluable:
+            return False  # points beside the start may be outside of where f is defined
+        try:
+            together = self._stacked(f, x, parameters, t, shape)
+        except Exception:  # a function of one point may fail in any way when it is called with many
+            return False
+        return bool(np.allclose(single, together, rtol=AGREE, atol=AGREE * np.abs(single).max(initial=0.0)))
+
+    # ------------------------------------------------------------------ derivatives
+    def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
+        """df/dx at the points, shape (n, d, d)."""
+        shape = (self.node, self.node)
+        if self.given_jacobian is not None:
+            parameters = self.values.at(p)
+            if self.many_jacobian:
+                return self._stacked(self.given_jacobian, x, parameters, t, shape)
+            times = [None] * len(x) if t is None else t
+            pairs = zip(x, times, strict=True)
+            return np.array([self._one(self.given_jacobian, y, parameters, s, shape) for y, s in pairs])
+        result = np.empty((len(x), *shape))
+        for j in range(self.node):
+            if self.complex_step:
+                moved = x.astype(complex)
+                moved[:, j] += 1j * COMPLEX_STEP
+                result[:, :, j] = np.imag(self(moved, p, t)) / COMPLEX_STEP
+                continue
+            step = STEP * self.lengths[j]
+            unit = np.zeros(self.node)
+            unit[j] = step
+            result[:, :, j] = _difference(lambda s, unit=unit: self(x + s * unit, p, t)) / step
+        return result
+
+    def along(self, line: Callable[[Any], np.ndarray], p: float) -> np.ndarray:
+        """Derivative of a function of the parameter at p: by the complex step where f allows it, else by differences."""
+        if self.complex_step:
+            try:
+                value = line(complex(p, COMPLEX_STEP))
+                return np.imag(value) / COMPLEX_STEP
+            except TypeError:  # the period may be a function of real numbers alone
+                pass
+        step = STEP * (abs(p) or 1.0)
+        return _difference(lambda s: line(p + s * step)) / step
+
+    def slope(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
+        """df/dp at fixed points and times, shape (n, d)."""
+        given = self.given_derivative
+        if isinstance(given, Mapping):
+            given = given.get(self.values.varying)
+        if given is None:
+            return self.along(lambda q: self(x, q, t), p)
+        times = [None] * len(x) if t is None else t
+        parameters, pairs = self.values.at(p), zip(x, times, strict=True)
+        return np.array([self._one(given, y, parameters, s, (self.node,)) for y, s in pairs])
+
+
+def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
+    """Derivative at 0 by central differences of sixth order with step 1."""
+    return sum(weight * (line(float(k)) - line(float(-k))) for k, weight in SIXTH)  # type: ignore[return-value]
+
+
+def _at_zero(f: Callable | None, period: Callable | None) -> Callable | None:
+    """A function of (x, p, t) at t = 0."""
+    if f is None or period is None or not callable(f):
+        return f
+    return lambda x, p: f(x, p, 0.0)
+
+
+def _broadcast(given: Any, n: int, shape: tuple[int, ...]) -> np.ndarray:
+    """What a function of arrays of n numbers returned, nested as `shape` has it, as array (n, *shape)."""
+    if isinstance(given, np.ndarray) and given.dtype != object:
+        if given.shape != (*shape, n):
+            raise ValueError(f"shape {given.shape}")
+        return np.moveaxis(given, -1, 0)
+    flat = list(given)
+    if len(flat) != shape[0]:
+        raise ValueError(f"{len(flat)} entries")
+    if len(shape) == 2:
+        rows = [_broadcast(row, n, shape[1:]) for row in flat]
+        return np.stack(rows, axis=1)
+    return np.stack(np.broadcast_arrays(*flat, np.empty(n))[:-1], axis=1)

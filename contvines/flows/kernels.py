@@ -1,0 +1,242 @@
+"""Kernels of cycles: collocation equations with phase and mesh, linearised and solved by orthogonal elimination."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..problems.functions import NotEvaluable
+from ..problems.kernels import Kernels
+from .elimination import condense, product_eigenvalues, solve_cyclic
+from .mesh import closed
+
+
+class CycleWork:
+    """What a linearisation leaves behind, in units of the scales.
+
+    ``self[0]`` is F, ``self[1]`` is F_p. Equations and unknowns are those of :class:`contvines.flows.cycles.CycleProblem`.
+    ``blocks`` (N, m d, (m + 1) d) are the derivatives of the collocation equations by the values at the nodes, ``by_period`` (N, m d) those
+    by the period, ``phase`` (N, m d) the row of the phase condition.
+    """
+
+    def __init__(self, n: int) -> None:
+        self.residual, self.derivative = np.zeros(n), np.zeros(n)
+        self.blocks = self.by_period = self.phase = np.zeros(0)
+        self.speeds = np.zeros(0)
+        self.closeness = np.inf
+        self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
+        self.kept: Any = None  # by_period and phase, while the closure is turned round
+        self.full: np.ndarray | None = None  # F_u written out, where it has been changed (loci)
+        self.closure, self.corner = 1.0, 0.0
+
+    def __getitem__(self, i: int) -> np.ndarray:
+        return (self.residual, self.derivative)[i]
+
+
+def linearise(data: Any, u: np.ndarray, p: float, work: CycleWork) -> float:
+    """Residual and derivatives of the collocation equations; the largest residual in units of the rows."""
+    work.mesh, work.full, work.closure, work.corner = None, None, 1.0, 0.0
+    with np.errstate(all="ignore"):
+        try:
+            data.evaluate(u, p, work)
+        except NotEvaluable as error:
+            data.trouble = str(error)
+            return math.inf
+        except (ArithmeticError, ValueError, np.linalg.LinAlgError):
+            return math.inf
+    size = float(np.abs(work.residual / data.row_scale).max())
+    whole = size + float(np.abs(work.blocks).sum()) + float(np.abs(work.derivative).sum())
+    if not whole < math.inf:
+        data.trouble = "the right-hand side or its derivative is not finite along the cycle"
+        return math.inf
+    return size
+
+
+def bordered(
+    data: Any, work: CycleWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
+) -> float:
+    """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant."""
+    columns = np.concatenate([data.column_scale, [data.parameter_scale]])
+    sides = np.zeros((len(border), 2))
+    sides[:-1, 0], sides[-1] = -work.residual / data.row_scale, (n, 1.0)
+    column = work.derivative / data.row_scale * data.parameter_scale
+    with np.errstate(all="ignore"):
+        try:
+            if work.full is not None:
+                found, sign = _solve_full(data, work, border * columns, column, sides)
+            else:
+                found, sign = _solve(data, work, border * columns, column, sides)
+        except np.linalg.LinAlgError:
+            step[:], tangent[:] = np.nan, np.nan
+            return 0.0
+    step[:], tangent[:] = found[:, 0] * columns, found[:, 1] * columns
+    return sign
+
+
+def _solve(
+    data: Any, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """In units of the scales, by elimination interval by interval."""
+    count, m, d, free = data.intervals, data.rule.degree, data.node, data.free_period
+    states = count * m * d
+    tail = slice(states + free, states + free + count)
+    # the mesh keeps its widths: those rows are the identity
+    widths = np.concatenate([-column[tail, None], sides[tail]], axis=1)  # by the parameter, then of each side
+    shared = [work.by_period[:, :, None]] if free else []
+    shared += [column[:states].reshape(count, m * d, 1), sides[:states].reshape(count, m * d, 2)]
+    cond = condense(work.blocks, np.concatenate(shared, axis=2), d)
+    k = free + 1
+    rows = np.zeros((count, k, m * d))
+    foot = np.zeros((k, k + 2))
+    if free:
+        rows[:, 0] = work.phase
+        foot[0] = work.corner, column[states], *sides[states]
+        foot[1, 0] = border[states]
+    rows[:, -1] = border[:states].reshape(count, m * d)
+    foot[-1, k - 1 :] = border[-1], *sides[-1]
+    foot[-1, k - 1] += border[tail] @ widths[:, 0]
+    foot[-1, k:] -= border[tail] @ widths[:, 1:]
+    passed = np.matmul(rows[:, :, d:], cond.maps)
+    foot -= passed[:, :, 2 * d :].sum(axis=0)
+    mesh = np.zeros((count + 1, k, d))
+    mesh[:-1] = rows[:, :, :d] - passed[:, :, :d]
+    mesh[1:] -= passed[:, :, d : 2 * d]
+    solved = solve_cyclic(cond.left, cond.right, cond.columns, mesh, foot, work.closure)
+    work.mesh = cond.left, cond.right
+    weights = np.concatenate([solved.shared, -np.eye(2)])
+    inside = -np.matmul(
+        cond.maps,
+        np.concatenate(
+            [solved.mesh[:-1], solved.mesh[1:], np.broadcast_to(weights, (count, *weights.shape))], axis=1
+        ),
+    )
+    found = np.empty((len(border), 2))
+    found[:states] = np.concatenate([solved.mesh[:-1], inside], axis=1).reshape(states, 2)
+    found[states : states + free] = solved.shared[:free]
+    found[-1] = solved.shared[-1]
+    found[tail] = widths[:, 1:] + widths[:, :1] * solved.shared[-1]
+    return found, solved.sign * cond.sign
+
+
+def _solve_full(
+    data: Any, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
+) -> tuple[np.ndarray, float]:
+    assert work.full is not None
+    whole = np.block([[work.full, column[:, None]], [border[None, :]]])
+    rows = np.abs(whole).max(axis=1)
+    rows[rows == 0.0] = 1.0
+    whole, sides = whole / rows[:, None], sides / rows[:, None]
+    sign = float(np.linalg.slogdet(whole)[0])
+    if sign != 0.0:
+        return np.linalg.solve(whole, sides), sign
+    return np.linalg.lstsq(whole, sides, rcond=1e-18)[0], 0.0
+
+
+def transfers(data: Any, work: CycleWork) -> np.ndarray:
+    """From each mesh point to the next one, shape (N, d, d), in units of the scales."""
+    if work.mesh is None:
+        nothing = np.zeros((data.intervals, data.rule.degree * data.node, 0))
+        cond = condense(work.blocks, nothing, data.node)
+        work.mesh = cond.left, cond.right
+    left, right = work.mesh
+    return -np.linalg.solve(right, left)
+
+
+def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
+    """Multipliers, of autonomous flows without the trivial one, and by how much that one, as computed, misses 1."""
+    steps, d = transfers(data, work), data.node
+    if not data.free_period:
+        return product_eigenvalues(steps), 0.0
+    speeds = work.speeds
+    sizes = np.linalg.norm(speeds, axis=1)
+    if not sizes.min() > 1e-12 * (1.0 + sizes.max()):
+        values = product_eigenvalues(steps)  # a cycle that is an equilibrium: all motions are as slow as none
+        return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
+    units = speeds / sizes[:, None]
+    across = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]
+    after = np.roll(across, -1, axis=0)
+    along = np.einsum("ij,ijk,ik->i", np.roll(units, -1, axis=0), steps, units)
+    growth = along * sizes / np.roll(sizes, -1)
+    missed = float(np.abs(np.prod(growth) - 1.0))
+    return product_eigenvalues(np.matmul(after.transpose(0, 2, 1), np.matmul(steps, across))), missed
+
+
+def inspect(data: Any, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray) -> None:
+    """Multipliers, then margins."""
+    with np.errstate(all="ignore"):
+        try:
+            values, data.missed = spectrum(data, work)
+        except np.linalg.LinAlgError:
+            values = np.full(data.n_multipliers, np.nan + 0j)
+        row[: 2 * len(values)].view(np.complex128)[:] = values
+        if data.n_margins:
+            row[2 * len(values) :] = data.margins(u, work)
+
+
+def matrix(data: Any, work: CycleWork) -> np.ndarray:
+    """F_u written out."""
+    return full_matrix(data, work) * data.row_scale[:, None] / data.column_scale
+
+
+def full_matrix(data: Any, work: CycleWork) -> np.ndarray:
+    """F_u written out, in units of the scales."""
+    if work.full is not None:
+        return work.full.copy()
+    count, m, d, free = data.intervals, data.rule.degree, data.node, data.free_period
+    states, size = count * m * d, data.dimension
+    whole = np.zeros((size, size))
+    for i in range(count):
+        rows = slice(i * m * d, (i + 1) * m * d)
+        whole[rows, rows] = work.blocks[i][:, : m * d]
+        first = (i + 1) * m * d % states
+        sign = work.closure if i == count - 1 else 1.0
+        whole[rows, first : first + d] += sign * work.blocks[i][:, m * d :]
+        if free:
+            whole[rows, states] = work.by_period[i]
+            whole[states, rows] = work.phase[i]
+            whole[states, states] = work.corner
+    tail = np.arange(states + free, size)
+    whole[tail, tail] = 1.0
+    return whole
+
+
+def flip(data: Any, work: CycleWork, sign: float) -> None:
+    """Turn the closure of the cycle round (sign = -1), and back (sign = 1): no phase and no period belong to such perturbations."""
+    work.closure, work.full = sign, None
+    if not data.free_period:
+        return
+    if sign < 0.0:
+        work.kept = work.by_period, work.phase
+        work.by_period, work.phase = np.zeros_like(work.by_period), np.zeros_like(work.phase)
+    else:
+        work.by_period, work.phase = work.kept
+    work.corner = 1.0 if sign < 0.0 else 0.0
+
+
+def transpose(data: Any, work: CycleWork, column: np.ndarray, other: CycleWork) -> None:
+    """The transposed F_u, with another last column, into another workspace."""
+    turned = matrix(data, work).T
+    other.full = turned / data.row_scale[:, None] * data.column_scale
+    other.derivative[:] = column
+
+
+def assign(data: Any, other: Any, value: float) -> None:
+    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+    data.values.assign(other.parameter, value)
+
+
+KERNELS = Kernels(
+    linearise,
+    bordered,
+    inspect,
+    compiled=False,
+    assign=assign,
+    flip=flip,
+    transpose=transpose,
+    column=1,
+    matrix=matrix,
+)
+
+__all__ = ["KERNELS", "CycleWork", "closed"]

@@ -1,0 +1,80 @@
+"""Meshes of cycles: piecewise polynomials, estimated errors, equidistribution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .collocation import Rule
+
+EVEN = 0.3  # part of the mean by which the function to be equidistributed is raised, so that intervals do not differ too much
+SLACK = 1.5  # largest over mean share of the error at which a mesh stays as it is
+
+
+def closed(x: np.ndarray, sign: float = 1.0) -> np.ndarray:
+    """Values at all nodes of each interval, shape (N, m + 1, d), from those without the last one, (N, m, d)."""
+    after = np.roll(x[:, :1], -1, axis=0)
+    if sign != 1.0:
+        after[-1] *= sign
+    return np.concatenate([x, after], axis=1)
+
+
+def evaluate(rule: Rule, widths: np.ndarray, x: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """A periodic piecewise polynomial at places in units of the period, shape (len(places), d)."""
+    edges = np.append(0.0, np.cumsum(widths))
+    edges /= edges[-1]
+    places = np.mod(places, 1.0)
+    i = np.clip(np.searchsorted(edges, places, side="right") - 1, 0, len(widths) - 1)
+    local = (places - edges[i]) / (edges[i + 1] - edges[i])
+    return np.einsum("ij,ijk->ik", rule.interpolation(local), closed(x)[i])
+
+
+def node_places(rule: Rule, widths: np.ndarray) -> np.ndarray:
+    """Places of the nodes, the last one of each interval left out, in units of the period, shape (N m,)."""
+    begins = np.append(0.0, np.cumsum(widths)[:-1])
+    return (begins[:, None] + widths[:, None] * rule.nodes[:-1]).reshape(-1)
+
+
+def onto(rule: Rule, widths: np.ndarray, x: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """The same curve on another mesh, shape (len(new), m, d)."""
+    return evaluate(rule, widths, x, node_places(rule, new)).reshape(len(new), rule.degree, -1)
+
+
+def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """|x^(m + 1)|^(1 / (m + 1)) on each interval, in units of the period and the scale, from jumps of the m-th derivative."""
+    m = rule.degree
+    top = np.einsum("j,ijk->ik", rule.top, closed(x) / scale) / widths[:, None] ** m
+    jumps = np.abs(np.roll(top, -1, axis=0) - top) / (0.5 * (widths + np.roll(widths, -1)))[:, None]
+    here = 0.5 * (jumps + np.roll(jumps, 1, axis=0)).max(axis=1)
+    return here ** (1.0 / (m + 1))
+
+
+def error(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> float:
+    """Estimated largest error of the curve between the mesh points, in units of the scale."""
+    share = density(rule, widths, x, scale) * widths
+    return float(rule.constant * share.max() ** (rule.degree + 1))
+
+
+def equidistributed(
+    rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray, copies: int = 1
+) -> np.ndarray | None:
+    """Widths of as many intervals with equal shares of the error; None where those at hand are good enough.
+
+    Parameters
+    ----------
+    copies : int
+        The mesh consists of so many equal parts, one after the other.
+    """
+    own = density(rule, widths, x, scale)
+    mean = float((own * widths).sum())
+    if not mean > 0.0 or not np.isfinite(mean):
+        return None
+    wanted = own + EVEN * mean
+    parts = wanted.reshape(copies, -1).max(axis=0)
+    part = widths.reshape(copies, -1)[0]
+    shares = parts * part
+    if shares.max() <= SLACK * shares.mean():
+        return None
+    edges = np.append(0.0, np.cumsum(shares))
+    places = np.append(0.0, np.cumsum(part))
+    new = np.interp(np.linspace(0.0, edges[-1], len(part) + 1), edges, places)
+    return np.tile(np.diff(new), copies)

@@ -1,0 +1,113 @@
+"""CycleOrbit: one cycle, as users hold it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..doors import above
+from . import mesh
+from .kernels import linearise, spectrum
+from .simulation import integrated, variational
+
+SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
+
+
+class CycleOrbit:
+    """A cycle of a flow.
+
+    Attributes
+    ----------
+    times : ndarray, shape (n,)
+        From 0 to the period.
+    states : ndarray, shape (n, d)
+    period : float
+    parameters : dict of float
+    multipliers : ndarray of complex
+        Of autonomous flows without the trivial one.
+    stable : bool
+    """
+
+    def __init__(self, problem: Any, u: np.ndarray, p: float) -> None:
+        self._problem, self.u, self.value = problem, u, p
+        x, self.period, widths = problem.parts(u, p)
+        self.period = float(np.real(self.period))
+        places = mesh.node_places(problem.rule, widths)
+        self.times = np.append(places, 1.0) * self.period
+        flat = x.reshape(-1, problem.node)
+        self.states = np.concatenate([flat, flat[:1]])
+        self.parameters = {**problem.parameters, problem.parameter: p}
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.10g}" for name, value in self.parameters.items())
+        stable = "stable" if self.stable else "unstable"
+        return f"CycleOrbit({values}: {stable}, period {self.period:.10g}, {self._problem.intervals} intervals)"
+
+    def __call__(self, t: Any) -> np.ndarray:
+        """States at times, shape (..., d)."""
+        t = np.asarray(t, dtype=float)
+        x, _, widths = self._problem.parts(self.u, self.value)
+        found = mesh.evaluate(self._problem.rule, widths, x, t.reshape(-1) / self.period)
+        return found.reshape(*t.shape, -1)
+
+    # ------------------------------------------------------------------ stability
+    @cached_property
+    def _spectrum(self) -> tuple[np.ndarray, float]:
+        work = self._problem.workspace()
+        linearise(self._problem, self.u, self.value, work)
+        return spectrum(self._problem, work)
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Multipliers of the full period, without the trivial one of autonomous flows."""
+        return self._spectrum[0]
+
+    @property
+    def trivial_error(self) -> float:
+        """By how much the trivial multiplier, as computed, misses 1: a measure of the error of the others."""
+        return self._spectrum[1]
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers are inside the unit circle."""
+        return bool((np.abs(self.multipliers) < 1.0).all())
+
+    @property
+    def estimated_error(self) -> float:
+        """Estimated largest error between the mesh points, relative to the size of the cycle."""
+        return self._problem.estimated_error(self.u)
+
+    # ------------------------------------------------------------------ as a seed
+    def problem(self, parameter: str) -> Any:
+        """The cycles that go on from this one when a parameter varies."""
+        return self._problem.against(parameter, self.parameters)
+
+    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+        """The unknowns, and the value of the parameter that varies."""
+        return self.u, self.parameters[problem.parameter]
+
+    # ------------------------------------------------------------------ by other means
+    def replay(self) -> float:
+        """Largest distance of a simulation (scipy's DOP853) from the cycle, relative to its scale; it begins anew eight times along the cycle."""
+        worst, field = 0.0, self._problem.field
+        edges = np.linspace(0.0, self.period, SEGMENTS + 1)
+        for start, stop in zip(edges[:-1], edges[1:]):
+            end = integrated(field, self.value, self(start), start, stop)
+            gap = np.abs(end - self(stop)) / (self._problem.node_scale + np.abs(end))
+            worst = max(worst, float(gap.max()))
+        return worst
+
+    def simulated_multipliers(self) -> np.ndarray:
+        """Multipliers from the variational equations, integrated along a simulation (scipy's DOP853), the trivial one included."""
+        edges = np.linspace(0.0, self.period, SEGMENTS + 1)
+        product = np.eye(self._problem.node)
+        for start, stop in zip(edges[:-1], edges[1:]):
+            product = variational(self._problem.field, self.value, self(start), start, stop)[1] @ product
+        return np.linalg.eigvals(product)
+
+    # ------------------------------------------------------------------ pictures
+    def plot(self, **options: Any) -> Any:
+        """Phase portrait and time series; see :func:`contvines.plots.cycles.plot_cycle`."""
+        return above("plot_cycle")(self, **options)

@@ -1,0 +1,319 @@
+"""FlowProblem: a user's differential equations, and where their equilibria and cycles begin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..hints import hinting
+from ..problems.images import image_map
+from ..problems.parameters import ParameterSet
+from ..problems.registry import addresses
+from ..problems.scales import flat_start, given_scale
+from . import mesh
+from .attractors import recurrence
+from .collocation import rule
+from .cycles import CycleProblem
+from .equilibria import Equilibria
+from .field import Field
+from .newton import settled
+from .orbit import CycleOrbit
+
+INTERVALS = 40  # of a cycle from data, to begin with
+MIRRORED = 1e-8
+
+
+class FlowProblem:
+    """Equilibria and cycles of x' = f(x, p), or cycles of x' = f(x, p, t) with a period in t.
+
+    ``contvines.diagram(flow, over=, within=)`` begins at the equilibrium near ``x0`` (at what a motion from ``x0`` settles on, of
+    forced flows) and finds Hopf points, the cycles that leave there, and their bifurcations.
+
+    Parameters
+    ----------
+    f : callable
+        (x, p) -> d numbers, of forced flows (x, p, t). It may be written for arrays, ``x[0]`` being a number or an array of
+        numbers; whether it is, is found out.
+    x0 : array_like, shape (d,)
+        A start.
+    params : float, or mapping of str to float
+        Values of the parameters by name: ``f`` then reads ``p.name``.
+    mirror : callable, matrix or permutation, optional
+        x -> R x with f(R x, p) = R f(x, p); of forced flows at the same time or half a period later, which is found out.
+    period : callable or float, optional
+        p -> period of f in t: the flow is forced.
+    jacobian : callable, optional
+        df/dx of the same arguments, shape (d, d). Else the complex step, where f allows it, or differences.
+    derivative : callable, or mapping of str to callable, optional
+        df/dp, shape (d,); of several parameters by name.
+    degree : int
+        Of the collocation polynomials, 2 to 7.
+    scale : float or array_like of shape (d,), optional
+        What counts as large in each coordinate.
+    parameter : str
+        Name of the parameter that varies if nobody says so; the first one if it is left out.
+    name : str
+
+    Raises
+    ------
+    ValueError
+        If f does not return d finite numbers at the start, or a derivative, the mirror or the degree is wrong.
+    """
+
+    @hinting
+    def __init__(
+        self,
+        f: Callable,
+        x0: Sequence[float] | np.ndarray | float,
+        params: float | Mapping[str, float] = 0.0,
+        *,
+        mirror: Any = None,
+        period: Callable | float | None = None,
+        jacobian: Callable | None = None,
+        derivative: Callable | Mapping[str, Callable] | None = None,
+        degree: int = 4,
+        scale: Any = None,
+        parameter: str = "p",
+        name: str = "flow",
+    ) -> None:
+        if not callable(f):
+            raise ValueError(f"f = {f!r} must be a function of (x, p), or of (x, p, t) with period=")
+        rule(degree)
+        self.x0, self.degree, self.name = flat_start(x0), int(degree), name
+        self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
+        self.given_period, self.given_scale = period, scale
+        self.values = ParameterSet(params, parameter)
+        self.mirror = None if mirror is None else image_map(mirror, len(self.x0))
+        self.mirror_shifted = False
+        self.field = Field(f, jacobian, derivative, self.x0, self.values, _period(period, self.values))
+        if self.field.forced:
+            self.field.length_of_period(self.values.start)
+            self._find_mirror()
+            self._equilibria = None
+        else:
+            self._equilibria = Equilibria(
+                self,
+                f,
+                self.x0,
+                params,
+                parameter,
+                jacobian=jacobian,
+                derivative=derivative,
+                mirror=mirror,
+                name=name,
+                scale=scale,
+            )
+
+    def _find_mirror(self) -> None:
+        """Whether the mirror image of a forced motion is one at the same time, or half a period later.
+
+        Raises
+        ------
+        ValueError
+            If it is neither.
+        """
+        if self.mirror is None:
+            return
+        rng, p = np.random.default_rng(4), self.values.start
+        x = self.x0 + self.field.lengths * rng.uniform(-1.0, 1.0, (6, len(self.x0)))
+        period = self.field.length_of_period(p)
+        t = rng.uniform(0.0, period, 6)
+        images = np.array([self.mirror(y) for y in x])
+        still = self.mirror(np.zeros(len(self.x0)))
+        wanted = np.array([self.mirror(y) - still for y in self.field(x, p, t)])
+        size = 1e-300 + np.abs(wanted).max()
+        for shifted in (True, False):
+            found = self.field(images, p, t + (0.5 * period if shifted else 0.0))
+            if np.abs(found - wanted).max() <= MIRRORED * size:
+                self.mirror_shifted = shifted
+                return
+        raise ValueError(
+            "mirror: f(R x, p, t) is neither R f(x, p, t) nor R f(x, p, t + period/2); leave mirror= out, or mend it"
+        )
+
+    # ------------------------------------------------------------------ as a seed
+    def problem(self, parameter: str | None = None) -> Any:
+        """Equilibria (cycles, of forced flows) when a parameter varies."""
+        parameter = self.values.varying if parameter is None else parameter
+        if self._equilibria is not None:
+            return self.equilibria(parameter)
+        return self.attractor(self.x0).problem(parameter)
+
+    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+        """The start of such a problem."""
+        return problem.u0, problem.p0
+
+    def equilibria(self, parameter: str | None = None, values: Mapping[str, float] | None = None) -> Any:
+        """The problem of the equilibria.
+
+        Raises
+        ------
+        ValueError
+            If the flow is forced.
+        """
+        if self._equilibria is None:
+            raise ValueError("a forced flow has no equilibria")
+        parameter = self._equilibria.parameter if parameter is None else parameter
+        if parameter == self._equilibria.parameter and not values:
+            return self._equilibria
+        return self._equilibria.against(parameter, values)
+
+    # ------------------------------------------------------------------ cycles
+    @hinting
+    def attractor(
+        self, x0: Any = None, *, transient: float | None = None, longest: int = 64, **values: float
+    ) -> CycleOrbit:
+        """The cycle on which a motion settles: simulated until it recurs, then solved for.
+
+        Parameters
+        ----------
+        x0 : array_like, optional
+            Where the motion begins; the flow's own start if left out.
+        transient : float, optional
+            Time before recurrence is looked for; it is lengthened as long as nothing recurs.
+        longest : int
+            Returns (periods of the forcing) after which a motion is given up.
+        **values
+            Of parameters.
+
+        Raises
+        ------
+        ValueError
+            If the motion escapes, comes to rest, or does not recur.
+        """
+        parameters = self.values.against(self.values.varying, values)
+        start = self.x0 if x0 is None else flat_start(x0)
+        if len(start) != len(self.x0):
+            raise ValueError(f"x0 has {len(start)} numbers; the flow has {len(self.x0)} states")
+        field = self.field.against(parameters)
+        times, states, rounds = recurrence(field, parameters.start, start, transient, longest)
+        return self._cycle(times, states, parameters, rounds)
+
+    @hinting
+    def cycle(self, times: Any, states: Any, *, rounds: int | None = None, **values: float) -> CycleOrbit:
+        """The cycle near given states at given times, from the first time to one period later.
+
+        Parameters
+        ----------
+        times : array_like, shape (n,)
+        states : array_like, shape (n, d)
+        rounds : int, optional
+            Of forced flows: after so many periods of the forcing; by default as many as the times tell.
+        **values
+            Of parameters.
+
+        Raises
+        ------
+        ValueError
+            If the data are no cycle, or Newton's method does not lead from them to one.
+        """
+        t, x = np.asarray(times, dtype=float), np.asarray(states, dtype=float)
+        if t.ndim != 1 or len(t) < 5 or not (np.diff(t) > 0.0).all():
+            raise ValueError("times must be at least five increasing numbers")
+        if x.shape != (len(t), len(self.x0)):
+            raise ValueError(f"states has shape {x.shape}; ({len(t)}, {len(self.x0)}) is needed")
+        parameters = self.values.against(self.values.varying, values)
+        field = self.field.against(parameters)
+        if field.forced and rounds is None:
+            rounds = max(1, round(float(t[-1] - t[0]) / float(field.length_of_period(parameters.start))))
+        return self._cycle(t, x, parameters, rounds or 1)
+
+    def _cycle(
+        self, times: np.ndarray, states: np.ndarray, parameters: ParameterSet, rounds: int
+    ) -> CycleOrbit:
+        field, d = self.field.against(parameters), len(self.x0)
+        ranges = np.ptp(states, axis=0)
+        given = given_scale(self.given_scale, d)
+        scale = np.maximum(ranges, 1e-3 * ranges.max() or 1.0) if given is None else given
+        copies = 1 if field.forced and rounds % 2 else 2
+        count = INTERVALS * (rounds if field.forced else 1)
+        r = rule(self.degree)
+        widths = np.full(count, 1.0 / count)
+        places = times[0] + mesh.node_places(r, widths) * (times[-1] - times[0])
+        if field.forced:
+            period = rounds * float(field.length_of_period(parameters.start))
+            places = mesh.node_places(r, widths) * period
+            places = np.where(places < times[0], places + period, places)
+        x = np.column_stack([np.interp(places, times, column) for column in states.T])
+        own = [] if field.forced else [times[-1] - times[0]]
+        guess = np.concatenate([x.reshape(-1), own, widths])
+        unit = abs(parameters.start) or 1.0
+        cycles = CycleProblem(
+            self, field, guess, count, rounds, copies, scale, float(times[-1] - times[0]), unit
+        )
+        found = settled(cycles, guess, parameters.start)
+        if found is None:
+            raise ValueError(
+                "Newton's method does not converge from these states; give a longer transient=, or more exact states"
+            )
+        cycles, u = found
+        if np.ptp(u[: cycles.states].reshape(-1, d) / scale, axis=0).max() < 1e-6:
+            raise ValueError("Newton's method leads from these states to an equilibrium, not to a cycle")
+        shorter = cycles.root(u, parameters.start)
+        if shorter is not None:
+            cycles, u = shorter
+        return CycleOrbit(cycles, u, parameters.start)
+
+    # ------------------------------------------------------------------ words
+    def told_homoclinic(self, x: np.ndarray, period: float, p: float, values: ParameterSet) -> str:
+        """A sentence on the equilibrium near which a cycle of a long period stays longest."""
+        values = values.against(values.varying, {values.varying: p})
+        field = self.field.against(values)
+        speed = np.linalg.norm(field(x, p) / np.maximum(np.ptp(x, axis=0), 1e-300), axis=1)
+        y = x[int(np.argmin(speed))].copy()
+        for _ in range(20):
+            matrix = field.jacobian(y[None, :], p)[0]
+            step = np.linalg.lstsq(matrix, -field(y[None, :], p)[0], rcond=1e-10)[0]
+            if np.abs(step).max() > np.ptp(x, axis=0).max():
+                break
+            y = y + step
+            if np.abs(step).max() <= 1e-13 * (1.0 + np.abs(y).max()):
+                break
+        found = np.linalg.eigvals(field.jacobian(y[None, :], p)[0])
+        slow = np.abs(found.real).min() <= 1e-3 * np.abs(found).max()
+        word = "saddle-node" if slow else ("saddle-focus" if np.iscomplex(found).any() else "saddle")
+        place = ", ".join(f"{value:.6g}" for value in y)
+        eigenvalues = ", ".join(f"{value:.4g}" for value in np.sort_complex(found))
+        return f"homoclinic to the {word} at ({place}) with eigenvalues {eigenvalues}; period {period:.6g}"
+
+    def described(self) -> dict[str, Any]:
+        """What distinguishes the flow from its equations."""
+        period = self.given_period
+        where, _ = addresses({"period": period if callable(period) else None})
+        return {
+            "degree": self.degree,
+            "period": period if not callable(period) else where["period"],
+            "x0": self.x0.tolist(),
+        }
+
+    def describe(self) -> dict[str, Any]:
+        """Name, start, and how to build the flow again if its functions can be imported."""
+        if self._equilibria is not None:
+            return self._equilibria.describe()
+        given = {**self.given, "period": self.given_period if callable(self.given_period) else None}
+        where, importable = addresses(given)
+        scale = given_scale(self.given_scale, len(self.x0))
+        return {
+            "name": self.name,
+            "parameter": self.values.varying,
+            "u0": self.x0.tolist(),
+            "p0": self.values.given(),
+            "scale": None if scale is None else scale.tolist(),
+            "callables": where,
+            "flow": self.described(),
+            "factory": "contvines.flows:from_description" if importable else None,
+        }
+
+
+def _period(given: Callable | float | None, values: ParameterSet) -> Callable | None:
+    if given is None or callable(given):
+        return given
+    try:
+        period = float(given)
+    except (TypeError, ValueError):
+        raise ValueError(f"period = {given!r} must be a positive number or a function of p") from None
+    if not period > 0.0:
+        raise ValueError(f"period = {given!r} must be positive")
+    return lambda p: period

@@ -1,0 +1,51 @@
+"""Simulation of flows by scipy's integrators: the witness of cycles, and the way to what attracts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..problems.functions import NotEvaluable
+
+TIGHT = {"rtol": 1e-12, "method": "DOP853"}
+
+
+def rates(field: Any, p: float) -> Any:
+    """(t, x) -> x' for scipy."""
+
+    def rate(t: float, x: np.ndarray) -> np.ndarray:
+        try:
+            with np.errstate(all="ignore"):
+                return field(x[None, :], p, np.array([t]) if field.forced else None)[0]
+        except NotEvaluable:
+            return np.full(len(x), np.nan)
+
+    return rate
+
+
+def integrated(field: Any, p: float, x: np.ndarray, start: float, stop: float) -> np.ndarray:
+    """The state at another time; NaN where the integrator fails."""
+    from scipy.integrate import solve_ivp
+
+    size: Any = 1e-13 * (1e-3 * field.lengths + np.abs(x))
+    found = solve_ivp(rates(field, p), (start, stop), x, atol=size, **TIGHT)
+    return found.y[:, -1] if found.success else np.full(len(x), np.nan)
+
+
+def variational(
+    field: Any, p: float, x: np.ndarray, start: float, stop: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The state at another time and its derivative by the first one."""
+    from scipy.integrate import solve_ivp
+
+    d = len(x)
+
+    def rate(t: float, y: np.ndarray) -> np.ndarray:
+        time, state = np.array([t]) if field.forced else None, y[None, :d]
+        matrix = field.jacobian(state, p, time)[0]
+        return np.concatenate([field(state, p, time)[0], (matrix @ y[d:].reshape(d, d)).reshape(-1)])
+
+    begin = np.concatenate([x, np.eye(d).reshape(-1)])
+    found = solve_ivp(rate, (start, stop), begin, atol=1e-13, **TIGHT)
+    return found.y[:d, -1], found.y[d:, -1].reshape(d, d)
