@@ -62,6 +62,21 @@ def chunks(
         The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
         chunks share their memory: take from them what is needed before the next one.
     """
+    try:
+        yield from _chunks(engine, start, journal, key, stop_at_border, first_step)
+    finally:
+        if isinstance(engine.problem, Adaptive):
+            engine.problem.anchor(None)
+
+
+def _chunks(
+    engine: Engine,
+    start: Solved,
+    journal: Any,
+    key: str,
+    stop_at_border: bool,
+    first_step: float | None,
+) -> Generator[Chunk, Retrace | None, None]:
     settings = engine.settings
     n, capacity = engine.n, settings.first_chunk
     retrace: Retrace | None = None
@@ -72,7 +87,7 @@ def chunks(
     ):
         yield _pack([start], Status.LEFT_INTERVAL)
         return
-    history = [start]
+    history = _anchored(engine, [start]) if adaptive else [start]
     h = settings.first_step if first_step is None else first_step
     closing, reach = Closing(engine, start), Reach(engine, start)
     total, number = 1, 0
@@ -128,26 +143,33 @@ def chunks(
         number += 1
         history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
         if adaptive:
-            history = _on_a_better_mesh(engine, history)
+            history = _anchored(engine, history)
         capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
 
 
-def _on_a_better_mesh(engine: Engine, history: list[Solved]) -> list[Solved]:
-    """The last points on a mesh that suits the last one; as they are where their mesh is good."""
+def _anchored(engine: Engine, history: list[Solved]) -> list[Solved]:
+    """The last points on a mesh that suits the last one, whose phase is kept from now on."""
     problem: Any = engine.problem
+    problem.anchor(None)
     image = problem.adapted(history[-1].u)
-    if image is None:
-        return history
-    found = []
-    for point in history:
-        u = image(point.u)
-        tangent = engine.unit(engine.join(image(point.tangent[:-1], True), float(point.tangent[-1])))
-        border = engine.weights * tangent
-        new = engine.solve(u, point.p, border, float(border @ engine.join(u, point.p)), tangent)
-        if new is None:
-            return history
-        found.append(new)
-    return found
+    points = list(history)
+    if image is not None:
+        moved = [_solved_again(engine, point, image) for point in points]
+        if all(point is not None for point in moved):
+            points = [point for point in moved if point is not None]
+    problem.anchor(points[-1].u, points[-1].p)
+    before = [_solved_again(engine, point) for point in points[:-1]]
+    return [*(point for point in before if point is not None), points[-1]]
+
+
+def _solved_again(engine: Engine, point: Solved, image: Any = None) -> Solved | None:
+    """A point, as its image on another mesh reads, solved along its tangent."""
+    u, direction = point.u, point.tangent[:-1]
+    if image is not None:
+        u, direction = image(u), image(direction, True)
+    tangent = engine.unit(engine.join(direction, float(point.tangent[-1])))
+    border = engine.weights * tangent
+    return engine.solve(u, point.p, border, float(border @ engine.join(u, point.p)), tangent)
 
 
 def _march(

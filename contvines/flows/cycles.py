@@ -214,11 +214,29 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         phase[:, 0] += np.roll(row[:, -1], 1, axis=0)
         size = np.sqrt((phase**2).sum())
         work.phase = (phase / size if size > 0.0 else self._first_phase(phase)).reshape(count, m * d)
+        if self.reference is not None:
+            work.phase, origin = self.reference
+            work.residual[self.states] = (work.phase * ((x / self.node_scale).reshape(count, -1) - origin)).sum()
         work.speeds = self.field(x[:, 0], p) / self.node_scale
         push = np.einsum("icab,ica->icb", scaled, direction)
         with np.errstate(all="ignore"):
             near = (direction**2).sum(axis=2) / np.sqrt((push**2).sum(axis=2))
         work.closeness = float(np.nanmin(near)) if np.isfinite(near).any() else np.inf
+
+    reference: tuple[np.ndarray, np.ndarray] | None = None
+
+    def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
+        """Keep the phase of a cycle for those that follow; None: corrections alone are orthogonal to the motion.
+
+        Where the phase is not kept, predictions from several points of a branch would let it drift.
+        """
+        self.reference = None
+        if u is None or not self.free_period:
+            return
+        work = self.workspace()
+        self.evaluate(u, p, work)
+        x = u[: self.states].reshape(self.intervals, -1, self.node) / self.node_scale
+        self.reference = work.phase, x.reshape(self.intervals, -1)
 
     def _first_phase(self, phase: np.ndarray) -> np.ndarray:
         """A row where the cycle is an equilibrium, which moves in no direction."""
