@@ -293,7 +293,8 @@ class Examiner:
             root = locate_singular(segment, along, rough) or locate(segment, along)
             if root is not None:
                 root = locate_singular(segment, along, root.position) or root
-                kind = self._where_singular(segment, root, test.kind)
+                at = test.symmetry.kind_at
+                kind = self._where_singular(segment, root, test.kind if at is None else at(root.point.u))
                 events.append(self._located(root, kind, index, Role.MEETING))
         return events
 

@@ -20,9 +20,10 @@ from .measures import CycleMeasures
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
+NEARLY_AT_REST = 1e-4  # ... and where a branch comes to an end there, known to fewer digits, of this size
 ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
-CLOSE = 1e-5  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
-FINE = 1e-7  # estimated error between mesh points, in units of the size of the cycle, above which intervals are halved
+CLOSE = 1e-8  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
+FINE = 1e-6  # estimated error between mesh points, in units of the size of the cycle, above which intervals are halved
 MOST = 1280  # intervals
 
 
@@ -137,7 +138,6 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         """Cycles with another number of intervals."""
         values = self.values.against(self.parameter, {self.parameter: p})
         rounds = self.rounds if rounds is None else rounds
-        clock = self.clock * intervals / self.intervals if copies != self.copies else self.clock
         return CycleProblem(
             self.flow,
             self.field.against(values),
@@ -146,7 +146,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             rounds,
             copies,
             self.node_scale,
-            clock,
+            self.clock,
             self.parameter_scale,
         )
 
@@ -332,7 +332,8 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         found = []
         even = self.intervals % 2 == 0
         if even and self.copies % 2 == 0 and (self.free_period or self.rounds % 2 == 0):
-            found.append(Symmetry("period-doubling", self._half_later, self._root))
+            at = self._kind_at if self.free_period else None
+            found.append(Symmetry("period-doubling", self._half_later, self._root, at))
         elif even and self.free_period:
             found.append(Symmetry("hopf", self._half_later, self._root))
         mirror = self.flow.mirror
@@ -342,6 +343,11 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             if self.free_period or not self.flow.mirror_shifted:
                 found.append(Symmetry("symmetry-breaking", self._mirrored))
         return found
+
+    def _kind_at(self, u: np.ndarray) -> str:
+        """Whether a cycle that is equal to itself half a period later is an equilibrium or a cycle of half the period."""
+        y = u[: self.states].reshape(-1, self.node) / self.node_scale
+        return "hopf" if np.ptp(y, axis=0).max() < NEARLY_AT_REST else "period-doubling"
 
     def _half_later(self, u: np.ndarray) -> np.ndarray:
         v = np.array(u, dtype=float)
@@ -366,7 +372,8 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         """The equilibrium, or the cycle of half the period, that a solution only repeats; else None."""
         x, widths = self._curve(u)
         y = x.reshape(-1, self.node)
-        if (np.ptp(y, axis=0) <= AT_REST * self.node_scale).all() and self.free_period:
+        still = AT_REST if loose == SAME else NEARLY_AT_REST
+        if (np.ptp(y, axis=0) <= still * self.node_scale).all() and self.free_period:
             return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p}), y.mean(
                 axis=0
             )

@@ -10,7 +10,6 @@ import numpy as np
 from ..problems.algebraic import AlgebraicProblem
 from ..problems.protocol import Embedding
 from . import mesh
-from .cycles import CycleProblem
 
 FIRST = 20  # intervals of a cycle that has just been born
 
@@ -89,7 +88,8 @@ def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.
     field = flow.field.against(values)
     m = flow.degree
     still = np.concatenate([np.tile(u[:d], FIRST * m), [period], widths])
-    cycles = CycleProblem(flow, field, still, FIRST, scale=scale, clock=period, unit=unit)
+    cycles = flow.cycles(field, still, FIRST, 1, 1, scale, period, unit)
+    scale = cycles.node_scale
     angles = 2.0 * np.pi * mesh.node_places(cycles.rule, widths)
     q = q / np.linalg.norm(q / scale)
     wave = np.real(np.exp(1j * angles)[:, None] * q)

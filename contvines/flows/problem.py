@@ -87,6 +87,7 @@ class FlowProblem:
         self.values = ParameterSet(params, parameter)
         self.mirror = None if mirror is None else image_map(mirror, len(self.x0))
         self.mirror_shifted = False
+        self.sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
         self.field = Field(f, jacobian, derivative, self.x0, self.values, _period(period, self.values))
         if self.field.forced:
             self.field.length_of_period(self.values.start)
@@ -240,9 +241,8 @@ class FlowProblem:
         own = [] if field.forced else [times[-1] - times[0]]
         guess = np.concatenate([x.reshape(-1), own, widths])
         unit = abs(parameters.start) or 1.0
-        cycles = CycleProblem(
-            self, field, guess, count, rounds, copies, scale, float(times[-1] - times[0]), unit
-        )
+        clock = float(times[-1] - times[0])
+        cycles = self.cycles(field, guess, count, rounds, copies, scale, clock, unit)
         found = settled(cycles, guess, parameters.start)
         if found is None:
             raise ValueError(
@@ -255,6 +255,23 @@ class FlowProblem:
         if shorter is not None:
             cycles, u = shorter
         return CycleOrbit(cycles, u, parameters.start)
+
+    def cycles(
+        self,
+        field: Field,
+        u: np.ndarray,
+        intervals: int,
+        rounds: int,
+        copies: int,
+        scale: np.ndarray,
+        clock: float,
+        unit: float,
+    ) -> CycleProblem:
+        """The problem of cycles; scales are those of the first one that was asked for, so that cycles of all can be compared."""
+        if self.sizes is None:
+            self.sizes = np.array(scale, dtype=float), float(clock)
+        scale, clock = self.sizes
+        return CycleProblem(self, field, u, intervals, rounds, copies, scale, clock, unit)
 
     # ------------------------------------------------------------------ words
     def told_homoclinic(self, x: np.ndarray, period: float, p: float, values: ParameterSet) -> str:

@@ -271,7 +271,7 @@ def _special(
         special.met_from = branch.label
     if kind == "fold":
         special.coefficient = fold_coefficient(engine, point)
-    if kind in ("neimark-sacker", "hopf"):
+    if kind == "neimark-sacker" or (kind == "hopf" and engine.problem.spectrum == "flow"):
         form = pair_form(engine.problem, special.u, special.value, engine.spectrum(point.row))
         special.coefficient, special.criticality = form.coefficient, form.criticality
         special.remarks = (*special.remarks, form.note) if form.note else special.remarks

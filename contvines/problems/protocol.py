@@ -79,11 +79,14 @@ class Symmetry:
         u -> the image of u, both of shape (N,).
     root : callable, optional
         u -> (problem, u) of the smaller problem for a solution that lies in the fixed space.
+    kind_at : callable, optional
+        u -> the kind at a solution in the fixed space, where it is not the same everywhere.
     """
 
     kind: str
     apply: Callable[[np.ndarray], np.ndarray]
     root: Callable[[np.ndarray], tuple[Any, np.ndarray]] | None = None
+    kind_at: Callable[[np.ndarray], str] | None = None
 
 
 class Embedding(NamedTuple):
