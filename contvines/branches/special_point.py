@@ -151,6 +151,20 @@ class SpecialPoint:
         """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
         return above("circles")(self, to, **options)
 
+    def cycles(self) -> Any:
+        """One of the small cycles that are born at a Hopf point: a seed for ``contvines.diagram``.
+
+        Raises
+        ------
+        ValueError
+            If it is no Hopf point of a flow, or no cycle is found.
+        """
+        if self.kind != "hopf":
+            raise ValueError(f"{self.label} is a {self.kind} point; cycles are born at Hopf points")
+        if self.problem is None:
+            raise ValueError(without_problem(self.label))
+        return above("cycle_at")(self)
+
     def __repr__(self) -> str:
         virtual = "" if self.real else "virtual "
         side = f", {self.criticality}" if self.criticality else ""

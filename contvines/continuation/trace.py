@@ -80,7 +80,8 @@ def _chunks(
     settings = engine.settings
     n, capacity = engine.n, settings.first_chunk
     retrace: Retrace | None = None
-    adaptive = isinstance(engine.problem, Adaptive)
+    problem: Any = engine.problem
+    adaptive = isinstance(problem, Adaptive)
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
@@ -113,7 +114,7 @@ def _chunks(
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
             if adaptive:
-                room = min(room, engine.problem.chunk)
+                room = min(room, problem.chunk)
             room = min(room, max(settings.max_points - total, 1))
             apart = _apart(engine, max(h, longest))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)

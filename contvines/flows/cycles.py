@@ -23,8 +23,8 @@ AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equili
 NEARLY_AT_REST = 1e-4  # ... and where a branch comes to an end there, known to fewer digits, of this size
 ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
 CLOSE = 1e-8  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
-FINE = 1e-6  # estimated error between mesh points, in units of the size of the cycle, above which intervals are halved
 MOST = 1280  # intervals
+CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
 class CycleProblem(CycleMeasures, ProblemDefaults):
@@ -152,7 +152,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns and parameter."""
-        return self.scales.vector
+        return np.append(self.column_scale, self.parameter_scale)
 
     def amplitude(self, direction: np.ndarray) -> float:
         """Root mean square of a direction over the nodes."""
@@ -216,7 +216,9 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         work.phase = (phase / size if size > 0.0 else self._first_phase(phase)).reshape(count, m * d)
         if self.reference is not None:
             work.phase, origin = self.reference
-            work.residual[self.states] = (work.phase * ((x / self.node_scale).reshape(count, -1) - origin)).sum()
+            work.residual[self.states] = (
+                work.phase * ((x / self.node_scale).reshape(count, -1) - origin)
+            ).sum()
         work.speeds = self.field(x[:, 0], p) / self.node_scale
         push = np.einsum("icab,ica->icb", scaled, direction)
         with np.errstate(all="ignore"):
@@ -288,6 +290,12 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             ranges, 1e-6 * self.node_scale * (ranges / self.node_scale).max() + 1e-12 * self.node_scale
         )
 
+    def accuracy(self, u: np.ndarray) -> float:
+        """Relative accuracy of parameter, period and mesh points: of order 2 m where the curve between them is known to order m + 1."""
+        m = self.rule.degree
+        error = min(self.estimated_error(u), 1.0)
+        return max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.missed, self.uncertainty())
+
     def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
         x, widths = self._curve(u)
@@ -307,7 +315,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
     def too_coarse(self, u: np.ndarray) -> bool:
         """Whether a cycle asks for more intervals."""
-        return self.intervals < MOST and self.estimated_error(u) > FINE
+        return self.intervals < MOST and self.estimated_error(u) > self.flow.error
 
     def refined(self) -> CycleProblem:
         """The same cycles with twice as many intervals."""
@@ -461,6 +469,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             "parameter": self.parameter,
             "p0": self.values.given(),
             "cycle": {
+                "u0": self.u0.tolist(),
                 "intervals": self.intervals,
                 "rounds": self.rounds,
                 "copies": self.copies,
@@ -468,7 +477,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
                 "clock": self.clock,
                 "unit": self.parameter_scale,
             },
-            "factory": "contvines.flows:from_description" if about.get("factory") else None,
+            "factory": "contvines.flows.files:from_description" if about.get("factory") else None,
         }
 
     def uncertainty(self) -> float:

@@ -25,6 +25,7 @@ class Equilibria(AlgebraicProblem):
     """
 
     flow: Any
+    mixed_rows = False  # f(R x) = R f(x), as cycles have it
 
     def __init__(self, flow: Any, *arguments: Any, **options: Any) -> None:
         self.flow = flow
@@ -61,7 +62,8 @@ class Equilibria(AlgebraicProblem):
         if kind != "hopf" or self.functions.structure != "dense":
             return []
         matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
-        values, vectors = np.linalg.eig(matrix)
+        decomposed: Any = np.linalg.eig(matrix)
+        values, vectors = decomposed[0].astype(complex), decomposed[1].astype(complex)
         upper = np.flatnonzero(values.imag > 0.0)
         if not len(upper):
             return []
@@ -72,7 +74,7 @@ class Equilibria(AlgebraicProblem):
         """Name, start, and how to build the problem again."""
         about = super().describe()
         if about.get("factory"):
-            about["factory"] = "contvines.flows:from_description"
+            about["factory"] = "contvines.flows.files:from_description"
         return {**about, "word": "equilibrium", "flow": self.flow.described()}
 
 

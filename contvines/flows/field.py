@@ -50,13 +50,15 @@ class Field:
     ) -> None:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.values, self.period, self.node = values, period, len(start)
-        fixed = tuple(_at_zero(g, period) for g in (f, jacobian))
-        slope = (
+        slope: Any = (
             {name: _at_zero(g, period) for name, g in derivative.items()}
             if isinstance(derivative, Mapping)
             else _at_zero(derivative, period)
         )
-        self.functions = Differentiated(fixed[0], fixed[1], slope, start, values, "the right-hand side")
+        still: Any = _at_zero(f, period)
+        self.functions = Differentiated(
+            still, _at_zero(jacobian, period), slope, start, values, "the right-hand side"
+        )
         self.lengths, self.complex_step = self.functions.lengths, self.functions.complex_step
         if not self.complex_step and not self.functions.noise.any():
             self.complex_step = self.functions._complex_step_works(start, values.start)
@@ -108,9 +110,7 @@ class Field:
     def _arguments(self, x: np.ndarray, parameters: Any, t: Any) -> tuple[Any, ...]:
         return (x, parameters) if self.period is None else (x, parameters, t)
 
-    def _one(
-        self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]
-    ) -> np.ndarray:
+    def _one(self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]) -> np.ndarray:
         try:
             value = np.array(f(*self._arguments(x.copy(), parameters, t)))
         except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:

@@ -23,8 +23,10 @@ class CycleWork:
 
     def __init__(self, n: int) -> None:
         self.residual, self.derivative = np.zeros(n), np.zeros(n)
-        self.blocks = self.by_period = self.phase = np.zeros(0)
-        self.speeds = np.zeros(0)
+        self.blocks: np.ndarray = np.zeros(0)
+        self.by_period: np.ndarray = np.zeros(0)
+        self.phase: np.ndarray = np.zeros(0)
+        self.speeds: np.ndarray = np.zeros(0)
         self.closeness = np.inf
         self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
         self.kept: Any = None  # by_period and phase, while the closure is turned round
@@ -146,7 +148,7 @@ def transfers(data: Any, work: CycleWork) -> np.ndarray:
 
 def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     """Multipliers, of autonomous flows without the trivial one, and by how much that one, as computed, misses 1."""
-    steps, d = transfers(data, work), data.node
+    steps = transfers(data, work)
     if not data.free_period:
         return product_eigenvalues(steps), 0.0
     speeds = work.speeds

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,9 @@ class CycleOrbit:
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.10g}" for name, value in self.parameters.items())
         stable = "stable" if self.stable else "unstable"
-        return f"CycleOrbit({values}: {stable}, period {self.period:.10g}, {self._problem.intervals} intervals)"
+        return (
+            f"CycleOrbit({values}: {stable}, period {self.period:.10g}, {self._problem.intervals} intervals)"
+        )
 
     def __call__(self, t: Any) -> np.ndarray:
         """States at times, shape (..., d)."""
@@ -93,7 +96,7 @@ class CycleOrbit:
         """Largest distance of a simulation (scipy's DOP853) from the cycle, relative to its scale; it begins anew eight times along the cycle."""
         worst, field = 0.0, self._problem.field
         edges = np.linspace(0.0, self.period, SEGMENTS + 1)
-        for start, stop in zip(edges[:-1], edges[1:]):
+        for start, stop in pairwise(edges):
             end = integrated(field, self.value, self(start), start, stop)
             gap = np.abs(end - self(stop)) / (self._problem.node_scale + np.abs(end))
             worst = max(worst, float(gap.max()))
@@ -103,7 +106,7 @@ class CycleOrbit:
         """Multipliers from the variational equations, integrated along a simulation (scipy's DOP853), the trivial one included."""
         edges = np.linspace(0.0, self.period, SEGMENTS + 1)
         product = np.eye(self._problem.node)
-        for start, stop in zip(edges[:-1], edges[1:]):
+        for start, stop in pairwise(edges):
             product = variational(self._problem.field, self.value, self(start), start, stop)[1] @ product
         return np.linalg.eigvals(product)
 

@@ -50,6 +50,9 @@ class FlowProblem:
         df/dp, shape (d,); of several parameters by name.
     degree : int
         Of the collocation polynomials, 2 to 7.
+    error : float
+        Largest error of a cycle between its mesh points, relative to its size; intervals are halved where it is larger. Periods,
+        parameters and multipliers have the square of that, nearly.
     scale : float or array_like of shape (d,), optional
         What counts as large in each coordinate.
     parameter : str
@@ -74,6 +77,7 @@ class FlowProblem:
         jacobian: Callable | None = None,
         derivative: Callable | Mapping[str, Callable] | None = None,
         degree: int = 4,
+        error: float = 1e-6,
         scale: Any = None,
         parameter: str = "p",
         name: str = "flow",
@@ -81,6 +85,9 @@ class FlowProblem:
         if not callable(f):
             raise ValueError(f"f = {f!r} must be a function of (x, p), or of (x, p, t) with period=")
         rule(degree)
+        if not (isinstance(error, (int, float)) and 0.0 < error < 1.0):
+            raise ValueError(f"error = {error!r} must be a number between 0 and 1")
+        self.error = float(error)
         self.x0, self.degree, self.name = flat_start(x0), int(degree), name
         self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
         self.given_period, self.given_scale = period, scale
@@ -289,20 +296,24 @@ class FlowProblem:
             if np.abs(step).max() <= 1e-13 * (1.0 + np.abs(y).max()):
                 break
         found = np.linalg.eigvals(field.jacobian(y[None, :], p)[0])
-        slow = np.abs(found.real).min() <= 1e-3 * np.abs(found).max()
+        # to a node there is no homoclinic orbit: it is about to meet its saddle
+        slow = (found.real < 0.0).all() or (found.real > 0.0).all()
         word = "saddle-node" if slow else ("saddle-focus" if np.iscomplex(found).any() else "saddle")
-        place = ", ".join(f"{value:.6g}" for value in y)
-        eigenvalues = ", ".join(f"{value:.4g}" for value in np.sort_complex(found))
+        size = np.maximum(np.ptp(x, axis=0), 1e-300)
+        place = ", ".join(f"{value:.6g}" for value in np.where(np.abs(y) > 1e-9 * size, y, 0.0))
+        eigenvalues = ", ".join(f"{_shortly(value)}" for value in np.sort_complex(found))
         return f"homoclinic to the {word} at ({place}) with eigenvalues {eigenvalues}; period {period:.6g}"
 
     def described(self) -> dict[str, Any]:
         """What distinguishes the flow from its equations."""
-        period = self.given_period
+        period, scale = self.given_period, given_scale(self.given_scale, len(self.x0))
         where, _ = addresses({"period": period if callable(period) else None})
         return {
             "degree": self.degree,
+            "error": self.error,
             "period": period if not callable(period) else where["period"],
             "x0": self.x0.tolist(),
+            "scale": None if scale is None else scale.tolist(),
         }
 
     def describe(self) -> dict[str, Any]:
@@ -320,8 +331,12 @@ class FlowProblem:
             "scale": None if scale is None else scale.tolist(),
             "callables": where,
             "flow": self.described(),
-            "factory": "contvines.flows:from_description" if importable else None,
+            "factory": "contvines.flows.files:from_description" if importable else None,
         }
+
+
+def _shortly(value: complex) -> str:
+    return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"
 
 
 def _period(given: Callable | float | None, values: ParameterSet) -> Callable | None:

@@ -225,9 +225,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.tell(f"{label} finished", float(branch.values[-1]))
 
 
-def refined(
-    run: Run, engine: Engine, pending: Pending, first: Solved
-) -> tuple[Engine, Watch, Solved] | None:
+def refined(run: Run, engine: Engine, pending: Pending, first: Solved) -> tuple[Engine, Watch, Solved] | None:
     """The same pending branch with more unknowns; None where it cannot be started there."""
     coarse: Any = pending.problem
     problem = coarse.refined()
@@ -237,9 +235,7 @@ def refined(
         if point is None:
             return None
         u = coarse.halved(point.u)
-        tangent = finer.unit(
-            finer.join(coarse.halved(point.tangent[:-1], True), float(point.tangent[-1]))
-        )
+        tangent = finer.unit(finer.join(coarse.halved(point.tangent[:-1], True), float(point.tangent[-1])))
         if not solve:
             return point._replace(u=u, tangent=tangent)
         border = finer.weights * tangent

@@ -19,6 +19,7 @@ from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
 from ..forms.criticality import pair_form
 from ..interrupts import OPEN
+from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..switching.departures import null_vectors
 from ..switching.normal_forms import fold_coefficient
@@ -232,6 +233,11 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
     special.location_error = max(
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
+    if isinstance(problem, Adaptive):
+        own = problem.accuracy(special.u) * engine.parameter_unit(special.value)
+        special.location_error = max(special.location_error, own)
+    if special.kind == "homoclinic":  # the parameter is still on its way to that of an infinite period
+        special.location_error = max(special.location_error, abs(special.bracket[1] - special.bracket[0]))
     if special.kind == "branch-point":
         where = engine, special.u, special.value, special.tangent
         within = max(singular_within(*where), 2.0 * missed(*where))

@@ -183,12 +183,13 @@ class Adaptive(Protocol):
     """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
 
     ``adapted(u)`` returns how unknowns, and directions of unknowns (``image(v, direction=True)``), read on a better mesh, or None;
-    ``anchor(u, p)`` keeps the phase of a solution for those that follow, until ``anchor(None)``;
+    ``accuracy(u)`` is the relative accuracy of values on the mesh; ``anchor(u, p)`` keeps the phase of a solution for those that follow, until ``anchor(None)``;
     ``too_coarse(u)`` tells whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these.
     """
 
     chunk: int
 
+    def accuracy(self, u: np.ndarray) -> float: ...
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None: ...
     def adapted(self, u: np.ndarray) -> Any: ...
     def too_coarse(self, u: np.ndarray) -> bool: ...

@@ -1,0 +1,44 @@
+"""A small cycle near a Hopf point."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..branches.special_point import SpecialPoint
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from ..problems.registry import without_problem
+from ..switching.departures import departures
+
+HALVINGS = 4  # of the amplitude, until a cycle is found
+
+
+def cycle_at(point: SpecialPoint) -> Any:
+    """One of the small cycles that are born at a Hopf point.
+
+    Raises
+    ------
+    ValueError
+        If the problem has no cycles, or none is found.
+    """
+    problem: Any = point.problem
+    if problem is None:
+        raise ValueError(without_problem(point.label))
+    children = problem.offspring("hopf", point.u, point.value, point.tangent, 1j)
+    settings = Settings()
+    width = 1.0 + abs(point.value)
+    for child in children:
+        engine = Engine(child.problem, (point.value - width, point.value + width), settings)
+        direction = engine.unit(np.asarray(child.tangent, dtype=float))
+        amplitude = settings.amplitude
+        for _ in range(HALVINGS):
+            nothing = np.zeros(engine.n + 1)
+            found = departures(engine, child.u, point.value, nothing, amplitude, True, [direction])
+            if found:
+                return child.problem.orbit(found[0].ahead.u, found[0].ahead.p)
+            amplitude *= 0.5
+    raise ValueError(
+        f"{point.label}: no cycle is found there; only Hopf points of a contvines.FlowProblem have cycles"
+    )

@@ -1,0 +1,160 @@
+"""Cycles of flows against closed forms, simulation with scipy, and the literature."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import contvines as cv
+
+
+def stuart_landau(x, p):
+    """r' = r (m (1 - m) - r^2), angle' = 1: a circle of radius sqrt(m (1 - m)), period 2 pi, multiplier exp(-4 pi m (1 - m))."""
+    growth, square = p.m * (1 - p.m), x[0] ** 2 + x[1] ** 2
+    return [growth * x[0] - x[1] - x[0] * square, x[0] + growth * x[1] - x[1] * square]
+
+
+def lure(x, p):
+    return [x[1], x[2], -p.alpha * x[2] - p.beta * x[1] - x[0] + x[0] ** 2]
+
+
+def lorenz(x, p):
+    return [10 * (x[1] - x[0]), p.r * x[0] - x[1] - x[0] * x[2], x[0] * x[1] - 8 / 3 * x[2]]
+
+
+def duffing(x, p, t):
+    return [x[1], -0.1 * x[1] - x[0] - x[0] ** 3 + p.g * np.cos(p.omega * t)]
+
+
+def monodromy(f, x, period, jacobian):
+    """By scipy's DOP853, of the variational equations."""
+    d = len(x)
+
+    def rate(t, y):
+        return np.concatenate([f(y[:d]), (jacobian(y[:d]) @ y[d:].reshape(d, d)).ravel()])
+
+    start = np.concatenate([x, np.eye(d).ravel()])
+    end = solve_ivp(rate, (0.0, period), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    return end[:d], end[d:].reshape(d, d)
+
+
+def test_circles_from_one_hopf_point_to_the_next():
+    graph = cv.diagram(cv.FlowProblem(stuart_landau, [0.0, 0.0], {"m": -0.5}), over="m", within=(-1.0, 2.0))
+    assert [point.value for point in graph.of_kind("hopf")] == pytest.approx([0.0, 1.0], abs=1e-12)
+    assert [p.criticality for p in graph.of_kind("hopf")] == ["supercritical"] * 2
+    assert len(graph.branches) == 2  # the cycles that leave one point come back at the other
+    cycles = graph["B2"]
+    growth = cycles.values * (1.0 - cycles.values)
+    assert np.allclose(cycles.measure("max x0"), np.sqrt(np.maximum(growth, 0.0)), atol=2e-8)
+    assert np.allclose(cycles.measure("period"), 2.0 * np.pi, atol=1e-8)
+    inner = slice(1, -1)
+    assert np.allclose(cycles.multipliers[inner, 0], np.exp(-4.0 * np.pi * growth[inner]), atol=1e-7)
+    assert cycles.stable[inner].all()
+
+
+def test_a_cascade_begins_where_simulation_has_a_multiplier_of_minus_one():
+    flow = cv.FlowProblem(lure, [0.0, 0.0, 0.0], {"alpha": 1.5, "beta": 1.0})
+    graph = cv.diagram(flow, over="alpha", within=(0.55, 1.6), depth=2)
+    assert graph["HB1"].value == pytest.approx(1.0, abs=1e-12)  # Routh and Hurwitz: alpha beta = 1
+    point = graph["PD1"]
+    assert point.value == pytest.approx(0.63030200616, abs=1e-9)  # BifurcationKit's tutorial prints 0.630302
+    orbit = point.orbit
+
+    def jacobian(x):
+        return np.array([[0, 1, 0], [0, 0, 1], [-1 + 2 * x[0], -1, -point.value]])
+
+    def f(x):
+        return np.array([x[1], x[2], -point.value * x[2] - x[1] - x[0] + x[0] ** 2])
+
+    end, matrix = monodromy(f, orbit.states[0], orbit.period, jacobian)
+    assert np.abs(end - orbit.states[0]).max() < 1e-8
+    found = np.linalg.eigvals(matrix)
+    assert np.abs(found + 1.0).min() < 1e-7
+    assert np.abs(found - 1.0).min() < 1e-7
+    assert graph["PD1"].criticality == "supercritical"
+    assert graph["PD2"].branch == "B3"
+    assert graph["B3"].measure("period")[0] == pytest.approx(2.0 * orbit.period, rel=1e-6)
+
+
+def test_lorenz_cycles_end_as_a_homoclinic_orbit():
+    side = np.sqrt(8 / 3 * 19)
+    flow = cv.FlowProblem(lorenz, [side, side, 19.0], {"r": 20.0}, mirror=lambda x: x * np.array([-1, -1, 1]))
+    graph = cv.diagram(flow, over="r", within=(13.0, 26.0))
+    hopf = graph.of_kind("hopf")[0]
+    assert hopf.value == pytest.approx(470 / 19, abs=1e-11)
+    assert hopf.criticality == "subcritical"
+    end = graph.of_kind("homoclinic")[0]
+    assert end.value == pytest.approx(13.926557, abs=1e-6)  # Sparrow 1982: 13.926
+    assert "saddle at (0, 0, 0)" in end.note
+    assert end.multipliers.real.max() > 1e10
+
+
+def test_what_attracts_is_solved_for():
+    flow = cv.FlowProblem(
+        lambda x, p: [p.a - (p.b + 1) * x[0] + x[0] ** 2 * x[1], p.b * x[0] - x[0] ** 2 * x[1]],
+        [1.0, 1.0],
+        {"a": 1.0, "b": 2.2},
+    )
+    orbit = flow.attractor()
+    assert orbit.replay() < 1e-5
+    assert np.abs(orbit.simulated_multipliers() - 1.0).min() < 1e-6
+    assert orbit.stable
+    graph = cv.diagram(orbit, over="b", within=(1.5, 2.5))
+    assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([2.0], abs=1e-8)  # b = 1 + a^2
+    assert len(graph.branches) == 2
+
+
+def test_a_forced_oscillator_folds_where_scipy_has_a_multiplier_of_one():
+    flow = cv.FlowProblem(duffing, [0.0, 0.0], {"omega": 1.0, "g": 0.5}, period=lambda p: 2 * np.pi / p.omega)
+    graph = cv.diagram(flow, over="omega", within=(0.9, 3.0))
+    folds = graph.of_kind("fold")
+    assert len(folds) == 2
+    for point in folds:
+        orbit, omega = point.orbit, point.value
+
+        def rate(t, y, omega=omega):
+            x, v = y[:2], y[2:].reshape(2, 2)
+            jacobian = np.array([[0.0, 1.0], [-1.0 - 3.0 * x[0] ** 2, -0.1]])
+            own = [x[1], -0.1 * x[1] - x[0] - x[0] ** 3 + 0.5 * np.cos(omega * t)]
+            return np.concatenate([own, (jacobian @ v).ravel()])
+
+        start = np.concatenate([orbit.states[0], np.eye(2).ravel()])
+        end = solve_ivp(rate, (0.0, 2 * np.pi / omega), start, method="DOP853", rtol=1e-12, atol=1e-13).y[
+            :, -1
+        ]
+        assert np.abs(end[:2] - orbit.states[0]).max() < 1e-6
+        assert np.abs(np.linalg.eigvals(end[2:].reshape(2, 2)) - 1.0).min() < 1e-3  # square root of the error
+        assert np.linalg.det(end[2:].reshape(2, 2)) == pytest.approx(
+            np.exp(-0.1 * 2 * np.pi / omega), rel=1e-8
+        )
+        assert np.prod(point.multipliers).real == pytest.approx(np.exp(-0.1 * 2 * np.pi / omega), rel=1e-6)
+
+
+def test_a_graph_with_cycles_is_read_back(tmp_path):
+    graph = cv.diagram(cv.FlowProblem(stuart_landau, [0.0, 0.0], {"m": -0.1}), over="m", within=(-0.2, 0.3))
+    graph.save(tmp_path / "circles.vines")
+    again = cv.load(tmp_path / "circles.vines")
+    assert again["B2"].problem is not None
+    assert np.allclose(again["B2"].measure("period"), 2.0 * np.pi, atol=1e-8)
+    assert again["HB1"].cycles().period == pytest.approx(2.0 * np.pi, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"degree": 9}, "degree"),
+        ({"error": 2.0}, "error"),
+        ({"period": -1.0}, "period"),
+        ({"mirror": [[1, 0], [0, -1]]}, "mirror"),
+    ],
+)
+def test_bad_input_is_refused(change, words):
+    with pytest.raises(ValueError, match=words):
+        cv.FlowProblem(lambda x, p, *t: [x[1], -x[0] + p.m * x[0] ** 2], [0.1, 0.0], {"m": 1.0}, **change)
+
+
+def test_motions_that_do_not_recur_are_refused():
+    flow = cv.FlowProblem(lambda x, p: [p.a * x[0]], [1.0], {"a": -1.0})
+    with pytest.raises(ValueError, match="rest"):
+        flow.attractor()
+    with pytest.raises(ValueError, match="escapes"):
+        flow.attractor(a=1.0)
