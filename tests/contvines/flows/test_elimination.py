@@ -5,31 +5,48 @@ import pytest
 
 from contvines.flows.elimination import condense, product_eigenvalues, solve_cyclic
 
+SIZES = [(1, 2, 1, 2), (2, 3, 2, 1), (5, 3, 2, 2), (8, 2, 1, 1), (13, 1, 2, 2)]
 
-@pytest.mark.parametrize(
-    ("n", "d", "k", "s"), [(1, 2, 1, 2), (2, 3, 2, 1), (5, 3, 2, 2), (8, 2, 1, 1), (13, 1, 2, 2)]
-)
-@pytest.mark.parametrize("closure", [1.0, -1.0])
-def test_a_block_cyclic_system_is_solved_as_a_dense_one(n, d, k, s, closure):
-    rng = np.random.default_rng(n)
+
+def drawn(n, d, k, s, seed):
+    rng = np.random.default_rng(seed)
     left, right = rng.standard_normal((2, n, d, d))
     columns, rows = rng.standard_normal((n, d, k + s)), rng.standard_normal((n + 1, k, d))
     rows[n] = 0.0
-    foot = rng.standard_normal((k, k + s))
-    found = solve_cyclic(left, right, columns, rows, foot, closure)
-    whole, sides = np.zeros((n * d + k, n * d + k)), np.zeros((n * d + k, s))
+    return left, right, columns, rows, rng.standard_normal((k, k + s))
+
+
+def written_out(left, right, columns, rows, foot, closure):
+    n, d, _ = left.shape
+    k = len(foot)
+    whole = np.zeros((n * d + k, n * d + foot.shape[1]))
     for i in range(n):
         here, after = slice(i * d, (i + 1) * d), (i + 1) % n * d
         whole[here, here] += left[i]
         whole[here, after : after + d] += (closure if i == n - 1 else 1.0) * right[i]
-        whole[here, n * d :], sides[here] = columns[i][:, :k], columns[i][:, k:]
-        whole[n * d :, here] = rows[i]
-    whole[n * d :, n * d :], sides[n * d :] = foot[:, :k], foot[:, k:]
-    expected = np.linalg.solve(whole, sides)
+        whole[here, n * d :], whole[n * d :, here] = columns[i], rows[i]
+    whole[n * d :, n * d :] = foot
+    return whole[:, : n * d + k], whole[:, n * d + k :]
+
+
+@pytest.mark.parametrize(("n", "d", "k", "s"), SIZES)
+@pytest.mark.parametrize("closure", [1.0, -1.0])
+def test_a_block_cyclic_system_is_solved_as_a_dense_one(n, d, k, s, closure):
+    system = drawn(n, d, k, s, n)
+    found = solve_cyclic(*system, closure)
+    expected = np.linalg.solve(*written_out(*system, closure))
     assert np.allclose(found.mesh[:n].reshape(n * d, s), expected[: n * d], atol=1e-11)
     assert np.allclose(found.mesh[n], closure * found.mesh[0])
     assert np.allclose(found.shared, expected[n * d :], atol=1e-11)
-    assert found.sign == np.sign(np.linalg.det(whole))
+
+
+@pytest.mark.parametrize(("n", "d", "k", "s"), SIZES)
+def test_the_sign_changes_with_that_of_the_determinant(n, d, k, s):
+    systems = [drawn(n, d, k, s, seed) for seed in range(12)]
+    signs = np.array([solve_cyclic(*system).sign for system in systems])
+    dense = np.array([np.sign(np.linalg.det(written_out(*system, 1.0)[0])) for system in systems])
+    assert len(set(signs * dense)) == 1  # the order of rows and columns is another one, always the same
+    assert len(set(dense)) == 2
 
 
 def test_unknowns_inside_an_interval_are_eliminated():
