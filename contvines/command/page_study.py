@@ -1,6 +1,7 @@
 """A study whose machine is declared on a page: `[model] name = "file.py:machine"`, a file beside the study.
 
-The page is Python and is run when the study is read: the user has named it.
+The page is Python and is run when the study is read: the user has named it. It lies in the study's folder or below, so that a study runs
+nothing that has not come with it.
 """
 
 from pathlib import Path
@@ -80,6 +81,11 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
     if not name:
         raise ValueError(
             f'[model] name = {file.model.name!r} names a page but no machine on it; "{page}:machine" would do.'
+        )
+    if Path(page).is_absolute() or ".." in Path(page).parts:
+        raise ValueError(
+            f"[model] name = {file.model.name!r}: a study runs machine files of its own folder (or of folders in it) only; "
+            f'put {Path(page).name}, or a link to it, beside {path.name}; "{Path(page).name}:{name}" would do.'
         )
     machine = load_page(path.parent / page, name)
     given: dict[str, float] = {}

@@ -22,8 +22,10 @@ def surveyed(
     ValueError
         If the file holds another survey, or the study cannot be surveyed.
     """
+    from contvines.command.survey_study import outcomes_of
     from contvines.command.sweep_rows import journal_of
 
+    outcomes_of(study)  # refused before the file is
     with held(target, quiet, fresh, (target.with_suffix(".csv"), journal_of(target))):
         found = _finished(study, target, quiet)
         return _computed(study, target, workers, cluster, quiet) if found is None else found
