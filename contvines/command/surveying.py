@@ -22,10 +22,10 @@ def surveyed(
     ValueError
         If the file holds another survey, or the study cannot be surveyed.
     """
-    from contvines.command.survey_study import outcomes_of
+    from contvines.command.survey_study import outcomes_of, plan_and_machine
     from contvines.command.sweep_rows import journal_of
 
-    outcomes_of(study)  # refused before the file is
+    _ = plan_and_machine(study), outcomes_of(study)  # a study that cannot be is refused before its file
     with held(target, quiet, fresh, (target.with_suffix(".csv"), journal_of(target))):
         found = _finished(study, target, quiet)
         return _computed(study, target, workers, cluster, quiet) if found is None else found
