@@ -113,7 +113,8 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
             moved[j] *= factor
             return np.abs(f(moved) - here)
 
-        changes = np.array([change(j, 0.0) for j in range(len(u))])
+        # zero may be another solution: twice the unknown is asked for as well
+        changes = np.array([np.maximum(change(j, 0.0), change(j, 2.0)) for j in range(len(u))])
         floor = ROUNDING * np.maximum(changes.max(axis=0), terms)
         for j in np.flatnonzero((u != 0.0) & (changes <= floor).all(axis=1)):
             found[j] = any((change(int(j), ROUNDING**-k) > floor).any() for k in range(1, HUGE))
