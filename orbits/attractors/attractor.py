@@ -105,7 +105,7 @@ class Attractor:
     def cycle(self) -> Cycle:
         """The attractor as plain data, with the word that its events read.
 
-        A motion without impacts is moved so that the mean of its w is 0, which continuation pins.
+        A motion without impacts is moved so that the mean of its w is the middle between the walls, which continuation pins.
 
         Raises
         ------

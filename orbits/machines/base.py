@@ -237,11 +237,11 @@ class Model(Varying):
 
     @classmethod
     def at_home(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Nodes (l, n); of a motion without impacts with the absorber moved so that the mean of w is 0 (q1 stays)."""
+        """Nodes (l, n); of a motion without impacts with the absorber moved so that the mean of w is the middle between the walls (q1 stays)."""
         if not len(codes) or np.any(codes < 2) or np.any(codes > 4):
             return nodes
         moved = nodes.copy()
-        mean = nodes[:, 1].mean()
+        mean = nodes[:, 1].mean() - 0.5 * float(np.sum(cls.walls(params)))
         moved[:, 1] -= mean
         if nodes.shape[1] > 2:
             moved[:, 2] += cls.column(params, "mass_ratio") * mean

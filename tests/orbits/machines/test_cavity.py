@@ -89,6 +89,9 @@ def test_level_with_unlike_distances_sliding_ends_where_it_fills_the_cavity():
     turns = np.sort(sliding.nodes[:, 1]) + 0.5 * (1.3 - 0.6)
     assert turns == pytest.approx(np.sqrt(0.81 - H**2) * np.array([-1, 1]), abs=1e-12)
     assert sliding.real
+    beside = {"phase": float(sliding.nodes[0, 0]), "w": float(sliding.nodes[0, 1]) + 0.03}
+    found = find_attractor(machine, beside, amplitude=0.9).orbit  # the same motion, moved to its place
+    assert found.real and np.sort(found.nodes[:, 1]) == pytest.approx(np.sort(sliding.nodes[:, 1]), abs=1e-9)
     graph = cv.diagram(sliding, over="amplitude", within=(0.5, 1.0), depth=1)
     assert graph["WG1"].value == pytest.approx(np.hypot(b, H), abs=1e-12)
     assert [branch.description["word"] for branch in graph] == ["tt", "LR"]
