@@ -1,5 +1,6 @@
 """`contvines diagram`, `trace` and `switch`: the commands that continue."""
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -115,13 +116,13 @@ def switch(
     trust: TrustOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
+    from contvines.graph.leaving import why_nothing_leaves
+
     with held(file, quiet):
         graph, new = _switched(file, label, quiet, trust)
     if not quiet:
         if not new:
-            where = {"end": "nothing leaves an end", "fold": "nothing leaves a fold"}
-            why = where.get(graph.special[label].kind, "nothing new leaves here")
-            typer.echo(f"{label}: {why}; {file} is as it was.")
+            typer.echo(f"{label}: {why_nothing_leaves(graph, label)}; {file} is as it was.")
         for branch in new:
             low, high = branch.range
             typer.echo(
@@ -148,7 +149,11 @@ def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, li
     settings = {
         k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
     }  # trace allows one only
-    with interruptible(f"{file} is as it was"), shown(quiet=quiet) as progress:
+    with (
+        interruptible(f"{file} is as it was"),
+        shown(quiet=quiet) as progress,
+        warnings.catch_warnings(action="ignore", category=UserWarning),  # the caller prints the reason
+    ):
         new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
     if new:
         with Store.open(file, write=True) as store:

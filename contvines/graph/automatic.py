@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -14,7 +15,7 @@ from ..journal import NullJournal
 from ..problems.registry import without_problem
 from .builder import adopt, begin, finish, work
 from .graph import Graph
-from .leaving import leave
+from .leaving import leave, why_nothing_leaves
 from .limits import NO_LIMITS, Limits
 from .run import Progress, Run
 
@@ -145,7 +146,7 @@ def switch(
     Returns
     -------
     list of str
-        Labels of the new branches; empty where nothing leaves or everything is known already.
+        Labels of the new branches; empty where nothing leaves or everything is known already: a warning says why.
 
     Raises
     ------
@@ -178,7 +179,10 @@ def switch(
     with_room(work, run)
     if finished:  # more of an unfinished graph is still to come
         finish(run)
-    return [name for name in graph.branches if name not in before]
+    new = [name for name in graph.branches if name not in before]
+    if not new:
+        warnings.warn(f"{label}: {why_nothing_leaves(graph, label)}", UserWarning, stacklevel=3)
+    return new
 
 
 __all__ = ["Progress", "diagram", "problem_and_start", "switch"]

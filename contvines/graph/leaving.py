@@ -20,12 +20,14 @@ from ..problems.abilities import Onward, everything
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
-from ..switching.normal_forms import criticality, crossing_speed
+from ..switching.normal_forms import criticality, crossing_speed, fold_coefficient
+from .graph import Graph
 from .pending import Origin, Pending
 from .run import Run
 
 DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
 CRITICAL = 1e-3  # distance from the boundary within which multipliers cross there, double ones included
+SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there
 OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
 NAMES = {"period-doubling": "minus", "symmetry-breaking": "minus", "branch-point": "plus"}
 
@@ -34,6 +36,18 @@ FAMILY = (
     "give the problem conditions= that pick one of them"
 )
 VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
+WITHOUT_EQUATIONS = {
+    "period-doubling": "a solution of twice the period leaves here; this problem has no equations for it",
+    "symmetry-breaking": "a pair of solutions of less symmetry leaves here; this problem has no equations for it",
+    "branch-point": "another branch crosses here; this problem has no equations for it",
+}
+NONE_LEAVES = {
+    "end": "the interval ends here; no branch leaves",
+    "fold": "the branch turns at a fold; no other branch leaves it",
+    "hopf": "a branch of limit cycles leaves a Hopf point; this problem has equations for equilibria only",
+    "neimark-sacker": "an invariant circle leaves a Neimark-Sacker point, no branch of cycles; its circles() follow it",
+    "user": "nothing leaves the zero of a user function",
+}
 SEED = ("problem", "u", "p", "tangent", "note", "persistence")
 SWITCHING, CROSSING = "the search for branches that leave here", "the search for solutions beyond the border"
 DEEPER = "the solutions found beyond are not followed: depth = {depth}"
@@ -49,6 +63,19 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         run.attempt(point.label, SWITCHING, partial(_switch, run, point, branch, depth), None)
     elif point.kind == "hopf":
         run.attempt(point.label, SWITCHING, partial(_cycles, run, point, branch, depth), None)
+
+
+def why_nothing_leaves(graph: Graph, label: str) -> str:
+    """A sentence on a special point from which no new branch leaves."""
+    point = graph.special[label]
+    if point.kind in NONE_LEAVES:
+        return NONE_LEAVES[point.kind]
+    known = [
+        end for s in graph.switches if s.point == label for end in (s.source, s.target) if end != point.branch
+    ]
+    if known:
+        return "the graph has the branches that leave here already: " + ", ".join(dict.fromkeys(known))
+    return "; ".join(point.remarks) or "no branch that leaves here was found"
 
 
 def _from_side(run: Run, point: SpecialPoint) -> bool:
@@ -81,7 +108,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         name, critical = NAMES[point.kind], -1.0 + 0.0j
         children = list(problem.offspring(point.kind, point.u, point.value, point.tangent, critical))
     if not children:
-        run.remark(point.label, "the problem offers no branch to switch to")
+        run.remark(point.label, WITHOUT_EQUATIONS[point.kind])
         return
     k = _which(run, engine, point, name, spectrum)
     speed = crossing_speed(engine, here, name, k) if engine.m else None
@@ -100,9 +127,16 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         if not found:
             run.remark(point.label, "no branch that leaves here was found")
         for departure in found:
-            transcritical = abs(departure.slope) > 0.1 * run.unit(point.value) * departure.amplitude
-            if departure.upright(run.unit(point.value)):
+            unit = run.unit(point.value)
+            transcritical = abs(departure.slope) > SLANTED * unit * departure.amplitude
+            turns = abs(point.tangent[-1]) <= SLANTED * unit * engine.amplitude(point.tangent)
+            if departure.upright(unit):
                 run.remark(point.label, VERTICAL)
+            elif generic and transcritical and turns:  # a pitchfork: the known branch is the one that bends
+                curvature = fold_coefficient(engine, here)
+                along = crossing_speed(engine, departure.origin, name, k) if engine.m else None
+                if point.criticality is None and curvature is not None:
+                    point.criticality, point.coefficient = criticality(curvature, along, flip=False)
             elif point.criticality is None and not transcritical:
                 curvature = departure.curvature / target.amplitude(departure.direction) ** 2
                 point.criticality, rough = criticality(curvature, speed, flip=name == "minus")

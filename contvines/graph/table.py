@@ -20,7 +20,13 @@ if TYPE_CHECKING:
     from .attractor import Attractor
     from .graph import Graph
 
-PAIRS = ("hopf", "neimark-sacker")  # whose remarks say why nothing is known of what leaves
+LEFT = (
+    "hopf",
+    "neimark-sacker",
+    "period-doubling",
+    "symmetry-breaking",
+    "branch-point",
+)  #: kinds that solutions leave
 AT_END = 1e-9  # part of the interval: special points closer to its end are at it
 
 
@@ -97,9 +103,10 @@ def special_table(graph: Graph) -> Table:
             if switch.point == point.label:
                 arrow = f"{switch.source} -> {switch.target}"
                 targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
-        open_end = point.kind in BORDERS and point.real
-        if not targets and (open_end or point.kind in PAIRS) and point.remarks:
-            targets.append(f"({'; '.join(point.remarks)})")
+        open_end = point.real if point.kind in BORDERS else point.kind in LEFT
+        reasons = [remark for remark in point.remarks if remark != TRANSCRITICAL]
+        if not targets and open_end and reasons:
+            targets.append(f"({'; '.join(reasons)})")
         about = " ".join(filter(None, remarks))
         value = number_text(point.value, 12, size_of(graph.within))
         rows.append((point.label, point.kind, point.branch, value, about, "; ".join(targets)))

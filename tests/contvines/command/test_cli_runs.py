@@ -116,14 +116,15 @@ def test_switch_adds_the_branch_that_leaves_a_point(folder, capsys):
     assert graph.special["SB1"].mirror
     before = (folder / "w.vines").read_bytes()
     call("switch", folder / "w.vines", "SB1")
-    assert "nothing new leaves here" in capsys.readouterr().out
+    assert "already: B2; " in capsys.readouterr().out
     assert (folder / "w.vines").read_bytes() == before
 
 
 def test_nothing_leaves_a_fold_or_an_end(folder, capsys):
-    for label, what in (("LP1", "a fold"), ("EP1", "an end")):
+    for label, why in (("LP1", "no other branch leaves"), ("EP1", "the interval ends here")):
         call("switch", folder / "s.vines", label)
-        assert f"{label}: nothing leaves {what}; " in capsys.readouterr().out
+        told = capsys.readouterr().out
+        assert told.startswith(f"{label}: ") and why in told
 
 
 def test_orbit_says_where_it_is_drawn(folder, capsys):

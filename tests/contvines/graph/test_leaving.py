@@ -29,6 +29,41 @@ def test_a_pitchfork_is_not(cubic, kind):
     assert point.criticality == kind and point.coefficient == pytest.approx(cubic, rel=1e-4)
 
 
+@pytest.mark.parametrize("problem", [cv.AlgebraicProblem, cv.MapProblem])
+@pytest.mark.parametrize(("linear", "cubic"), [(1.0, -1.0), (1.0, 1.0), (-1.0, 2.0), (-1.0, -2.0)])
+def test_a_pitchfork_that_is_met_along_the_branch_that_bends_is_one_too(problem, linear, cubic):
+    """u' = a p u + c u^3, or x -> x + a p x + c x^3, begun on a p = -c u^2: c is the coefficient on either branch."""
+    u0 = 0.5
+    p0 = -cubic / linear * u0**2
+    own = {"spectrum": "flow"} if problem is cv.AlgebraicProblem else {}
+    shift = 0.0 if own else 1.0
+    bent = problem(lambda u, p: shift * u + linear * p * u + cubic * u**3, [u0], p0, **own)
+    graph = cv.diagram(bent, within=(-0.9, 0.9))
+    (point,) = graph.of_kind("branch-point")
+    assert point.branch == "B1" and np.abs(graph["B1"].points).max() > 0.1
+    assert "transcritical" not in point.note
+    assert point.coefficient == pytest.approx(cubic, rel=1e-6)
+    assert point.criticality == ("supercritical" if cubic < 0.0 else "subcritical")
+
+
+def test_switching_where_nothing_leaves_says_why():
+    """x' = p x - y - x r^2, y' = x + p y - y r^2: limit cycles leave the Hopf point at p = 0."""
+
+    def rotor(u, p):
+        x, y = u
+        r2 = x * x + y * y
+        return [p * x - y - x * r2, x + p * y - y * r2]
+
+    graph = cv.diagram(cv.AlgebraicProblem(rotor, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0))
+    with pytest.warns(UserWarning, match="HB1: a branch of limit cycles leaves"):
+        assert cv.switch(graph, "HB1") == []
+    with pytest.warns(UserWarning, match="EP1: the interval ends here"):
+        assert cv.switch(graph, "EP1") == []
+    known = graph_of(lambda u, p: p * u - u**2)
+    with pytest.warns(UserWarning, match="BP1: the graph has the branches that leave here already: B2"):
+        assert cv.switch(known, "BP1") == []
+
+
 @pytest.mark.parametrize("tilt", [0.5, 2.0])
 def test_a_weakly_tilted_one_is_transcritical(tilt):
     """u' = p u - a u^2 - u^3."""
