@@ -35,8 +35,8 @@ class DeclaredAttractor:
     machine : Machine
     params : float array (P,)
     kind : str
-        "periodic", "chatter" (periodic or not, with infinitely many impacts in finite time), "rest" (nothing happens any more, or
-        a wall holds the body for good), or "aperiodic" (no period up to the longest that was looked for).
+        "periodic", "chatter" (periodic or not, with infinitely many impacts in finite time), "rest" (a wall holds the body for good, or a
+        self-excited machine has no events any more), or "aperiodic" (no period up to the longest that was looked for).
     orbit : DeclaredOrbit or None
         Of a periodic one.
     trajectory : Trajectory
@@ -71,7 +71,9 @@ class DeclaredAttractor:
         if self.orbit is None:
             why = {
                 "chatter": "impacts pile up on it, so no finite word describes it",
-                "rest": "a wall holds the body for good" if self.trajectory.held else "nothing happens on it",
+                "rest": "a wall holds the body for good"
+                if self.trajectory.held
+                else "it has no events from which its period could be counted",
                 "aperiodic": "no period was found",
             }[self.kind]
             raise ValueError(
@@ -139,7 +141,7 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
         if orbit is not None:
             return DeclaredAttractor(machine, params, "periodic", orbit, run)
-        if not run.events or run.held:
+        if run.held or not (run.events or machine.forced):
             return DeclaredAttractor(machine, params, "rest", None, run)
         if run.chatters and attempt:
             break
@@ -178,7 +180,7 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
     if any(kind in (HOLD, RELEASE) for _, kind, _ in run.events[-LONGEST_WORD:]):
         return None
     if not run.events:
-        return _eventless(run)
+        return _eventless(run, max_period, near)
     letters, modes = run.letters, run.modes[1:]
     clocks, states = run.clocks[1:], run.states[1:]
     size = 1.0 + float(np.abs(states).max())
@@ -251,17 +253,27 @@ def plainest(orbit: DeclaredOrbit) -> DeclaredOrbit:
     return found
 
 
-def _eventless(run: Trajectory) -> DeclaredOrbit | None:
-    """A forced motion on which nothing happens."""
+def _eventless(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | None:
+    """The shortest cycle of a forced motion without events, once per forcing period at phase zero; see `returning`."""
     machine = run.machine
     mode = run.modes[-1]
     held = any(isinstance(c, Wall) and m == HELD for c, m in zip(machine.contacts, mode))
     if not machine.forced or held:
         return None
     word = PageWord((), (mode,), machine.alphabet)
-    first = TWO_PI * np.ceil(run.clocks[0] / TWO_PI)
-    state = run.sample(np.array([first]))[0]
-    return polished(DeclaredOrbit(machine, word, 1, np.array([[0.0, *state]]), run.params), far=np.inf)
+    first, last = (
+        int(turn(clock / TWO_PI)) for turn, clock in ((np.ceil, run.clocks[0]), (np.floor, run.end))
+    )
+    states = run.sample(TWO_PI * np.arange(first, last + 1))
+    size = 1.0 + float(np.abs(states).max())
+    for periods in range(1, min(max_period, len(states) - 1) + 1):
+        gap = float(np.abs(states[-1] - states[-1 - periods]).max())
+        if not gap <= near * size:
+            continue
+        orbit = polished(DeclaredOrbit(machine, word, periods, np.array([[0.0, *states[-1]]]), run.params))
+        if orbit is not None and (gap <= CLOSED * size or not np.any(np.abs(orbit.multipliers) > REPELS)):
+            return orbit
+    return None
 
 
 def random_start(machine: Machine, generator: np.random.Generator, size: float = 1.0) -> dict[str, float]:

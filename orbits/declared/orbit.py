@@ -15,7 +15,7 @@ from orbits.declared.deviation import deviation
 from orbits.declared.machine import Machine
 from orbits.declared.margins import margin_name, per_node
 from orbits.declared.measures import measure, names
-from orbits.declared.sampling import sample
+from orbits.declared.sampling import sample, strobed
 from orbits.declared.solving import examined
 from orbits.declared.system import DeclaredSystem
 from orbits.doors import above
@@ -120,6 +120,10 @@ class DeclaredOrbit(Claim):
     def root(self) -> DeclaredOrbit:
         """The shortest orbit of which this one is a repetition."""
         same, forced = size_of_one(self.nodes), self.machine.forced
+        if not len(self.word) and self.periods > 1:
+            alike = np.abs(strobed(self)[1:] - self.nodes[0, 1:]).max(axis=1) < same
+            again = [k for k in range(1, self.periods) if self.periods % k == 0 and alike[k - 1]]
+            return self._with(self.word, min(again, default=self.periods), self.nodes)
         return self._with(*root_orbit(self.word, self.periods, self.nodes, forced=forced, same=same))
 
     def repeat(self, times: int) -> DeclaredOrbit:

@@ -247,7 +247,7 @@ class _Sorting:
             orbit = returning(run, LONGEST, RETURNED)
             if orbit is not None:
                 return self._add(orbit, stepper)
-            if not run.events or run.held:
+            if run.held or not (run.events or self.machine.forced):
                 return self.plain("stuck")
             if _chatters(run):
                 return self.plain("chatter", periods=0)

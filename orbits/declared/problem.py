@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
 from orbits.declared import measures as measuring
 from orbits.declared.attractor import witness
 from orbits.declared.crossing import cross
@@ -62,16 +61,11 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
     # ------------------------------------------------------------------ larger and smaller problems
     def root(self, u: np.ndarray, p: float) -> tuple[DeclaredProblem, np.ndarray] | None:
         """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
-        nodes, forced = self.expand(u), self.forced
-        word, periods, nodes = root_orbit(
-            self.word, self.periods, nodes, forced=forced, same=size_of_one(nodes)
-        )
-        if len(word) == len(self.word):
+        root = DeclaredOrbit.of(self, u, p).root()
+        if (len(root.word), root.periods) == (len(self.word), self.periods):
             return None
-        found = self.sibling(
-            word, periods, is_symmetric(word, periods, nodes, size_of_one(nodes), forced=forced)
-        )
-        return found, found.reduce(nodes)
+        found = self.sibling(root.word, root.periods, root.symmetric)
+        return found, found.reduce(root.nodes)
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""

@@ -15,6 +15,14 @@ def lengths(orbit: Any) -> np.ndarray:
     return np.diff(np.append(phases, phases[0] + 2.0 * np.pi * orbit.periods))
 
 
+def strobed(orbit: Any) -> np.ndarray:
+    """States of a motion without events, once per forcing period from its node on to its return, shape (periods + 1, n)."""
+    grid = orbit.nodes[0, 0] + 2.0 * np.pi * np.arange(orbit.periods + 1)
+    mode = orbit.word.modes[0]
+    watch = orbit.machine.compiled.watch(orbit.machine.equations.pattern_key(mode))
+    return watch.path(orbit.nodes[0, 1:], grid, orbit.machine.compiled.numbers(orbit.params, mode))
+
+
 def sample(orbit: Any, points: int = 400) -> dict[str, np.ndarray]:
     """States over one period, events included with the states before and after them.
 
