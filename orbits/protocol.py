@@ -94,11 +94,15 @@ class Answers:
 
 
 class Symmetry(NamedTuple):
-    """An image of a solution that solves the same problem; `root` reduces a solution that is its own image."""
+    """An image of a solution that solves the same problem; `root` reduces a solution that is its own image.
+
+    `kind_at` tells the kind of the points where that depends on the solution; of machines it never does.
+    """
 
     kind: str
     apply: Any
     root: Any
+    kind_at: Any = None
 
 
 class Embedding(NamedTuple):
