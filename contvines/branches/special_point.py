@@ -49,7 +49,7 @@ class SpecialPoint:
     location_error : float
         Estimated error of ``value``.
     real : bool
-        All margins positive (a border point itself counts as real).
+        No margin is negative: a border point itself is real, whichever side it is seen from.
     criticality : {"supercritical", "subcritical"} or None
     coefficient : float or None
         Normal-form coefficient (see :mod:`contvines.switching.normal_forms`); worked out when it is first asked for.

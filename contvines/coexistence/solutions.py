@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from ..branches.branch import Branch
 from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
 from ..continuation.settings import Settings
-
-REAL = -1e-9  # smallest margin of a real solution
 
 
 def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
@@ -29,6 +28,6 @@ def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
             continue
         part = (at - first) / (last - first)
         solved = engine.at_value((1.0 - part) * branch.points[i] + part * branch.points[i + 1], at)
-        if solved is not None and engine.smallest_margin(solved.row) > REAL:
+        if solved is not None and engine.smallest_margin(solved.row) >= MARGIN:
             found.append(solved)
     return engine, found

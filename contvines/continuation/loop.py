@@ -36,7 +36,9 @@ CONTROL_SIZE = 10
 # status codes (contvines.continuation.status)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
 
-MARGIN = -1e-12  # margins below this are negative; above it they may be zeros all along a branch
+MARGIN = (
+    -1e-12
+)  # margins below this are negative; above it they are zero to rounding, at a border or all along a branch
 
 
 class Points(NamedTuple):

@@ -14,6 +14,7 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
 from ..events.blur import missed, singular_within
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
@@ -252,6 +253,7 @@ def _special(
     run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
 ) -> SpecialPoint:
     point = event.point
+    margins = float(engine.smallest_margin(point.row))
     special = SpecialPoint(
         label=label,
         kind=kind,
@@ -261,11 +263,11 @@ def _special(
         u=np.array(point.u),
         tangent=np.array(point.tangent),
         multipliers=engine.multipliers(point.row),
-        margins=float(engine.smallest_margin(point.row)),
+        margins=margins,
         bracket=event.bracket,
         residual=float(point.residual),
         location_error=float(event.error),
-        real=branch.real,
+        real=branch.real or margins >= MARGIN,
         name=event.name,
         margin_index=int(event.index) if kind in BORDERS else None,
         index=index,

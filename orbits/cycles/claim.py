@@ -10,7 +10,9 @@ import numpy as np
 
 from orbits.cycles.margins import limits_of
 
-REAL = -1e-9  # margins down to this count as positive: a border orbit itself is real
+REAL = (
+    -1e-12
+)  # margins down to this, in units of the machine's own size, are rounding: a border orbit itself is real
 
 
 class Claim:
@@ -52,8 +54,8 @@ class Claim:
 
     @property
     def real(self) -> bool:
-        """Whether a machine can follow the orbit: all margins positive."""
-        return self.margin > REAL
+        """Whether a machine can follow the orbit: no margin is negative. At a border one is zero, to rounding, and the orbit real."""
+        return self.margin >= REAL
 
     @property
     def stable(self) -> bool:

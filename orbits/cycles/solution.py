@@ -52,7 +52,7 @@ class Solution(Claim, Cycle):
 
     @property
     def margins(self) -> list[Margin]:
-        """Margins of admissibility, all positive for a real orbit; in the units of the nodes."""
+        """Margins of admissibility, none negative for a real orbit; in the units of the nodes."""
         own = self._examined[2]  # of half a symmetric motion without impacts
         units = margin_units(self.word, self.model.natural_units(self.params))
         return named_margins(self.word, own * units[: own.size])

@@ -238,7 +238,7 @@ def polished(orbit: DeclaredOrbit, far: float = 0.1) -> DeclaredOrbit | None:
     if not residual < SOLVED or np.abs(moved).max() > near:
         return None
     found = DeclaredOrbit(orbit.machine, word, orbit.periods, nodes, orbit.params)
-    return plainest(found.root()) if found.margin > -1e-9 else None
+    return plainest(found.root()) if found.real else None
 
 
 def plainest(orbit: DeclaredOrbit) -> DeclaredOrbit:

@@ -97,7 +97,7 @@ class DeclaredOrbit(Claim):
 
     @property
     def margins(self) -> list[Margin]:
-        """The finite margins, all positive for a real orbit."""
+        """The finite margins, none negative for a real orbit."""
         width = per_node(len(self.machine.contacts))
         return [
             Margin(margin_name(self.word, index), index // width, float(value))

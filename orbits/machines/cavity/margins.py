@@ -63,7 +63,7 @@ def _reach(law, w0, beta, psi0, psi1):
 
 @kernel
 def watch(data, u, work, law, out):
-    """Margins of admissibility, all positive for an orbit that a machine can follow.
+    """Margins of admissibility, none negative for an orbit that a machine can follow.
 
     Reads sines and cosines of the last `linearise` from `work`. `out` has shape (4 L,), four numbers per node:
     0 the flight after it (smallest s w' at an interior minimum; without friction the distance from the walls at the extrema; stuck: time

@@ -61,7 +61,7 @@ def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start,
 
 @kernel
 def margins(data, u, p, work, out):
-    """Margins of admissibility, all positive for an orbit that a machine can follow.
+    """Margins of admissibility, none negative for an orbit that a machine can follow.
 
     `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads parameters, sines and
     cosines of the last `linearise` from `work`. All zeros are found by `coupled_flow.first_zero`: none can be missed.
