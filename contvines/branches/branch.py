@@ -114,13 +114,12 @@ class Branch:
         return [(a, b, bool(segment[a])) for a, b in zip(starts, stops, strict=True)]
 
     def stable_intervals(self) -> list[tuple[float, float]]:
-        """Parameter intervals of the pieces that are known to be stable, each with its ends in increasing order."""
-        intervals = []
-        for first, last, stable in self.pieces():
-            if stable:
-                part = self.values[first : last + 1]
-                intervals.append((float(part.min()), float(part.max())))
-        return intervals
+        """Parameter intervals of the pieces that are known to be stable, in increasing order; on a closed branch none is cut where it begins."""
+        pieces = self.pieces()
+        parts = [self.values[first : last + 1] for first, last, stable in pieces if stable]
+        if self.closed and len(pieces) > 1 and pieces[0][2] and pieces[-1][2]:
+            parts[0] = np.concatenate([parts.pop(), parts[0]])
+        return sorted((float(part.min()), float(part.max())) for part in parts)
 
     @property
     def measure_names(self) -> tuple[str, ...]:

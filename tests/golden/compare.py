@@ -105,7 +105,7 @@ def _branches(golden: dict[str, Any], today: dict[str, Any]) -> Iterator[str]:
 def _same_intervals(one: Any, other: Any) -> bool:
     if one is None or other is None:
         return one is other
-    a, b = np.array(one, dtype=float), np.array(other, dtype=float)
+    a, b = np.array(sorted(one), dtype=float), np.array(sorted(other), dtype=float)
     return a.shape == b.shape and bool(np.allclose(a, b, rtol=ENDS, atol=ENDS))
 
 
