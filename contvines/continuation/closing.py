@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..problems.abilities import Adaptive
 from .chunk import Chunk
 from .engine import Engine, Solved
 from .status import Status
 
+SAME = 1e-5  # of two solutions on different meshes
 NEAR = 1.5  # distances of neighbours from the start at which a branch may close
 
 
@@ -20,6 +22,8 @@ class Closing:
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
         engine = self.engine
+        if isinstance(engine.problem, Adaptive):
+            return self._on_other_meshes(chunk)
         if chunk.values[0] == self.start.p:
             changes = chunk.values[1:] - chunk.values[:-1]
             rises = chunk.values[-1] > self.start.p
@@ -64,4 +68,32 @@ class Closing:
                     np.append(points.corrections, rest.correction),
                     Status.CLOSED,
                 )
+        return None
+
+    def _on_other_meshes(self, chunk: Chunk) -> Chunk | None:
+        """The same where unknowns belong to meshes, and solutions may be shifted in time: their canonical forms tell which is which."""
+        engine, start, problem = self.engine, self.start, self.engine.problem
+        ahead = np.sign(start.tangent[-1])
+        gaps = (chunk.values - start.p) * ahead
+        for i in np.flatnonzero((gaps[:-1] < 0.0) & (gaps[1:] >= 0.0)):
+            share = gaps[i] / (gaps[i] - gaps[i + 1])
+            guess = chunk.points[i] + share * (chunk.points[i + 1] - chunk.points[i])
+            found = engine.at_value(guess, start.p)
+            if found is None:
+                continue
+            key, here = problem.canonical(found.u, found.p)
+            wanted, there = problem.canonical(start.u, start.p)
+            if key == wanted and here.shape == there.shape:
+                size = engine.scale[: len(here)] if len(here) < len(engine.scale) else 1.0
+                if (np.abs(here - there) <= SAME * (size + np.abs(there))).all():
+                    points = chunk.cut(int(i) + 1)
+                    return Chunk(
+                        np.vstack([points.points, start.u]),
+                        np.append(points.values, start.p),
+                        np.vstack([points.tangents, start.tangent]),
+                        np.vstack([points.rows, start.row]),
+                        np.append(points.signs, start.sign),
+                        np.append(points.corrections, start.correction),
+                        Status.CLOSED,
+                    )
         return None

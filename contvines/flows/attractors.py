@@ -30,9 +30,7 @@ def recurrence(
     return _free(field, p, x, transient, longest)
 
 
-def _run(
-    field: Any, p: float, x: np.ndarray, start: float, stop: float, events: Any = None, dense: bool = False
-) -> Any:
+def _run(field: Any, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False) -> Any:
     from scipy.integrate import solve_ivp
 
     size: Any = 1e-12 * (field.lengths + np.abs(x))
@@ -43,7 +41,6 @@ def _run(
         method="LSODA",
         rtol=1e-10,
         atol=size,
-        events=events,
         dense_output=dense,
     )
     if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > 1e12:
@@ -122,17 +119,27 @@ def _returns(
     span: float,
     longest: int,
 ) -> tuple[float, np.ndarray] | None:
-    def crossing(t: float, y: np.ndarray) -> float:
-        return float(normal @ (y - place))
-
-    crossing.direction = 1.0  # type: ignore[attr-defined]
-    run = _run(field, p, x, 0.0, span, events=crossing)
-    times, states = run.t_events[0], run.y_events[0]
-    if len(times) < 2:
+    run = _run(field, p, x, 0.0, span, dense=True)
+    heights = normal @ (run.y - place[:, None])
+    passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
+    if len(passed) < 2:
         return None
-    # the last returns are nearest to the cycle
+    times = np.array([_crossing(run, normal, place, int(i)) for i in passed])
+    states = run.sol(times).T
     last = states[-1]
-    for k in range(2, min(longest + 1, len(times)) + 1):
+    for k in range(2, len(times) + 1):
         if (np.abs(states[-k] - last) <= RECURS * unit).all():
             return float(times[-1] - times[-k]), states[-k]
     return None
+
+
+def _crossing(run: Any, normal: np.ndarray, place: np.ndarray, i: int) -> float:
+    """Time at which a motion passes a plane in a step of the integrator, by bisection."""
+    low, high = float(run.t[i]), float(run.t[i + 1])
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if normal @ (run.sol(middle) - place) < 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
