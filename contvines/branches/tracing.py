@@ -69,6 +69,11 @@ def trace_half(
     for number in count_from(0):
         chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"
+        if adaptive is not None and chunk.status in UNFINISHED and adaptive.too_coarse(chunk.points[-1]):
+            spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
+            half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
+            half.status = Status.COARSE
+            return half
         known = journal.recall(name)
         scan = watch.scan(chunk, real)
         if known is None:
@@ -109,8 +114,6 @@ def trace_half(
                 half.events.append((total, event))
             here, total = where, total + 1
         half.pieces += [whole.part(here, count)] if count > here else []
-        if adaptive is not None and status in UNFINISHED and adaptive.too_coarse(chunk.points[count - 1]):
-            status = Status.COARSE
         half.status = status
         if notice is not None:
             notice(len(half), half.end)

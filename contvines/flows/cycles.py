@@ -22,7 +22,7 @@ SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
 NEARLY_AT_REST = 1e-4  # ... and where a branch comes to an end there, known to fewer digits, of this size
 ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
-CLOSE = 1e-8  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
+CLOSE = 1e-6  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
 MOST = 1280  # intervals
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
