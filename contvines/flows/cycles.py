@@ -15,7 +15,7 @@ from ..problems.scales import Scales
 from . import mesh
 from .collocation import Rule, rule
 from .field import Field
-from .kernels import KERNELS, CycleWork
+from .kernels import KERNELS, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
@@ -23,7 +23,9 @@ AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equili
 NEARLY_AT_REST = 1e-4  # ... and where a branch comes to an end there, known to fewer digits, of this size
 ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
 CLOSE = 1e-6  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
+LONGEST = 1e3  # times the first period: a branch whose period has grown so much ends as a homoclinic orbit
 MOST = 1280  # intervals
+SENSIBLE = 1e-3  # errors of the trivial multiplier
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
@@ -220,10 +222,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
                 work.phase * ((x / self.node_scale).reshape(count, -1) - origin)
             ).sum()
         work.speeds = self.field(x[:, 0], p) / self.node_scale
-        push = np.einsum("icab,ica->icb", scaled, direction)
-        with np.errstate(all="ignore"):
-            near = (direction**2).sum(axis=2) / np.sqrt((push**2).sum(axis=2))
-        work.closeness = float(np.nanmin(near)) if np.isfinite(near).any() else np.inf
+        work.closeness = _distance_to_rest(scaled, direction)
 
     reference: tuple[np.ndarray, np.ndarray] | None = None
 
@@ -254,12 +253,13 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
     # ------------------------------------------------------------------ margins
     def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
-        """How far the cycle stays away from equilibria, relative to its size: log10 of the distance over the one at which a branch ends."""
+        """How far the cycle stays away from equilibria, relative to its size, and its period from infinity: log10 of the part that is left."""
         x = u[: self.states].reshape(-1, self.node) / self.node_scale
         size = float(np.ptp(x, axis=0).max())
+        short = float(np.log10(LONGEST * self.clock / max(float(u[self.states]), 1e-300)))
         if not size > 0.0 or not np.isfinite(work.closeness):
-            return np.array([np.inf])
-        return np.array([np.log10(max(work.closeness / size, 1e-300) / CLOSE)])
+            return np.array([short])
+        return np.array([min(short, float(np.log10(max(work.closeness / size, 1e-300) / CLOSE)))])
 
     def margin_kind(self, j: int) -> str:
         """A cycle that comes near to an equilibrium ends as a homoclinic orbit."""
@@ -290,11 +290,23 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             ranges, 1e-6 * self.node_scale * (ranges / self.node_scale).max() + 1e-12 * self.node_scale
         )
 
-    def accuracy(self, u: np.ndarray) -> float:
+    def accuracy(self, u: np.ndarray, p: float) -> float:
         """Relative accuracy of parameter, period and mesh points: of order 2 m where the curve between them is known to order m + 1."""
-        m = self.rule.degree
-        error = min(self.estimated_error(u), 1.0)
-        return max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.missed, self.uncertainty())
+        m, work = self.rule.degree, self.workspace()
+        error, missed = min(self.estimated_error(u), 1.0), 0.0
+        if linearise(self, u, p, work) < np.inf:
+            try:
+                missed = spectrum(self, work)[1]
+            except np.linalg.LinAlgError:
+                missed = 0.0
+        own = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
+        # the trivial multiplier tells more, unless its system is singular, as of nearly homoclinic orbits
+        return max(own, missed) if missed < SENSIBLE else own
+
+    def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
+        """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2, of a saddle less is left."""
+        change = abs(float(tangent[self.states]))
+        return 0.5 * float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
 
     def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
@@ -494,3 +506,13 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
     def measures_of_start(self) -> Sequence[str]:
         """Names of what is drawn of it by default."""
         return (self.default_measure,)
+
+
+def _distance_to_rest(matrices: np.ndarray, rates: np.ndarray) -> float:
+    """The shortest Newton step to an equilibrium from points with Jacobians (..., d, d) and rates (..., d); infinite if there is none."""
+    try:
+        steps = np.linalg.solve(matrices, rates[..., None])[..., 0]
+    except np.linalg.LinAlgError:  # one of them is singular to the last bit
+        steps = np.matmul(np.linalg.pinv(matrices), rates[..., None])[..., 0]
+    sizes = np.sqrt((steps**2).sum(axis=-1))
+    return float(np.nanmin(sizes)) if np.isfinite(sizes).any() else np.inf

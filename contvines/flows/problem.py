@@ -23,6 +23,7 @@ from .orbit import CycleOrbit
 
 INTERVALS = 40  # of a cycle from data, to begin with
 MIRRORED = 1e-8
+FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to its slowest point is the one to which it is homoclinic
 
 
 class FlowProblem:
@@ -286,23 +287,23 @@ class FlowProblem:
         values = values.against(values.varying, {values.varying: p})
         field = self.field.against(values)
         speed = np.linalg.norm(field(x, p) / np.maximum(np.ptp(x, axis=0), 1e-300), axis=1)
-        y = x[int(np.argmin(speed))].copy()
+        slowest = x[int(np.argmin(speed))]
+        y, size, settled = slowest.copy(), np.ptp(x, axis=0), False
         for _ in range(20):
             matrix = field.jacobian(y[None, :], p)[0]
-            step = np.linalg.lstsq(matrix, -field(y[None, :], p)[0], rcond=1e-10)[0]
-            if np.abs(step).max() > np.ptp(x, axis=0).max():
-                break
+            step = np.linalg.lstsq(matrix, -field(y[None, :], p)[0], rcond=1e-14)[0]
             y = y + step
-            if np.abs(step).max() <= 1e-13 * (1.0 + np.abs(y).max()):
+            if not (np.abs(y - slowest) <= FAR * size).all():
                 break
-        found = np.linalg.eigvals(field.jacobian(y[None, :], p)[0])
-        # to a node there is no homoclinic orbit: it is about to meet its saddle
-        slow = (found.real < 0.0).all() or (found.real > 0.0).all()
-        word = "saddle-node" if slow else ("saddle-focus" if np.iscomplex(found).any() else "saddle")
-        size = np.maximum(np.ptp(x, axis=0), 1e-300)
-        place = ", ".join(f"{value:.6g}" for value in np.where(np.abs(y) > 1e-9 * size, y, 0.0))
-        eigenvalues = ", ".join(f"{_shortly(value)}" for value in np.sort_complex(found))
-        return f"homoclinic to the {word} at ({place}) with eigenvalues {eigenvalues}; period {period:.6g}"
+            settled = bool((np.abs(step) <= 1e-9 * size).all())
+        found = np.linalg.eigvals(field.jacobian((y if settled else slowest)[None, :], p)[0])
+        place = ", ".join(f"{v:.6g}" for v in np.where(np.abs(y) > 1e-9 * size, y, 0.0))
+        values_there = ", ".join(_shortly(value) for value in np.sort_complex(found))
+        if not settled or (found.real < 0.0).all() or (found.real > 0.0).all():
+            place = ", ".join(f"{v:.6g}" for v in slowest)
+            return f"saddle-node on the cycle: its period, {period:.6g} here, grows where it passes ({place}) without an equilibrium being there yet"
+        word = "saddle-focus" if np.iscomplex(found).any() else "saddle"
+        return f"homoclinic to the {word} at ({place}) with eigenvalues {values_there}; period {period:.6g}"
 
     def described(self) -> dict[str, Any]:
         """What distinguishes the flow from its equations."""

@@ -235,10 +235,12 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
     if isinstance(problem, Adaptive):
-        own = problem.accuracy(special.u) * engine.parameter_unit(special.value)
+        own = problem.accuracy(special.u, special.value) * engine.parameter_unit(special.value)
         special.location_error = max(special.location_error, own)
-    if special.kind == "homoclinic":  # the parameter is still on its way to that of an infinite period
-        special.location_error = max(special.location_error, abs(special.bracket[1] - special.bracket[0]))
+        if special.kind == "homoclinic":
+            special.location_error = max(
+                special.location_error, problem.remaining(special.u, special.tangent)
+            )
     if special.kind == "branch-point":
         where = engine, special.u, special.value, special.tangent
         within = max(singular_within(*where), 2.0 * missed(*where))
@@ -279,7 +281,8 @@ def _special(
         special.met_from = branch.label
     if kind == "fold":
         special.coefficient = fold_coefficient(engine, point)
-    if kind == "neimark-sacker" or (kind == "hopf" and engine.problem.spectrum == "flow"):
+    own = isinstance(engine.problem, Adaptive)  # its unknowns are more than the states of a map
+    if (kind == "neimark-sacker" and not own) or (kind == "hopf" and engine.problem.spectrum == "flow"):
         form = pair_form(engine.problem, special.u, special.value, engine.spectrum(point.row))
         special.coefficient, special.criticality = form.coefficient, form.criticality
         special.remarks = (*special.remarks, form.note) if form.note else special.remarks

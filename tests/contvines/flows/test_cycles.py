@@ -84,6 +84,7 @@ def test_lorenz_cycles_end_as_a_homoclinic_orbit():
     assert hopf.criticality == "subcritical"
     end = graph.of_kind("homoclinic")[0]
     assert end.value == pytest.approx(13.926557, abs=1e-6)  # Sparrow 1982: 13.926
+    assert abs(end.value - 13.926557) < end.location_error + 5e-7
     assert "saddle at (0, 0, 0)" in end.note
     assert end.multipliers.real.max() > 1e10
 
@@ -158,3 +159,59 @@ def test_motions_that_do_not_recur_are_refused():
         flow.attractor()
     with pytest.raises(ValueError, match="escapes"):
         flow.attractor(a=1.0)
+
+
+def electronic(x, p):
+    """The oscillator of AUTO's demo tor."""
+    a, b, c = x
+    cube = p.b3 * (b - a) ** 3
+    return [
+        (-(p.beta + p.nu) * a + p.beta * b - p.a3 * a**3 + cube) / p.r,
+        p.beta * a - (p.beta + p.gamma) * b - c - cube,
+        b,
+    ]
+
+
+def test_the_torus_demo_of_auto():
+    values = {"nu": -0.6, "beta": 0.5, "gamma": -0.6, "r": 0.6, "a3": 0.328578, "b3": 0.933578}
+    flow = cv.FlowProblem(electronic, [0.0, 0.0, 0.0], values, mirror=lambda x: -x)
+    graph = cv.diagram(flow, over="nu", within=(-0.62, -0.55), depth=2)
+    # printed by AUTO-07p: TR -0.591650, PD -0.614955, fold -0.584335
+    assert [p.value for p in graph.of_kind("fold")] == pytest.approx([-0.584335], abs=1e-6)
+    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx([-0.591650], abs=1e-6)
+    assert [p.value for p in graph.of_kind("period-doubling")] == pytest.approx([-0.614955], abs=1e-6)
+    orbit = graph["NS1"].orbit
+    found = orbit.simulated_multipliers()
+    assert np.abs(np.abs(found) - 1.0).max() < 1e-6
+    assert np.abs(found.imag).max() == pytest.approx(np.abs(orbit.multipliers.imag).max(), abs=1e-6)
+
+
+def test_relaxation_oscillations_in_one_branch():
+    flow = cv.FlowProblem(
+        lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]],
+        [1.0, 0.0],
+        {"mu": 1.0},
+        mirror=lambda x: -x,
+    )
+    branch = cv.diagram(flow.attractor(), over="mu", within=(0.01, 60.0))["B1"]
+    periods, mu = branch.measure("period"), branch.values
+    # Lindstedt and Poincare: T = 2 pi (1 + mu^2 / 16 + ...); Dorodnitsyn: (3 - 2 log 2) mu + 7.0143 mu^(-1/3) - ...
+    assert periods[0] == pytest.approx(2.0 * np.pi * (1.0 + 0.01**2 / 16), rel=1e-8)
+    assert mu[-1] == 60.0
+    start = branch.orbit(len(branch) - 1)
+    assert start.replay() < 1e-4
+    large = (3.0 - 2.0 * np.log(2.0)) * 60.0 + 7.0143 * 60.0 ** (-1 / 3)
+    assert periods[-1] == pytest.approx(large, rel=5e-3)
+
+
+def test_a_closed_branch_of_cycles():
+    def f(x, p):
+        square, turn = x[0] ** 2 + x[1] ** 2, 1.0 + 0.3 * x[0]
+        growth = 1.0 - (square - 2.0) ** 2 - p.m**2
+        return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1]]
+
+    graph = cv.diagram(cv.FlowProblem(f, [1.7, 0.0], {"m": 0.0}).attractor(), over="m", within=(-2.0, 2.0))
+    assert graph["B1"].closed
+    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([-1.0, 1.0], abs=1e-10)
+    radius = graph["B1"].measure("norm") ** 2
+    assert np.abs((radius - 2.0) ** 2 + graph["B1"].values ** 2 - 1.0).max() < 1e-6
