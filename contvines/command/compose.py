@@ -29,6 +29,8 @@ def checked_study(path: Path) -> "Study":
     from orbits.words import Word
 
     study = read_study(path)
+    if study.flow is not None:
+        return study
     try:
         model = machine(study)
         vector = model.vector(loose(study))
@@ -56,7 +58,7 @@ def check_shaken(study: "Study", vary: Iterable[str] = ()) -> None:
     ------
     ValueError
     """
-    if study.machine is not None:
+    if study.machine is not None or study.flow is not None:
         return
     model = machine(study)
     unshaken = model.unshaken(model.vector(loose(study)))
@@ -68,9 +70,20 @@ def check_shaken(study: "Study", vary: Iterable[str] = ()) -> None:
 
 
 def machine(study: "Study") -> Any:
-    """The machine of a study, `[start]`'s overrides included."""
+    """The machine of a study, `[start]`'s overrides included.
+
+    Raises
+    ------
+    ValueError
+        If it is a study of a flow, which is no machine.
+    """
     from orbits.machines.building import build
 
+    if study.flow is not None:
+        raise ValueError(
+            f"{study.path}: this command needs a machine; of the flow {study.name!r} there are contvines diagram, trace and orbit, and "
+            "of the file that they write plot, show, report and export"
+        )
     if study.machine is not None:
         return study.machine
     if study.quantities:
@@ -99,6 +112,13 @@ def first_orbit(study: "Study") -> Any:
     ValueError
         If the word cannot be, or no orbit with it is found; the sentence names the study.
     """
+    if study.flow is not None:
+        from contvines.command.flow_study import seed_of
+
+        try:
+            return seed_of(study)
+        except ValueError as error:
+            raise ValueError(f"{study.path}: [start] {error}") from error
     from orbits.precompile import compile_ahead
     from orbits.starts.find import StartWarning
 

@@ -24,6 +24,8 @@ def _of_study(path: Path) -> str:
     from orbits.machines.catalogue import NAMES, model_class
 
     study = read_study(path)
+    if study.flow is not None:
+        return "max x0"
     if study.name in NAMES:
         return model_class(study.name).default_measure
     from orbits.declared.measures import shown_first

@@ -21,11 +21,9 @@ def check_bounds(study: "Study", command: str) -> None:
         raise ValueError(
             "[continue] bounds: an atlas follows all that it meets to its end; leave them out, or use contvines diagram."
         )
-    from contvines.command.compose import machine
     from contvines_ground.near_names import did_you_mean
-    from orbits.cycles.measures import names
 
-    known = names(machine(study))
+    known = _names(study)
     for name, (low, high) in study.bounds.items():
         if name not in known:
             raise ValueError(
@@ -56,11 +54,9 @@ def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -
     given = {option: name for option, name in axes.items() if name is not None}
     if not given:
         return
-    from contvines.command.compose import machine
     from contvines_ground.near_names import did_you_mean
-    from orbits.cycles.measures import names
 
-    known = list(dict.fromkeys([study.parameter, *names(machine(study))]))
+    known = list(dict.fromkeys([study.parameter, *_names(study)]))
     for option, name in given.items():
         if name not in known:
             raise ValueError(
@@ -72,3 +68,14 @@ def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -
         raise ValueError(
             f"{option} {name}: there is no picture to show it in; give --plot FILE.png, too, or leave it out."
         )
+
+
+def _names(study: "Study") -> list[str]:
+    if study.flow is not None:
+        from contvines.command.flow_study import measure_names
+
+        return measure_names(study)
+    from contvines.command.compose import machine
+    from orbits.cycles.measures import names
+
+    return list(names(machine(study)))

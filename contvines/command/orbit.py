@@ -110,6 +110,10 @@ def _describe(found: Any) -> str:
     if "word" in about:
         nature = "real" if about["real"] else "virtual: no machine follows it"
         lines.append(f"{about['word'] or about.get('rest', 'stuck')}  k = {about['periods']}  ({nature})")
+    if "states" in about:  # a cycle of a flow
+        lines.append(
+            f"cycle of period {_number(about['period'])}  ({'stable' if about['stable'] else 'unstable'})"
+        )
     parameters = about.get("parameters", {})
     if parameters:
         units = about.get("units", {})

@@ -268,14 +268,14 @@ def _look(study: Any, target: Path) -> Any:
 
     with Store.open(target, write=True) as store:
         graph = store.graph()
-        model = machine(study)
-        fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
+        model = study.flow if study.flow is not None else machine(study)
         with interruptible(
             f"the diagram is kept in {target}; the same command looks again for what it does not have"
         ):
             if not isinstance(model, Populated):
                 graph.looked = True
             else:
+                fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
                 look(graph, population_of(model, study.parameter, **fixed))
         store.checkpoint(graph)
         store.tidy()

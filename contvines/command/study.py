@@ -12,6 +12,8 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from contvines.command.flow_study import check as check_flow
+from contvines.command.flow_study import flow_of
 from contvines.command.page_study import check as check_page
 from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
@@ -52,6 +54,7 @@ class Study:
     parameters : every parameter of the model at the start, by name.
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
+    flow, start_state : of a study of differential equations: the flow, and where a motion begins whose cycle is followed.
     bounds : (low, high) of measures at which branches end; infinite where there is none.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep, atlas : settings of the brute-force sweep and of the atlas.
@@ -83,6 +86,8 @@ class Study:
     quantities: dict[str, Any] | None = None
     survey: SurveySection = field(default_factory=SurveySection)
     bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
+    flow: Any = None
+    start_state: list[float] | None = None
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -112,6 +117,13 @@ class Study:
     def _model(self) -> dict[str, Any]:
         if self.quantities:
             return self.quantities
+        if self.flow is not None:
+            return {
+                "name": self.name,
+                "digest": self.flow.origin[2],
+                "state": self.start_state,
+                **self.parameters,
+            }
         own = {} if self.machine is None else self.machine.settings()
         return {**own, "name": self.name, **self.parameters}
 
@@ -156,6 +168,9 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     """Check a study given as nested dicts; see `read_study`."""
     if is_page(data):
         try:
+            flow = flow_of(data, Path(path))
+            if flow is not None:
+                return Study(**check_flow(data, Path(path), flow))
             return Study(**check_page(data, Path(path)))
         except (ValueError, OSError) as error:
             raise StudyError(str(error)) from None

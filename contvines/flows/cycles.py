@@ -477,7 +477,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         return {
             **about,
             "word": "cycle",
-            "periods": self.rounds,
+            **({"periods": self.rounds} if self.field.forced else {}),
             "parameter": self.parameter,
             "p0": self.values.given(),
             "cycle": {

@@ -73,7 +73,7 @@ class Equilibria(AlgebraicProblem):
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again."""
         about = super().describe()
-        if about.get("factory"):
+        if about.get("factory") or self.flow.origin:
             about["factory"] = "contvines.flows.files:from_description"
         return {**about, "word": "equilibrium", "flow": self.flow.described()}
 

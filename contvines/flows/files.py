@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import sys
 from collections.abc import Mapping
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,33 +21,9 @@ _known: dict[str, FlowProblem] = {}  # branches of one graph share their flow
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> Any:
     """Equilibria or cycles of a flow from what ``describe()`` returned; None where its functions are not at hand."""
-    about = description["flow"]
-    functions = find_callables(description["callables"], trust)
-    if functions is None:
-        return None
-    period = about["period"]
-    if isinstance(period, str):
-        found = find_callables({"period": period}, trust)
-        if found is None:
-            return None
-        period = found["period"]
-    functions.pop("preconditioner", None)
-    functions.pop("period", None)
-    key = json.dumps([description["callables"], about, description["name"], sorted(_names(description))])
-    flow = _known.get(key)
+    flow = _flow(description, trust)
     if flow is None:
-        flow = _known[key] = FlowProblem(
-            functions.pop("F"),
-            about["x0"],
-            description["p0"],
-            parameter=description["parameter"],
-            name=description["name"],
-            degree=about["degree"],
-            error=about["error"],
-            period=period,
-            scale=about["scale"],
-            **functions,
-        )
+        return None
     values = description["p0"]
     named = dict(values) if isinstance(values, Mapping) else {description["parameter"]: values}
     cycle = description.get("cycle")
@@ -68,3 +48,82 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Any
 def _names(description: Mapping[str, Any]) -> list[str]:
     values = description["p0"]
     return list(values) if isinstance(values, Mapping) else [str(description["parameter"])]
+
+
+def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
+    """The flow, one for all branches of a graph."""
+    about = description["flow"]
+    key = json.dumps([description["callables"], about, description["name"], sorted(_names(description))])
+    if key in _known:
+        return _known[key]
+    if about.get("file"):
+        file, name, digest = about["file"]
+        known = _loaded.get((file, name))
+        if known is None and not trust:
+            return None
+        flow = known or load_flow(file, name)
+        if flow is None or flow.origin is None or flow.origin[2] != digest:
+            raise ValueError(f"the flow {name!r} of {file} is not the one from which the graph was made")
+        return flow
+    functions = find_callables(description["callables"], trust)
+    if functions is None:
+        return None
+    period = about["period"]
+    if isinstance(period, str):
+        found = find_callables({"period": period}, trust)
+        if found is None:
+            return None
+        period = found["period"]
+    functions.pop("preconditioner", None)
+    functions.pop("period", None)
+    flow = _known[key] = FlowProblem(
+        functions.pop("F"),
+        about["x0"],
+        description["p0"],
+        parameter=description["parameter"],
+        name=description["name"],
+        degree=about["degree"],
+        error=about["error"],
+        period=period,
+        scale=about["scale"],
+        **functions,
+    )
+    return flow
+
+
+_loaded: dict[tuple[str, str], FlowProblem] = {}
+
+
+def load_flow(path: str | Path, name: str) -> FlowProblem | None:
+    """Run a Python file and take the flow that it names; None if that is something else.
+
+    Only for a file that the user has named.
+
+    Raises
+    ------
+    ValueError
+        If the file does not run.
+    """
+    file = Path(path).resolve()
+    text = file.read_bytes()
+    digest = hashlib.blake2b(text, digest_size=8).hexdigest()
+    known = _loaded.get((str(file), name))
+    if known is not None and known.origin is not None and known.origin[2] == digest:
+        return known
+    module_name = f"_flow_{file.stem}_{digest}"
+    spec = spec_from_file_location(module_name, file)
+    if spec is None or spec.loader is None:
+        return None
+    module = module_from_spec(spec)
+    sys.modules[module_name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[module_name]
+        raise ValueError(f"{path}: the file does not run: {type(error).__name__}: {error}") from error
+    flow = getattr(module, name, None)
+    if not isinstance(flow, FlowProblem):
+        return None
+    flow.origin = str(file), name, digest
+    _loaded[str(file), name] = flow
+    return flow

@@ -55,6 +55,17 @@ class CycleOrbit:
         found = mesh.evaluate(self._problem.rule, widths, x, t.reshape(-1) / self.period)
         return found.reshape(*t.shape, -1)
 
+    def to_dict(self) -> dict[str, Any]:
+        """The cycle as JSON-able dict."""
+        return {
+            "period": self.period,
+            "stable": self.stable,
+            "parameters": dict(self.parameters),
+            "multipliers": [[float(m.real), float(m.imag)] for m in self.multipliers],
+            "times": self.times.tolist(),
+            "states": self.states.tolist(),
+        }
+
     # ------------------------------------------------------------------ stability
     @cached_property
     def _spectrum(self) -> tuple[np.ndarray, float]:

@@ -95,6 +95,7 @@ class FlowProblem:
         self.values = ParameterSet(params, parameter)
         self.mirror = None if mirror is None else image_map(mirror, len(self.x0))
         self.mirror_shifted = False
+        self.origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
         self.sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
         self.field = Field(f, jacobian, derivative, self.x0, self.values, _period(period, self.values))
         if self.field.forced:
@@ -315,6 +316,7 @@ class FlowProblem:
             "period": period if not callable(period) else where["period"],
             "x0": self.x0.tolist(),
             "scale": None if scale is None else scale.tolist(),
+            "file": None if self.origin is None else list(self.origin),
         }
 
     def describe(self) -> dict[str, Any]:
@@ -332,7 +334,7 @@ class FlowProblem:
             "scale": None if scale is None else scale.tolist(),
             "callables": where,
             "flow": self.described(),
-            "factory": "contvines.flows.files:from_description" if importable else None,
+            "factory": "contvines.flows.files:from_description" if importable or self.origin else None,
         }
 
 

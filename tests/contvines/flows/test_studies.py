@@ -1,0 +1,75 @@
+"""Studies of flows from the command line."""
+
+import pytest
+
+from contvines.command.entry import main
+from contvines.command.study import StudyError, read_study
+
+FILE = """
+import contvines as cv
+
+oscillator = cv.FlowProblem(
+    lambda x, p: [p.m * x[0] - x[1] - x[0] * (x[0] ** 2 + x[1] ** 2), x[0] + p.m * x[1] - x[1] * (x[0] ** 2 + x[1] ** 2)],
+    [0.0, 0.0],
+    {"m": -0.1},
+)
+"""
+STUDY = """
+[model]
+name = "flow.py:oscillator"
+[continue]
+parameter = "m"
+within = [-0.2, 0.3]
+"""
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    (tmp_path / "flow.py").write_text(FILE)
+    (tmp_path / "study.toml").write_text(STUDY)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "study.toml"
+
+
+def run(monkeypatch, *words):
+    monkeypatch.setattr("sys.argv", ["contvines", *words])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    return ended.value.code
+
+
+def test_diagram_picture_and_orbit(study, monkeypatch, capsys):
+    assert not run(monkeypatch, "diagram", "study.toml", "--plot", "diagram.png", "-y", "period")
+    table = capsys.readouterr().out
+    assert "HB1" in table
+    assert "cycle" in table
+    assert (study.parent / "diagram.png").stat().st_size > 1000
+    assert not run(monkeypatch, "orbit", "study.vines", "B2:3", "--trust")
+    assert "cycle of period 6.283185307" in capsys.readouterr().out
+
+
+def test_what_a_motion_settles_on(study, monkeypatch, capsys):
+    study.write_text(STUDY + "\n[start]\nstate = [0.3, 0.0]\nm = 0.25\n")
+    assert not run(monkeypatch, "orbit", "study.toml")
+    assert "period 6.283185307" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("within = [-0.2, 0.3]", "within = [0.3, -0.2]"), "reversed"),
+        (('parameter = "m"', 'parameter = "k"'), "no such parameter"),
+        (("[continue]", "[start]\nstate = [1.0]\n[continue]"), "2 states"),
+        (("within = [-0.2, 0.3]", "within = [0.2, 0.3]"), "lies outside"),
+        (("oscillator", "pendulum"), "pendulum"),
+    ],
+)
+def test_bad_studies_are_refused(study, change, words):
+    study.write_text(STUDY.replace(*change))
+    with pytest.raises(StudyError, match=words):
+        read_study(study)
+
+
+def test_commands_for_machines_say_so(study, monkeypatch, capsys):
+    assert run(monkeypatch, "sweep", "study.toml")
+    assert "needs a machine" in " ".join(capsys.readouterr().err.split())
