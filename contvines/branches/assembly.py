@@ -113,11 +113,9 @@ def make_branch(
     endings: tuple[Ending, Ending],
     closed: bool,
     seed: str | None,
-    origin: int | None = None,
 ) -> Branch:
-    """A Branch from what was found; ``marks`` are left to the caller, ``origin`` is the point at which it was reached."""
+    """A Branch from what was found; ``marks``, and ``stable`` that depends on them, are left to the caller."""
     problem, whole = engine.problem, half.joined()
-    special = [i for i, _ in half.events]
     return Branch(
         label=label,
         problem=problem,
@@ -126,7 +124,7 @@ def make_branch(
         tangents=whole.tangents,
         multipliers=engine.multipliers(whole.spectrum),
         margin=whole.smallest,
-        stable=stability(engine, whole.spectrum, special if origin is None else [*special, origin]),
+        stable=None,
         real=real,
         endings=endings,
         closed=closed,

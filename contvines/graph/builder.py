@@ -213,7 +213,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     whole = filled(engine, half, origin)
     if whole is not half:
         half, origin = whole, origin_index(whole, pending)
-    branch = make_branch(label, engine, half, real, endings, closed, pending.point, origin)
+    branch = make_branch(label, engine, half, real, endings, closed, pending.point)
     run.graph.branches[label] = branch
     run.register.add(branch, engine, {i for i, _ in half.events} | {origin})
     run.connect(pending.point, pending.source, label, pending.note)

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..branches.assembly import a_sliver
+from ..branches.assembly import a_sliver, stability
 from ..branches.branch import Branch
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
@@ -32,6 +32,7 @@ from .run import Run
 TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
 TURNING_KINDS = ("branch-point", "symmetry-breaking")
 BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
+LAST_PLACES = 8  # units in the last place of the parameter by which two values may differ by rounding alone
 SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
@@ -92,20 +93,33 @@ def mark(
                 ending = replace(ending, reason=Reason.STOPS, text=event.name)
             ends[0 if index == 0 else 1] = ending
     branch.marks = tuple(sorted(marks))
-    _tell_slivers(run, branch)
+    # a fold that is a branch point, or a second one that is the first, is no place at which stability changes
+    places = {i for i, _ in marks} | ({origin} - {None})
+    branch.stable = stability(engine, half.joined().spectrum, sorted(places))
+    _unresolved(run, branch)
     branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
     return fresh
 
 
-def _tell_slivers(run: Run, branch: Branch) -> None:
-    """Say where two changes of stability lie so close together that no solution between them could be looked at."""
+def _unresolved(run: Run, branch: Branch) -> None:
+    """Say where two changes of stability lie so close together that solutions between them are not resolved; these count as unstable.
+
+    Either no solution could be put between them, or their parameter values are one as far as these are known.
+    """
+    special = run.graph.special
     for (i, one), (j, other) in pairwise(branch.marks):
-        kinds = [run.graph.special[label].kind for label in (one, other)]
-        if j - i == 1 and a_sliver(kinds[:1], kinds[1:]):
-            for label, neighbour in ((one, other), (other, one)):
-                run.remark(
-                    label, f"next to {neighbour}; stable solutions between the two would not be resolved"
-                )
+        here, there = (special[label] for label in (one, other))
+        if not a_sliver((here.kind,), (there.kind,)):
+            continue
+        apart = abs(here.value - there.value)
+        rounding = LAST_PLACES * float(np.spacing(run.unit(here.value)))
+        if j - i > 1 and apart > here.location_error + there.location_error + rounding:
+            continue
+        for label, neighbour in ((one, other), (other, one)):
+            run.remark(label, f"{apart:.1e} from {neighbour}: solutions between the two are not resolved")
+        beside = [k for k in (i - 1, j + 1) if 0 <= k < len(branch)]
+        if branch.stable is not None and not branch.stable[beside].any():
+            branch.stable[i : j + 1] = False
 
 
 def origin_index(half: HalfBranch, pending: Pending) -> int | None:

@@ -106,16 +106,22 @@ def test_a_sliver_between_a_neimark_sacker_point_and_a_doubling_is_marked(width)
     assert graph["B1"].stable_intervals() == [(circle.value, flip.value)]
 
 
-def test_a_sliver_too_narrow_to_be_seen_is_told_of():
+@pytest.mark.parametrize(("width", "resolved"), [(3e-9, False), (2e-8, False), (1e-4, True)])
+def test_a_sliver_too_narrow_to_be_seen_is_told_of(width, resolved):
+    """x' = x + p - x^2 with a second multiplier -(1 + x - width): stable between its fold at p = 1 and its flip at p = 1 + width^2."""
     problem = cv.MapProblem(
-        lambda z, p: np.array([z[0] + p - z[0] ** 2, -(1.0 + z[0] - 3e-9) * z[1]]),
+        lambda z, p: np.array([z[0] + (p - 1.0) - z[0] ** 2, -(1.0 + z[0] - width) * z[1]]),
         [0.3, 0.0],
-        0.09,
+        1.09,
         parameter="p",
     )
-    graph = cv.diagram(problem, within=(-0.1, 0.2), depth=0)
-    for point in (*graph.of_kind("fold"), *graph.of_kind("period-doubling")):
-        assert "would not be resolved" in point.note
+    graph = cv.diagram(problem, within=(0.9, 1.2), depth=0)
+    points = (*graph.of_kind("fold"), *graph.of_kind("period-doubling"))
+    assert len(points) == 2
+    for point, other in zip(points, points[::-1]):
+        assert (f"from {other.label}: " in point.note) is not resolved
+    intervals = graph["B1"].stable_intervals()
+    assert intervals == ([pytest.approx((1.0, 1.0 + width**2), abs=1e-13)] if resolved else [])
 
 
 @pytest.mark.parametrize("rate, stable", [(-1e-4, True), (5e-4, False)])

@@ -76,7 +76,7 @@ def _unsaid(graph: Any, branch: Any, i: int) -> bool:
     ]
     near = abs(branch.values[i + 1] - branch.values[i]) < UNRESOLVED * max(1.0, abs(branch.values[i]))
     return near and any(
-        f"next to {there}" in graph[here].note
+        f"from {there}: solutions between" in graph[here].note
         for one, other in (labels, labels[::-1])
         for here in one
         for there in other
