@@ -17,6 +17,7 @@ from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.attractors.recurrence import settle
 from orbits.attractors.returning import returning_cycles
+from orbits.attractors.sweep import described
 from orbits.machines.notation import STARTS
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
 from orbits.orbit import Orbit
@@ -169,6 +170,19 @@ class Population:
         )
         closed = closed_orbits(self.model, params, Orbit)
         return distinct((*closed, *(cycle.orbit.root() for cycle in cycles)), self.parameter, p)
+
+    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+        """The real motions known in closed form, stable or not: rest, sliding between the walls, symmetric impacts."""
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        return distinct(closed_orbits(self.model, params, Orbit), self.parameter, p)
+
+    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
+        """Measures, in the machine's units, of the motion through a state; see `orbits.attractors.sweep.measure_names`."""
+        if state is None:
+            return {}
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        found = settle(self.model, self.engine, params, state.copy(), 0.0, LONGEST, patience=0)
+        return described(found)[1]
 
     def _states(self, starts: np.ndarray) -> np.ndarray:
         """States of the simulation, shape (m, S)."""

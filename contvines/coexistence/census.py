@@ -16,7 +16,7 @@ from .population import Population
 
 @dataclass
 class Counted:
-    """A motion that a census has met, ready to be joined to a graph; `state` lies on it where it is chaotic."""
+    """A motion that a census has met, ready to be joined to a graph; `state` lies on it."""
 
     attractor: Attractor
     problem: Any
@@ -88,8 +88,7 @@ def _settled(
             float(motion.exponent),
             float(motion.error),
         )
-        chaotic = motion.kind == "chaotic" and motion.state is not None
-        found.append(Counted(attractor, motion.problem, motion.u, motion.state if chaotic else None))
+        found.append(Counted(attractor, motion.problem, motion.u, motion.state))
     journal.record(key, _recorded(found))
     return found
 

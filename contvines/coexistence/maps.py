@@ -188,6 +188,14 @@ class MapPopulation:
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
+    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Cycles known in closed form: none of a map of the user's own."""
+        return []
+
+    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
+        """Measures of a motion that is no cycle: none."""
+        return {}
+
     def _solved(self, guess: np.ndarray, p: float, reach: float = FROM_GUESS) -> np.ndarray | None:
         """The points, shape (n, d), of the cycle next to a guess, by Newton's method on the n-th image; None if there is none."""
         x, n, functions = guess[0].copy(), len(guess), self.problem.functions

@@ -8,7 +8,7 @@ The contract, in words:
    start reaches; and whether it is the mirror image that it reaches. The result depends on the starts alone.
 3. A motion has ``kind``, ``word``, ``periods``, ``exponent`` and ``error`` (the largest Lyapunov exponent per period and its
    standard error; nan where it recurs), and ``problem`` and ``u`` where it is a solution that can be continued, else None;
-   a chaotic one has a ``state`` from which it goes on.
+   ``state``, a state on it from which it goes on, where there is one.
 4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
    Optional: ``population.notation``, labels of axes by name of coordinate; ``population.leftward``, the coordinate that a picture shows growing from right to left.
 5. ``population.brief`` is how many values and how many starts at each a brief look after a diagram takes: few, so that it costs a
@@ -18,6 +18,8 @@ The contract, in words:
    leads into windows that are too narrow for starts to meet.
 7. ``population.returning(starts, p)`` returns ``(problem, u)`` of cycles, stable or not, to which Newton's method on the return map leads
    from starts, each once: it reaches a cycle from far more starts than settle on it. What is known in closed form is among them.
+8. ``population.closed(p)`` returns ``(problem, u)`` of the motions known in closed form, stable or not, each once.
+9. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
 """
 
 from __future__ import annotations
@@ -76,6 +78,10 @@ class Population(Protocol):
     def embedded(self, state: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
 
     def returning(self, starts: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+
+    def closed(self, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+
+    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]: ...
 
 
 def population_of(thing: Any, over: str | None = None, **parameters: float) -> Population:

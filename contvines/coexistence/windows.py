@@ -57,7 +57,7 @@ class Windows:
         before = len(self.run.graph.branches)
         parameter = self.population.parameter
         for counted in found:
-            if counted.state is not None:
+            if counted.attractor.kind == "chaotic" and counted.state is not None:
                 state, p = counted.state, counted.attractor.value
                 self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
                 self._add(f"cycles/{p!r}", p, partial(self.population.embedded, state, p))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -73,6 +74,7 @@ def choose(
         ways_of,
     )
     from contvines.command.surveying import surveyed
+    from contvines.survey.outcomes import OF_ALL
     from contvines.survey.work import Job, work
     from orbits.design import best
 
@@ -102,14 +104,21 @@ def choose(
 
     def evaluate(values: dict[str, float]) -> dict[str, float]:
         row = work(job, 0, values)
-        if row.note:
+        if not row.columns:
             raise ValueError(row.note)
-        return row.columns
+        unknown = outcome in OF_ALL and row.columns["covered"] < 1.0
+        return {**row.columns, outcome: math.nan} if unknown else row.columns
 
     drawn = [{}]
     if plan.samples:
         drawn = [{name: float(v[i]) for name, v in plan.samples.items()} for i in range(plan.shape[-1])]
     known = _known(found, outcome, largest, quantile)
+    if not any(math.isfinite(number) for _, number in known):
+        why = next((str(note) for note in found.notes.ravel() if note), "no machine has a number for it")
+        raise ValueError(
+            f"--best {text!r}: {outcome} is not known of any machine{' with all its samples' if plan.samples else ''} ({why}); "
+            "more depth in [continue], or atlas = true in [survey], finds more motions."
+        )
     limits = {name: (float(plan.axes[name][0]), float(plan.axes[name][-1])) for name in plan.axes}
     choice = best(
         evaluate, outcome, limits, largest=largest, tolerances=drawn, quantile=quantile, known=known
@@ -155,12 +164,12 @@ def _comes(outcome: str, study: Any) -> bool:
 def _known(
     found: Any, outcome: str, largest: bool, quantile: float | None
 ) -> list[tuple[dict[str, float], float]]:
-    """The survey's points and their outcomes over the samples."""
+    """The survey's points and their outcomes over the samples; no number where one of these is not known."""
     import itertools
 
     import numpy as np
 
-    value = found[outcome] * (-1.0 if largest else 1.0)
+    value = found.known(outcome) * (-1.0 if largest else 1.0)
     if found.plan.samples:
         value = value.max(axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
     points = itertools.product(*found.plan.axes.values())
@@ -209,6 +218,11 @@ def _told(choice: Any, outcome: str, found: Any, units: dict[str, str], wish: st
 
     lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
     lines.append(f"{outcome} = {shown(outcome, choice.outcome)}, {wish}")
+    unknown = np.count_nonzero(~np.isfinite(found.known(outcome)))
+    if unknown:
+        lines.append(
+            f"left out: {unknown} of {len(found.plan)} machines of which {outcome} is not known; the column note says why"
+        )
     if choice.others:
         middle = ", medians of the samples" if found.plan.samples else ""
         lines += ["", f"there, beside it{middle} (and from ... to ... over the survey):"]

@@ -77,9 +77,10 @@ def plot_survey(
             heights = _map(figure, panel, survey, name, along)
         handles = panel.get_legend_handles_labels()[0]
         place_legend(panel, handles, legend, own)
-        failed = survey.failed
-        if failed:
-            panel.set_title(f"{failed} of {len(survey.plan)} systems failed", color="0.4", fontsize="medium")
+        counts = {"failed": survey.failed, "known in part": survey.partly}
+        said = [f"{count} of {len(survey.plan)} systems {what}" for what, count in counts.items() if count]
+        if said:
+            panel.set_title(", ".join(said), color="0.4", fontsize="medium")
         if own:
             _fit(figure)
         if heights:
@@ -171,7 +172,13 @@ def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
             axes.fill_between(x, lower, upper, color=BLUE, alpha=strength, lw=0, label=label)
         axes.plot(x, _quantiles(known, (0.5,))[0], color=BLUE, label="median")
     else:
-        axes.plot(x, values, "o-", color=BLUE, markersize=3.5)
+        axes.plot(x, values, "-", color=BLUE)
+        part = survey.notes != ""
+        axes.plot(x[~part], values[~part], "o", color=BLUE, markersize=3.5)
+        if np.any(part & np.isfinite(values)):
+            axes.plot(
+                x[part], values[part], "o", mfc="white", mec=BLUE, markersize=3.5, label="known in part"
+            )
     axes.set_xlabel(label_of(survey, over))
     axes.set_ylabel(_upright(axes, label_of(survey, name)))
 
@@ -210,9 +217,17 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
         heights = list(axes.clabel(lines, fmt="%.4g", fontsize="x-small", inline=False))
         for text in heights:
             text.set_path_effects([withStroke(linewidth=3.0, foreground="0.25")])
-    lost = np.argwhere(survey.notes.reshape(*survey.plan.shape[:2], -1)[..., 0] != "")
-    if len(lost):
-        axes.plot(x[lost[:, 0]], y[lost[:, 1]], "x", color=RED, label="failed", linestyle="none")
+    marks = {
+        "failed": (survey.lost, {"marker": "x", "color": RED}),
+        "known in part": (
+            (survey.notes != "") & ~survey.lost,
+            {"marker": "o", "mfc": "none", "mec": "white"},
+        ),
+    }
+    for label, (which, look) in marks.items():
+        here = np.argwhere(which.reshape(*survey.plan.shape[:2], -1).any(axis=-1))
+        if len(here):
+            axes.plot(x[here[:, 0]], y[here[:, 1]], label=label, linestyle="none", **look)
     axes.set_xlabel(label_of(survey, along[0]))
     axes.set_ylabel(_upright(axes, label_of(survey, along[1])))
     axes.grid(False)

@@ -1,17 +1,21 @@
 """What comes out of a diagram, as numbers.
 
 An outcome is a function ``(found: Findings) -> {column: number}``. A *response* is the measure that a diagram shows, along the stable
-branches that are no virtual ones, and of motions that were simulated; several may coexist at one value.
+branches that are not virtual, and of motions that were simulated; several may coexist at one value.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from .stretches import gaps, highest, stretches
+
+if TYPE_CHECKING:
+    from .completion import Unbranched
 
 GRID = 401  # values at which coexisting responses are compared
 
@@ -28,80 +32,17 @@ class Findings:
         The solution that the diagram began with (of a machine: an orbit, its machine in `model`).
     simulated : sequence of (float, dict, str)
         Motions that a simulation settled on: value of the parameter, measures by name, word; see `Job`.
+    unbranched : sequence of Unbranched
+        Attractors that lie on no branch of the diagram, chaotic ones for example.
     """
 
     graph: Any
     seed: Any
     simulated: Sequence[tuple[float, Mapping[str, float], str]] = ()
+    unbranched: Sequence[Unbranched] = ()
 
 
 Outcome = Callable[[Findings], Mapping[str, float]]
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """A stable piece of a branch on which the parameter runs one way.
-
-    Attributes
-    ----------
-    branch : Branch
-    first, last : int
-        Inclusive indices.
-    values, response : float array
-    """
-
-    branch: Any
-    first: int
-    last: int
-    values: np.ndarray
-    response: np.ndarray
-
-
-def stretches(graph: Any, measure: str | None = None) -> list[Stretch]:
-    """The stable responses of a diagram; `measure` is that of the picture by default."""
-    from ..graph.measures import default_measure
-
-    name = measure or default_measure(graph)
-    found = []
-    for branch in graph.branches.values():
-        if not branch.real or not len(branch):
-            continue
-        response = np.asarray(branch.measure(name), dtype=float)
-        for first, last, stable in branch.pieces():
-            if not stable:
-                continue
-            steps = np.sign(np.diff(branch.values[first : last + 1]))
-            turns = [first, *(first + 1 + np.flatnonzero(steps[1:] * steps[:-1] < 0.0)).tolist(), last]
-            for a, b in pairwise(turns):
-                part = slice(a, b + 1)
-                found.append(Stretch(branch, a, b, branch.values[part], response[part]))
-    return found
-
-
-def highest(stretch: Stretch) -> tuple[float, float, int]:
-    """The largest response on a stretch, where, and the index of the nearest point.
-
-    Between the points the response is a cubic spline over the length along the curve.
-    """
-    from scipy.interpolate import CubicSpline
-
-    values, response = stretch.values, stretch.response
-    if not np.any(np.isfinite(response)):
-        return -np.inf, np.nan, stretch.first
-    top = int(np.nanargmax(response))
-    best = float(response[top]), float(values[top])
-    a, b = max(top - 2, 0), min(top + 3, len(values))
-    if b - a >= 4 and 0 < top < len(values) - 1 and np.all(np.isfinite(response[a:b])):
-        x, y = values[a:b], response[a:b]
-        steps = np.hypot(np.diff(x) / (np.ptp(x) or 1.0), np.diff(y) / (np.ptp(y) or 1.0))
-        if np.all(steps > 0.0):
-            along = np.concatenate([[0.0], np.cumsum(steps)])
-            curve, place = CubicSpline(along, y), CubicSpline(along, x)
-            roots = [t for t in curve.derivative().roots(extrapolate=False) if along[0] <= t <= along[-1]]
-            top_t = max(roots, key=lambda t: float(curve(t)), default=None)
-            if top_t is not None and float(curve(top_t)) > best[0]:
-                best = float(curve(top_t)), float(place(top_t))
-    return best[0], best[1], stretch.first + top
 
 
 def peak(found: Findings) -> dict[str, float]:
@@ -111,6 +52,7 @@ def peak(found: Findings) -> dict[str, float]:
     name = default_measure(found.graph)
     known = [highest(stretch)[:2] for stretch in stretches(found.graph)]
     known += [(float(measures.get(name, np.nan)), value) for value, measures, _ in found.simulated]
+    known += [(float(met.measures.get(name, np.nan)), met.value) for met in found.unbranched]
     value, place = max((pair for pair in known if np.isfinite(pair[0])), default=(np.nan, np.nan))
     return {"peak": value, "peak_at": place}
 
@@ -127,22 +69,46 @@ def lower_peak(found: Findings) -> dict[str, float]:
 
 
 def covered(found: Findings) -> dict[str, float]:
-    """Share of the interval in which the diagram has a stable response."""
+    """Share of the interval in which the diagram has a stable response; no number where stability is not computed."""
+    if not _judged(found.graph):
+        return {"covered": np.nan}
     low, high = found.graph.within
     return {"covered": 1.0 - sum(b - a for a, b in gaps(found.graph)) / (high - low)}
 
 
-def gaps(graph: Any) -> list[tuple[float, float]]:
-    """Intervals of the parameter in which the diagram has no stable response."""
-    found, reached = [], graph.within[0]
-    spans = sorted((s.values.min(), s.values.max()) for s in stretches(graph))
-    for low, high in spans:
-        if low > reached:
-            found.append((float(reached), float(low)))
-        reached = max(reached, high)
-    if reached < graph.within[1]:
-        found.append((float(reached), float(graph.within[1])))
-    return found
+def unknown(found: Findings) -> str:
+    """A sentence on what is not known of the responses of a system; empty if its stable motions cover the interval and nothing else was met.
+
+    It is empty, too, where stability is not computed.
+    """
+    graph = found.graph
+    if not _judged(graph):
+        return ""
+    name, unit = graph.parameter, graph.units.get(graph.parameter, "")
+    reasons = []
+    open_ = gaps(graph)
+    if open_:
+        low, high = max(open_, key=lambda gap: gap[1] - gap[0])
+        part = sum(b - a for a, b in open_) / (graph.within[1] - graph.within[0])
+        reasons.append(
+            f"no stable motion is known in {100.0 * part:.3g} % of the interval, most of it {name} = {low:.6g} to {high:.6g}"
+            f" {unit}".rstrip()
+        )
+    kinds = dict.fromkeys(met.kind for met in found.unbranched)
+    for kind in kinds:
+        where = sorted({met.value for met in found.unbranched if met.kind == kind})
+        more = f" and {len(where) - 1} more values" if len(where) > 1 else ""
+        reasons.append(
+            f"a motion without a branch ({kind}) is met at {name} = {where[0]:.6g} {unit}".rstrip() + more
+        )
+    if not graph.complete:
+        reasons.append(str(graph.message))
+    return "; ".join(reasons)
+
+
+def _judged(graph: Any) -> bool:
+    """Whether the stability of any solution is computed."""
+    return any(stable is not None for branch in graph.branches.values() for _, _, stable in branch.pieces())
 
 
 def activation(found: Findings) -> dict[str, float]:
@@ -158,11 +124,14 @@ def activation(found: Findings) -> dict[str, float]:
     busy = [s for s in known if s.branch.description.get("impacts")]
     above = max((float(s.values.max()) for s in calm), default=np.nan)
     below = min((float(s.values.min()) for s in busy), default=np.nan)
-    told = [
-        (value, measures["impacts_per_period"])
-        for value, measures, _ in found.simulated
-        if "impacts_per_period" in measures
+    simulated = [(value, measures) for value, measures, _ in found.simulated]
+    open_ = gaps(
+        found.graph
+    )  # elsewhere a motion without a branch is beside the stable ones that the numbers are about
+    simulated += [
+        (met.value, met.measures) for met in found.unbranched if any(a < met.value < b for a, b in open_)
     ]
+    told = [(value, m["impacts_per_period"]) for value, m in simulated if "impacts_per_period" in m]
     beyond = any(not impacts and value > above for value, impacts in told)
     before = any(impacts and value < below for value, impacts in told)
     return {
@@ -257,3 +226,8 @@ MADE: dict[str, Callable[..., Mapping[str, float]]] = {
 """Outcomes of a word or kind, written ``stable:LR``, ``first:period-doubling``."""
 ARGUMENTS = {"stable": "word", "first": "kind", "share": "word"}
 """What follows the colon, as the functions call it."""
+OF_ALL = frozenset(
+    ("peak", "peak_at", "lower_peak", "lower_peak_at", "coexisting", "ambiguous", "impact_power", "friction_power", "pumping_time",
+     "pumped_share")
+)  # fmt: skip
+"""Columns about all motions together, those of machines included: where some motions are not known, the number is not known either."""

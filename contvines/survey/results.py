@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import html
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +16,8 @@ from ..doors import above
 from ..graph.table import with_unit
 from ..hints import hinted
 from ..text_table import Table, fitted, terminal_width
+from .files import read, write
+from .outcomes import OF_ALL
 from .plan import Plan, PlanError
 from .work import Row
 
@@ -33,9 +34,9 @@ class Survey:
     ----------
     plan : Plan
     columns : dict
-        Each outcome as an array of the plan's shape; no number where a system failed or has none.
+        Each outcome as an array of the plan's shape, ``covered`` always among them; no number where a system failed or has none.
     notes : ndarray of str
-        Why a system failed; empty elsewhere.
+        Why a system failed, or what is not known of it; empty where the stable motions of its diagram cover the whole interval.
     units : dict
         Of parameters and outcomes, where they have some.
     about : dict
@@ -84,9 +85,33 @@ class Survey:
         raise KeyError(f"the survey has no outcome {name!r}; it has {', '.join(self.columns)}")
 
     @property
+    def lost(self) -> np.ndarray:
+        """Which systems failed, bool array of the plan's shape."""
+        numbers = [np.isfinite(values) for values in self.columns.values()]
+        return (self.notes != "") & ~np.any(np.array(numbers).reshape(-1, *self.plan.shape), axis=0)
+
+    @property
     def failed(self) -> int:
         """Number of systems that failed."""
-        return int(np.count_nonzero(self.notes != ""))
+        return int(np.count_nonzero(self.lost))
+
+    @property
+    def partly(self) -> int:
+        """Number of systems of which something is not known: their notes say what."""
+        return int(np.count_nonzero(self.notes != "")) - self.failed
+
+    def known(self, outcome: str) -> np.ndarray:
+        """An outcome where it is known: one of all motions together has no number where these do not cover the whole interval.
+
+        Parameters
+        ----------
+        outcome : str
+            ``peak`` for example; of a system that is not known in the whole interval it is a bound.
+        """
+        values = self[outcome]
+        if outcome not in OF_ALL or "covered" not in self.columns:
+            return values
+        return np.where(self["covered"] == 1.0, values, np.nan)
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset`: a variable per outcome over the plan's dimensions, with units and the systems' notes."""
@@ -104,7 +129,11 @@ class Survey:
         variables: dict[str, Any] = {
             name: (dims, values, told[name]) for name, values in self.columns.items()
         }
-        variables["note"] = (dims, self.notes.astype(str), {"long_name": "why the system failed"})
+        variables["note"] = (
+            dims,
+            self.notes.astype(str),
+            {"long_name": "why the system failed, or what is not known of it"},
+        )
         coords: dict[str, Any] = {name: (name, values, told[name]) for name, values in self.plan.axes.items()}
         if self.plan.samples:
             coords["sample"] = ("sample", np.arange(self.plan.shape[-1], dtype=np.int32))
@@ -112,13 +141,9 @@ class Survey:
         return xarray.Dataset(variables, coords, {"about": json.dumps(self.about, sort_keys=True)})
 
     def save(self, path: str | Path) -> None:
-        """Write NetCDF, and the same as CSV beside it; a file of that name is replaced in one step."""
+        """Write NetCDF with a digest, and the same as CSV beside it; a file of that name is replaced in one step."""
         path = Path(path)
-        draft = path.with_name(path.name + ".new")
-        self.to_xarray().to_netcdf(
-            draft, engine="scipy", format="NETCDF3_64BIT"
-        )  # needs no library of its own
-        os.replace(draft, path)
+        write(self.to_xarray(), path)
         self.to_csv(path.with_suffix(".csv"))
 
     def to_csv(self, path: str | Path) -> None:
@@ -142,19 +167,19 @@ class Survey:
     ) -> tuple[dict[str, float], float]:
         """The point of the axes with the lowest (or largest) outcome, over the samples the worst, or this quantile of them.
 
-        A point at which a system failed or has no number is never the best.
+        A point at which a system failed, has no number, or is not known (see `known`) is never the best.
 
         Raises
         ------
         PlanError
             If no point has a number.
         """
-        value = self[outcome] if not largest else -self[outcome]
+        value = self.known(outcome) if not largest else -self.known(outcome)
         if self.plan.samples:
             with np.errstate(invalid="ignore"):
                 value = np.max(value, axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
         if not np.isfinite(value).any():
-            raise PlanError(f"no system of the survey has a number for {outcome}; the notes say why")
+            raise PlanError(f"{outcome} is known of no system of the survey; the notes say why")
         place = np.unravel_index(int(np.nanargmin(value)), value.shape)
         point = {name: float(values[i]) for (name, values), i in zip(self.plan.axes.items(), place)}
         found = float(value[place])
@@ -172,7 +197,11 @@ class Survey:
 
     def _title(self) -> str:
         about = f"{len(self.plan)} systems over {', '.join(self.plan.names)}"
-        return about + (f"; {self.failed} of them failed, the column note says why" if self.failed else "")
+        if self.failed:
+            about += f"; {self.failed} of them failed, the column note says why"
+        if self.partly:
+            about += f"; {self.partly} of them are known in part, the column note says why"
+        return about
 
     def _table(self) -> Table:
         rows: list[tuple[str, ...]] = []
@@ -189,28 +218,24 @@ def load_survey(path: str | Path) -> Survey:
     Raises
     ------
     PlanError
-        If it is none.
+        If there is no such file, it is not that of a survey, or it is damaged.
     """
-    import xarray
-
+    data = read(Path(path))
     try:
-        with xarray.open_dataset(Path(path), engine="scipy") as data:
-            about = json.loads(data.attrs["about"])
-            # in the order of the dimensions: that of the notes about the survey is the alphabet's
-            axes = {str(name): data[name].values for name in data["note"].dims if name in about["axes"]}
-            samples = {str(name): data[name].values for name in data.coords if name in about["samples"]}
-            columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
-            units, notation = (
-                {
-                    str(n): str(v.attrs[key])
-                    for n, v in data.variables.items()
-                    if key in v.attrs and n != "note"
-                }
-                for key in ("units", "long_name")
-            )
-            notes = data["note"].values.astype(object)
-    except FileNotFoundError:
-        raise PlanError(f"{path}: there is no such file") from None
-    except (OSError, KeyError, ValueError, TypeError):
-        raise PlanError(f"{path}: this is not the NetCDF file of a survey") from None
-    return Survey(Plan(axes, samples), columns, notes, units, about, notation)
+        about = json.loads(data.attrs["about"])
+        # in the order of the dimensions: that of the notes about the survey is the alphabet's
+        axes = {str(name): data[name].values for name in data["note"].dims if name in about["axes"]}
+        samples = {str(name): data[name].values for name in data.coords if name in about["samples"]}
+        columns = {str(n): v.values for n, v in data.data_vars.items() if n != "note"}
+        units, notation = (
+            {str(n): str(v.attrs[key]) for n, v in data.variables.items() if key in v.attrs and n != "note"}
+            for key in ("units", "long_name")
+        )
+        notes = data["note"].values.astype(object)
+        plan = Plan(axes, samples)
+        whole = all(values.shape == plan.shape for values in (notes, *columns.values()))
+    except (LookupError, ValueError, TypeError, AttributeError):
+        whole = False
+    if not whole:
+        raise PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged")
+    return Survey(plan, columns, notes, units, about, notation)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from .outcomes import Findings, gaps
-
-OVER_ALL = 40  # values over the whole interval, where a diagram has next to nothing of it
-LEAST = 1e-3  # of the interval: shorter gaps are left alone
+from .completion import complete
+from .outcomes import Findings, covered, unknown
+from .stretches import gaps, spread
 
 
 @dataclass(frozen=True)
@@ -56,9 +55,9 @@ class Row:
     ----------
     index : int
     columns : dict
-        Numbers by name; empty where the system failed.
+        Numbers by name, ``covered`` always among them; empty where the system failed.
     note : str
-        Why it failed, as a sentence.
+        Why it failed, or what is not known of it, as a sentence.
     """
 
     index: int
@@ -73,13 +72,17 @@ def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) ->
         with np.errstate(all="ignore"):
             seed = job.family(values, near)
             graph = _graph(job, seed)
-            found = Findings(graph, seed, _simulated(job, values, graph))
-            for outcome in job.outcomes:
+            population = _population(job, seed)
+            left = [] if population is None else complete(graph, population, job.gaps)
+            open_ = gaps(graph) if population is None else []  # else they are looked at already
+            found = Findings(graph, seed, _simulated(job, values, open_), left)
+            for outcome in (*job.outcomes, covered):
                 columns |= {name: float(value) for name, value in outcome(found).items()}
+            note = unknown(found)
     except (ValueError, ArithmeticError, KeyError, np.linalg.LinAlgError) as error:
         sentence = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
         return Row(index, {}, sentence or f"{type(error).__name__} without a word of why")
-    return Row(index, columns)
+    return Row(index, columns, note)
 
 
 def _graph(job: Job, seed: Any) -> Any:
@@ -92,23 +95,25 @@ def _graph(job: Job, seed: Any) -> Any:
     return atlas(seed, over=job.over, within=job.within, **job.options, **job.atlas)
 
 
-def _simulated(job: Job, values: Mapping[str, float], graph: Any) -> list[Any]:
-    """Motions that simulations settle on: in the gaps of the diagram, and where else it is asked for."""
+def _population(job: Job, seed: Any) -> Any:
+    """Starts of a system and what they settle on; None for equations that cannot be simulated from many."""
+    from ..coexistence.population import population_of
+
+    try:
+        return population_of(seed, job.over)
+    except ValueError:
+        return None
+
+
+def _simulated(job: Job, values: Mapping[str, float], open_: Sequence[tuple[float, float]]) -> list[Any]:
+    """Motions on which simulations settle: in the gaps `open_`, and where else it is asked for."""
     simulate = getattr(job.family, "simulated", None)
     if simulate is None:
         return []
     found = []
-    open_ = [(low, high) for low, high in gaps(graph) if high - low > LEAST * (job.within[1] - job.within[0])]
-    if job.gaps and open_:
-        length = sum(high - low for low, high in open_)
-        count = max(job.gaps, int(np.ceil(OVER_ALL * length / (job.within[1] - job.within[0]))))
-        places = np.linspace(0.0, length, count + 2)[1:-1]
-        for low, high in open_:
-            inside = [low + place for place in places if 0.0 <= place < high - low] or [0.5 * (low + high)]
-            places = places - (high - low)
-            found += simulate(values, job.over, inside, 1)
+    if places := spread(open_, job.within, job.gaps):
+        found += simulate(values, job.over, places, 1)
     if job.values:
-        found += simulate(
-            values, job.over, np.linspace(*job.within, job.values + 2)[1:-1].tolist(), job.starts
-        )
+        places = np.linspace(*job.within, job.values + 2)[1:-1].tolist()
+        found += simulate(values, job.over, places, job.starts)
     return found

@@ -24,6 +24,7 @@ from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.returning import returning_cycles
 from orbits.declared.simulation import Trajectory, collect, letter_of, outside
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.declared.sweep import sweep
 from orbits.machines.notation import STARTS
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
@@ -191,6 +192,19 @@ class DeclaredPopulation:
         cycles = returning_cycles(stepper, np.asarray(starts, dtype=float), self.box(p), EMBEDDED)
         return distinct(cycles, self.parameter, p)
 
+    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Motions known in closed form: none of a machine with equations of its own."""
+        return []
+
+    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
+        """Measures of the motion through a start; see `orbits.declared.sweep.measure_names`."""
+        if state is None:
+            return {}
+        start = state if self.machine.forced else np.append(0.0, state)
+        fixed: dict[str, Any] = dict(self.parameters)
+        (row,) = sweep(self.machine, self.parameter, [p], start=start, **fixed)
+        return dict(row.measures)
+
     def _parted(self, start: np.ndarray) -> tuple[np.ndarray, float]:
         """States and phase of a start."""
         return (start[1:], float(start[0])) if self.machine.forced else (start, 0.0)
@@ -248,22 +262,22 @@ class _Sorting:
             if orbit is not None:
                 return self._add(orbit, stepper)
             if run.held or not (run.events or self.machine.forced):
-                return self.plain("stuck")
+                return self.plain("stuck", state=_start(stepper))
             if _chatters(run):
-                return self.plain("chatter", periods=0)
+                return self.plain("chatter", periods=0, state=_start(stepper))
             if looks >= TOLD and any(m.kind in WANDERING for m in self.motions):
                 break
         known = next((k for k, m in enumerate(self.motions) if m.kind in WANDERING), None)
         if known is not None:
             return known, False
         exponent, error = growth(stepper)
-        state = np.append(stepper.clock % TWO_PI, stepper.state) if self.machine.forced else stepper.state
+        state = _start(stepper)
         kind = wandering(exponent, error, self.machine.size > 2)
         if kind == "slow":  # neighbours come together: it may recur, but late
             orbit = returning(look(stepper, RARE), RARE, RETURNED)
             if orbit is not None:
                 return self._add(orbit, stepper)
-        return self.plain(kind, exponent=exponent, error=error, state=state.copy())
+        return self.plain(kind, exponent=exponent, error=error, state=state)
 
     def _row(self, stepper: Stepper) -> np.ndarray:
         if not self.machine.forced:
@@ -302,9 +316,7 @@ class _Sorting:
                 return k, self._side(k, stepper)
         place = len(self.motions)
         kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
-        self.motions.append(
-            Motion(kind, root.word.text, root.periods, problem, u, state=stepper.state.copy())
-        )
+        self.motions.append(Motion(kind, root.word.text, root.periods, problem, u, state=_start(stepper)))
         self.forms.append(form)
         self.marks.append(self._marks(place, root, False))
         if self.machine.has_mirror(root.params) and not root.symmetric:
@@ -348,3 +360,10 @@ def _chatters(run: Trajectory) -> bool:
         if np.all(np.abs(spans - turns)[-step:] < RELEASED) and np.ptp(spans[-step:]) < RELEASED:
             return True
     return False
+
+
+def _start(stepper: Stepper) -> np.ndarray:
+    """The state as a start: with the phase of a forced machine before it."""
+    return (
+        np.append(stepper.clock % TWO_PI, stepper.state) if stepper.machine.forced else stepper.state.copy()
+    )

@@ -14,6 +14,10 @@ def row(index, note=""):
     return Row(index, {"peak": 0.5 * index}, note)
 
 
+def lines(path):
+    return [json.loads(line.partition(" ")[2]) for line in path.read_text().splitlines()]
+
+
 @pytest.fixture
 def kept(tmp_path):
     path = tmp_path / "rows"
@@ -29,7 +33,7 @@ def test_whole_rows_are_found_again_and_more_follow(kept):
         rows.keep(row(3))
     with Rows(kept, HEADER) as rows:
         assert sorted(rows.found) == [0, 1, 2, 3]
-    assert [json.loads(line).get("index") for line in kept.read_text().splitlines()] == [None, 0, 1, 2, 3]
+    assert [line.get("index") for line in lines(kept)] == [None, 0, 1, 2, 3]
 
 
 @pytest.mark.parametrize("cut", [1, 2, 9])
@@ -38,14 +42,25 @@ def test_a_line_cut_short_is_left_out_and_written_over(kept, cut):
     with Rows(kept, HEADER) as rows:
         assert sorted(rows.found) == [0, 1]
         rows.keep(row(7))
-    assert [json.loads(line).get("index") for line in kept.read_text().splitlines()] == [None, 0, 1, 7]
+    assert [line.get("index") for line in lines(kept)] == [None, 0, 1, 7]
+
+
+def test_a_damaged_line_and_those_after_it_are_worked_out_again(kept):
+    content = bytearray(kept.read_bytes())
+    content[content.index(b"0.5")] ^= 1  # 0.5 becomes 1.5
+    kept.write_bytes(content)
+    with Rows(kept, HEADER) as rows:
+        assert sorted(rows.found) == [0]
+        rows.keep(row(1))
+    with Rows(kept, HEADER) as rows:
+        assert rows.found[1].columns == {"peak": 0.5}
 
 
 @pytest.mark.parametrize("other", [{"survey": 1, "of": "squares"}, {"survey": 1}, {}])
 def test_rows_of_another_survey_are_not_taken(kept, other):
     with Rows(kept, other) as rows:
         assert rows.found == {}
-    assert [json.loads(line) for line in kept.read_text().splitlines()] == [other]
+    assert lines(kept) == [other]
 
 
 def test_a_finished_survey_leaves_none(kept):

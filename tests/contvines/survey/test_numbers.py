@@ -11,7 +11,7 @@ from contvines.survey import outcomes
 def branch(word, values, heights, real=True):
     values, heights = np.array(values, dtype=float), np.array(heights, dtype=float)
     return SimpleNamespace(
-        real=real, values=values, description={"word": word, "impacts": word.count("L")},
+        real=real, problem=None, values=values, description={"word": word, "impacts": word.count("L")},
         measure=lambda name: heights, pieces=lambda: [(0, len(values) - 1, True)],
         stable_intervals=lambda: [(values.min(), values.max())], __len__=lambda: len(values),
     )  # fmt: skip

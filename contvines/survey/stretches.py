@@ -1,0 +1,148 @@
+"""Stable stretches of a diagram's branches, the largest response on each, and the gaps between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+SHARP = 1e-5  # of a step between two points: so closely a peak between them is located
+MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet
+SIMULATED = 40  # values over the whole interval, where a diagram has next to nothing of it
+LEAST = 1e-3  # of the interval: shorter gaps are not simulated
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A stable piece of a branch on which the parameter runs one way.
+
+    Attributes
+    ----------
+    branch : Branch
+    first, last : int
+        Inclusive indices.
+    values, response : float array
+    measure : str
+        The name of the response.
+    """
+
+    branch: Any
+    first: int
+    last: int
+    values: np.ndarray
+    response: np.ndarray
+    measure: str
+
+
+def stretches(graph: Any, measure: str | None = None) -> list[Stretch]:
+    """The stable responses of a diagram; `measure` is that of the picture by default."""
+    from ..graph.measures import default_measure
+
+    name = measure or default_measure(graph)
+    found = []
+    for branch in graph.branches.values():
+        if not branch.real or not len(branch):
+            continue
+        response = np.asarray(branch.measure(name), dtype=float)
+        for first, last, stable in branch.pieces():
+            if not stable:
+                continue
+            steps = np.sign(np.diff(branch.values[first : last + 1]))
+            turns = [first, *(first + 1 + np.flatnonzero(steps[1:] * steps[:-1] < 0.0)).tolist(), last]
+            for a, b in pairwise(turns):
+                part = slice(a, b + 1)
+                found.append(Stretch(branch, a, b, branch.values[part], response[part], name))
+    return found
+
+
+def highest(stretch: Stretch) -> tuple[float, float, int]:
+    """The largest response on a stretch, where, and the index of the nearest point.
+
+    Beside the point with the largest response the motion is solved for at further values.
+    """
+    from scipy.optimize import minimize_scalar
+
+    values, response = stretch.values, stretch.response
+    if not np.any(np.isfinite(response)):
+        return -np.inf, np.nan, stretch.first
+    top = int(np.nanargmax(response))
+    best = float(response[top]), float(values[top])
+    a, b = max(top - 1, 0), min(top + 1, len(values) - 1)
+    low, high = sorted((float(values[a]), float(values[b])))
+    between = _between(stretch, a, b) if low < high else None
+    if between is not None:
+        found: Any = minimize_scalar(
+            lambda p: -between(p),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": SHARP * (high - low)},
+        )
+        best = max(best, (-float(found.fun), float(found.x)))
+    return best[0], best[1], stretch.first + top
+
+
+def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | None:
+    """The response of the motion at a value between points a and b of a stretch; None for a branch without its problem."""
+    from ..continuation.engine import Engine
+    from ..continuation.settings import Settings
+
+    branch = stretch.branch
+    if branch.problem is None:
+        return None
+    low, high = sorted((float(stretch.values[a]), float(stretch.values[b])))
+    engine = Engine(branch.problem, (low, high), Settings())
+    points = branch.points[stretch.first : stretch.last + 1]
+
+    def response(p: float) -> float:
+        for i in range(a, b):
+            first, last = stretch.values[i], stretch.values[i + 1]
+            if first != last and (first - p) * (last - p) <= 0.0:
+                part = (p - first) / (last - first)
+                guess = (1.0 - part) * points[i] + part * points[i + 1]
+                solved = engine.at_value(guess, p)
+                chord = np.abs(points[i + 1] - points[i]).max()
+                # a motion farther from the chord than its ends from one another is one of another branch
+                if solved is not None and np.abs(solved.u - guess).max() <= chord:
+                    return float(branch.measure_of(stretch.measure, solved.u[None, :], np.array([p]))[0])
+        return -np.inf
+
+    return response
+
+
+def gaps(graph: Any) -> list[tuple[float, float]]:
+    """Intervals of the parameter in which the diagram has no stable response."""
+    start, end = (float(value) for value in graph.within)
+    found, reached = [], start
+    spans = sorted((s.values.min(), s.values.max()) for s in stretches(graph))
+    for low, high in [*spans, (end, end)]:
+        if low - reached > MEETING * (end - start):
+            found.append((float(reached), float(low)))
+        reached = max(reached, high)
+    return found
+
+
+def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], values: int) -> list[float]:
+    """Values spread evenly over gaps, one at least in each that is not too short to matter.
+
+    Parameters
+    ----------
+    open_ : sequence of (float, float)
+    within : (float, float)
+        The whole interval.
+    values : int
+        At least so many, more where the gaps are a large part of the interval; 0 for none.
+    """
+    size = within[1] - within[0]
+    wide = [(low, high) for low, high in open_ if high - low > LEAST * size]
+    if not values or not wide:
+        return []
+    length = sum(high - low for low, high in wide)
+    places = np.linspace(0.0, length, max(values, int(np.ceil(SIMULATED * length / size))) + 2)[1:-1]
+    found: list[float] = []
+    for low, high in wide:
+        found += [low + p for p in places.tolist() if 0.0 <= p < high - low] or [0.5 * (low + high)]
+        places = places - (high - low)
+    return found

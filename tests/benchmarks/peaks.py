@@ -1,0 +1,181 @@
+"""Peaks of drawn surveys beside brute force: simulations up, down and from random states, refined about the largest response.
+
+    python -m tests.benchmarks.peaks [--surveys 20] [--machines 2] [--first 0] [--depth 1] [--values 121]
+
+Each machine of a survey must have the peak of the simulations to 1 %, or say in its note that it is not known in the whole interval. A peak
+above that of all simulations is confirmed by a simulation from the survey's own motion.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import contvines as cv
+from contvines.coexistence.population import population_of
+from contvines.survey import survey
+from contvines.survey.completion import complete
+from contvines.survey.stretches import highest, stretches
+from orbits.attractors.sweep import sweep
+from orbits.design import Family
+from orbits.machines.physical import physical
+
+OVER, MEASURE = "frequency", "max_abs_q1"
+AGREE = 0.01
+RANDOM = (12, 6)  # values, and random states at each
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A survey of machines that differ in their half-widths, and the interval of its diagrams."""
+
+    family: Any
+    half_widths: list[float]
+    within: tuple[float, float]
+
+
+def drawn(number: int, machines: int) -> Drawn:
+    """A survey drawn at random: clearances from a tenth of the linear peak to more than all of it."""
+    rng = np.random.default_rng([28, number])
+    hertz = float(rng.uniform(4.0, 15.0))
+    damping = float(np.exp(rng.uniform(np.log(0.004), np.log(0.03))))
+    mass, base = float(rng.uniform(1.0, 5.0)), float(np.exp(rng.uniform(np.log(0.1), np.log(3.0))))
+    case = {
+        "oscillator_mass": f"{mass} kg",
+        "natural_frequency": f"{hertz} Hz",
+        "damping_ratio": damping,
+        "absorber_mass": f"{1000.0 * mass * rng.uniform(0.004, 0.02)} g",
+        "restitution": float(rng.uniform(0.4, 0.85)),
+        "friction": float(rng.uniform(0.01, 0.4)),
+        "base_amplitude": f"{base} mm",
+        "frequency": f"{hertz} Hz",
+    }
+    linear = base / (2.0 * damping)  # largest displacement of the oscillator alone
+    half_widths = np.sort(np.exp(rng.uniform(np.log(0.1), np.log(1.5), machines))) * linear
+    within = (hertz * float(rng.uniform(0.85, 0.97)), hertz * float(rng.uniform(1.03, 1.15)))
+    machine = physical("coupled", {**case, "half_width": f"{half_widths[0]} mm"})
+    return Drawn(Family(machine, None, over=OVER, within=within), half_widths.tolist(), within)
+
+
+def brute(machine: Any, within: tuple[float, float], values: int) -> tuple[float, float]:
+    """The largest response that simulations meet, and where."""
+    grid = np.linspace(*within, values)
+    step, seen = grid[1] - grid[0], []
+    for places in (grid, grid[::-1]):
+        seen += sweep(machine, OVER, places)
+    generator = np.random.default_rng(7)
+    for value in np.linspace(*within, RANDOM[0] + 2)[1:-1]:
+        params = machine.vector_at(OVER, float(value), {})
+        for _ in range(RANDOM[1]):
+            start = machine.random_start(params, generator)
+            seen += sweep(machine, OVER, [float(value)], start=start)
+    while (
+        True
+    ):  # the motion with the largest response is followed to either side, in smaller and smaller steps
+        top = max(seen, key=lambda row: row.measures[MEASURE])
+        begin = top.detail.state
+        for side in (1.0, -1.0):
+            places = np.clip(top.value + side * step * np.linspace(0.0, 1.0, 6), *within)
+            seen += sweep(machine, OVER, places, start=begin.copy())
+        best = max(seen, key=lambda row: row.measures[MEASURE])
+        if best.measures[MEASURE] < top.measures[MEASURE] * (1.0 + 1e-4):
+            step /= 4.0
+        if step < 1e-4 * (within[1] - within[0]):
+            return best.measures[MEASURE], best.value
+
+
+def confirmed(one: Drawn, half_width: float, depth: int) -> float:
+    """The response to which a simulation settles that begins on the survey's motion, where its response is near the peak."""
+    seed = one.family({"half_width": half_width})
+    graph = cv.diagram(seed, over=OVER, within=one.within, depth=depth)
+    complete(graph, population_of(seed, OVER), 5)
+    (peak, peak_at, _), stretch = max(
+        ((highest(s), s) for s in stretches(graph)), key=lambda pair: pair[0][0]
+    )
+    # the farthest such point: next to the end of a stretch the least disturbance leads away
+    near = np.flatnonzero(stretch.response >= (1.0 - 0.5 * AGREE) * peak)
+    index = int(near[np.argmax(np.abs(stretch.values[near] - peak_at))])
+    orbit = stretch.branch.orbit(stretch.first + index)
+    first = {name: float(values[0]) for name, values in orbit.sample(400).items()}
+    start = {name: first[name] for name in ("phase", "w", "w_rate", "v", "v_rate")}
+    machine, _ = one.family.machine_at({"half_width": half_width})
+    (row,) = sweep(machine, OVER, [float(stretch.values[index])], start=start)
+    return row.measures[MEASURE]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One machine of a survey: its peak, that of the simulations, and whether the two are one."""
+
+    number: int
+    half_width: float
+    peak: float
+    peak_at: float
+    brute: float
+    brute_at: float
+    covered: float
+    note: str
+    agrees: bool
+    seconds: float
+
+    @property
+    def wrong(self) -> bool:
+        """Whether the survey states a peak that simulations contradict."""
+        return not self.agrees and not self.note
+
+
+def judged(number: int, machines: int, depth: int, values: int) -> list[Verdict]:
+    """A drawn survey, machine by machine."""
+    one = drawn(number, machines)
+    begun = time.process_time()
+    made = survey(
+        one.family, {"half_width": one.half_widths}, over=OVER, within=one.within, outcomes=("peak",), depth=depth, workers=1
+    )  # fmt: skip
+    each = (time.process_time() - begun) / machines
+    found = []
+    for i, half_width in enumerate(one.half_widths):
+        machine, _ = one.family.machine_at({"half_width": half_width})
+        largest, place = brute(machine, one.within, values)
+        peak = float(made["peak"][i])
+        if peak > largest * (1.0 + AGREE):
+            largest = max(largest, confirmed(one, half_width, depth))
+        agrees = abs(peak - largest) <= AGREE * largest
+        found.append(
+            Verdict(
+                number, half_width, peak, float(made["peak_at"][i]), largest, place, float(made["covered"][i]),
+                str(made.notes[i]), agrees, each,
+            )
+        )  # fmt: skip
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--surveys", type=int, default=20)
+    parser.add_argument("--machines", type=int, default=2)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--depth", type=int, default=1)
+    parser.add_argument("--values", type=int, default=121)
+    asked = parser.parse_args()
+    all_ = []
+    for number in range(asked.first, asked.first + asked.surveys):
+        for v in judged(number, asked.machines, asked.depth, asked.values):
+            all_.append(v)
+            said = "agrees" if v.agrees else "not known" if v.note else "WRONG"
+            print(
+                f"{v.number:3d} half-width {v.half_width:8.3f} mm: survey {v.peak:9.4f} at {v.peak_at:8.5f}, simulation {v.brute:9.4f} "
+                f"at {v.brute_at:8.5f}, covered {v.covered:.4f}, {v.seconds:.2f} s: {said}{'; ' + v.note if v.note else ''}",
+                flush=True,
+            )
+    known = [v for v in all_ if not v.note]
+    print(
+        f"{len(all_)} machines, {len(known)} known in the whole interval, {sum(v.wrong for v in all_)} wrong"
+    )
+
+
+if __name__ == "__main__":
+    main()

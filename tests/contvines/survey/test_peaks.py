@@ -1,0 +1,112 @@
+"""The peak is that of all stable motions: sliding ones from an integrator of differential equations, drawn machines from simulations."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve, minimize_scalar
+
+import contvines as cv
+from contvines.survey import PlanError, survey
+from orbits.design import Family
+from orbits.machines.physical import physical
+from tests.benchmarks.peaks import judged
+from tests.contvines.survey.circles import Circles
+
+M, HERTZ, ZETA, BASE, FRICTION, G = 3.2, 8.0, 0.01, 2e-3, 0.1553939, 9.81
+SMALL = 0.032
+CASE = {
+    "oscillator_mass": f"{M} kg", "natural_frequency": f"{HERTZ} Hz", "damping_ratio": ZETA, "absorber_mass": f"{SMALL} kg",
+    "half_width": "110 mm", "restitution": 0.6903254, "friction": FRICTION, "base_amplitude": "2 mm", "frequency": f"{HERTZ} Hz",
+}  # fmt: skip
+
+
+def slid(frequency):
+    """Largest displacement [mm] of the oscillator while the absorber slides to and fro without a stop, integrated over half a period.
+
+    M x'' = -k (x - e) - c (x' - e') - f S and m y'' = f S, S the sign of x' - y'; the mirror image follows after half a period.
+    """
+    w, omega, f = 2.0 * np.pi * HERTZ, 2.0 * np.pi * frequency, FRICTION * SMALL * G
+    half = np.pi / omega
+    start_speed = (
+        -FRICTION * G * half / 2.0
+    )  # y' turns its sign in half a period at the constant acceleration f/m
+
+    def rate(t, x, phase):
+        e, e_rate = BASE * np.sin(omega * t + phase), BASE * omega * np.cos(omega * t + phase)
+        return [x[1], -w * w * (x[0] - e) - 2.0 * ZETA * w * (x[1] - e_rate) - f / M]
+
+    def run(unknown):
+        x, phase = unknown
+        return solve_ivp(
+            rate, (0.0, half), [x, start_speed], "DOP853", args=(phase,), rtol=1e-11, atol=1e-14, dense_output=True
+        )  # fmt: skip
+
+    def open_(unknown):
+        end = run(unknown).y[:, -1]
+        return [end[0] + unknown[0], (end[1] + start_speed) / w]
+
+    best = 0.0
+    for phase in np.arange(0.0, 2.0 * np.pi, 0.5):
+        unknown, _, solved, _ = fsolve(open_, [0.0, phase], full_output=True, xtol=1e-12)
+        motion = run(unknown)
+        middle = motion.sol(np.linspace(0.0, half, 400))
+        sliding = np.all(middle[1, 1:-1] > start_speed + FRICTION * G * np.linspace(0.0, half, 400)[1:-1])
+        if solved == 1 and sliding:
+            top = minimize_scalar(
+                lambda t, m=motion: -abs(m.sol(t)[0]),
+                bounds=(0.0, half),
+                method="bounded",
+                options={"xatol": 1e-9},
+            )
+            best = max(best, -top.fun)
+    return 1e3 * best
+
+
+def test_the_sliding_motion_counts_where_the_walls_are_far():
+    """Without a word the diagram begins with impacts, which reach 79.5 mm; sliding, stable everywhere, reaches more."""
+    machine = physical("coupled", CASE)
+    made = survey(
+        Family(machine, None, over="frequency", within=(7.0, 9.0)), {"half_width": [110.0]}, over="frequency", within=(7.0, 9.0),
+        depth=1, workers=1,
+    )  # fmt: skip
+    top = minimize_scalar(
+        lambda hertz: -slid(hertz), bounds=(7.95, 8.05), method="bounded", options={"xatol": 1e-5}
+    )
+    assert 99.6 < -top.fun < 99.7
+    assert made["peak"][0] == pytest.approx(-top.fun, rel=1e-8)
+    assert made["peak_at"][0] == pytest.approx(top.x, abs=1e-4)
+    assert made["covered"][0] == 1.0 and made.notes[0] == ""
+
+
+@pytest.mark.parametrize("number", [0, 4])
+def test_drawn_machines_have_the_peaks_of_simulations(number):
+    found = judged(number, machines=2, depth=1, values=61)
+    assert not any(verdict.wrong for verdict in found)
+    assert any(not verdict.note for verdict in found)
+
+
+def flowing(values, near):
+    """u' = u^2 + p^2 - r^2, whose equilibria are a circle."""
+    return cv.AlgebraicProblem(
+        lambda u, p: u**2 + p**2 - values["radius"] ** 2, [-values["radius"]], 0.0, spectrum="flow"
+    )
+
+
+def test_what_is_not_known_is_said_and_never_the_best():
+    """Of a circle u^2 + p^2 = r^2 the lower half is stable: 2 r of the 6 that p runs over."""
+    made = survey(flowing, {"radius": [1.0, 2.0, 3.0]}, over="p", within=(-3.0, 3.0), workers=1)
+    assert made["covered"] == pytest.approx([1.0 / 3.0, 2.0 / 3.0, 1.0])
+    assert [bool(note) for note in made.notes] == [True, True, False]
+    assert "66.7 %" in made.notes[0] and (made.failed, made.partly) == (0, 2)
+    assert (
+        made.best("peak")
+        == made.best("peak", largest=True)
+        == ({"radius": 3.0}, pytest.approx(made["peak"][2]))
+    )
+    with pytest.raises(PlanError, match="peak is known of no system"):
+        survey(flowing, {"radius": [1.0]}, over="p", within=(-3.0, 3.0), workers=1).best("peak")
+
+
+def test_stability_that_is_not_computed_is_no_gap():
+    made = survey(Circles(), {"radius": [1.0]}, over="p", within=(-3.0, 3.0), workers=1)
+    assert np.isnan(made["covered"][0]) and np.isnan(made["peak"][0]) and made.notes[0] == ""
