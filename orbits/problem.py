@@ -301,12 +301,17 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
         tuple(description.get("modes", ())),
         bool(description.get("frictionless", False)),
     )
+    model, params = build(description["model"]), np.array(description["params"], dtype=float)
+    if params.shape != (len(model.parameter_names),):
+        raise ValueError(
+            f"{params.size} parameters are described, the machine has {len(model.parameter_names)}"
+        )
     return OrbitProblem(
-        build(description["model"]),
+        model,
         word,
         description["periods"],
         description["parameter"],
-        np.array(description["params"]),
-        description["symmetric"],
+        params,
+        bool(description["symmetric"]),
         tuple(description.get("counted_in", (1.0, 1.0))),  # older files count in the machine's own units
     )

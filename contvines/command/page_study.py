@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, ValidationError
 
+from contvines.command.own_code import own_code
 from contvines.command.schema import (
     AtlasSection,
     ChartSection,
@@ -82,12 +83,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
         raise ValueError(
             f'[model] name = {file.model.name!r} names a page but no machine on it; "{page}:machine" would do.'
         )
-    if Path(page).is_absolute() or ".." in Path(page).parts:
-        raise ValueError(
-            f"[model] name = {file.model.name!r}: a study runs machine files of its own folder (or of folders in it) only; "
-            f'put {Path(page).name}, or a link to it, beside {path.name}; "{Path(page).name}:{name}" would do.'
-        )
-    machine = load_page(path.parent / page, name)
+    machine = load_page(own_code(path, page, f"[model] name = {file.model.name!r}"), name)
     given: dict[str, float] = {}
     wrong: list[str] = []
     for section, extra in (("model", file.model.model_extra), ("start", file.start.model_extra)):

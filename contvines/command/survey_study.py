@@ -80,6 +80,7 @@ def outcomes_of(study: Study) -> list[Any]:
         If a name or a file is unknown.
     """
     from contvines.command.machine_outcomes import OWN
+    from contvines.command.own_code import own_code
     from contvines.survey.survey import outcome_named
 
     found = []
@@ -92,7 +93,8 @@ def outcomes_of(study: Study) -> list[Any]:
                     "machine is made, with values = 9 and starts = 16 each is simulated at nine values"
                 )
             if file.endswith(".py"):
-                found.append(UserOutcome.of(study.path.parent / file, function))
+                place = own_code(study.path, file, f"[survey] outcomes: {said!r}")
+                found.append(UserOutcome.of(place, function))
             elif study.machine is not None and said in OWN:
                 raise ValueError(
                     f"[survey] outcomes: {said!r} is told by the built-in machines alone; for a page give a function of your "

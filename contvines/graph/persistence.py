@@ -15,6 +15,7 @@ from ..branches.special_point import SpecialPoint
 from ..problems.registry import UnknownFactory, rebuild
 from .attractor import Attractor
 from .graph import Graph, Switch
+from .well_formed import check_graph
 
 Entry = tuple[str, str, dict[str, Any]]
 
@@ -47,6 +48,11 @@ def graph_from_entries(
     entries : contents by kind and key, in the order in which they were written.
     problems : rebuild the problems of the branches, so that orbits and measures can be had.
     trust : import functions of the user's that the branches name (see :mod:`contvines.problems.registry`).
+
+    Raises
+    ------
+    ValueError
+        If the entries are not those of a graph.
     """
     head = next(iter(entries.get("graph", {}).values()), {})
     graph = Graph(**{**head, "within": _pair(head["within"])} if head else {})
@@ -65,6 +71,7 @@ def graph_from_entries(
     graph.proofs.update(entries.get("proof", {}))
     graph.attractors = [Attractor(**content) for content in entries.get("attractor", {}).values()]
     graph.missing = [Attractor(**content) for content in entries.get("missing", {}).values()]
+    check_graph(graph)
     return graph
 
 

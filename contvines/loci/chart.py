@@ -12,6 +12,7 @@ from contvines_ground.near_names import did_you_mean
 from ..doors import above
 from ..events.kinds import CODIMENSION_TWO
 from ..graph.persistence import branch_of, content_of
+from ..graph.well_formed import check_branch, check_fields, fits
 from ..hints import hinted
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
@@ -198,4 +199,43 @@ def chart_from_entries(
             chart.loci[label].marked = tuple((int(i), chart.points[name]) for i, name in found)
     for content in entries.get("region", {}).values():
         chart.regions.append(Region(**{**content, "at": tuple(content["at"])}))
+    check_chart(chart)
     return chart
+
+
+_MOTION = {"word": str | None, "kind": str | None, "periods": int | None}
+
+
+def _motions(found: Any) -> bool:
+    """Whether these are motions as `problem.witness` lists them."""
+    return fits(found, list[dict[str, Any]]) and all(
+        fits(motion.get(name), kind) for motion in found for name, kind in _MOTION.items()
+    )
+
+
+def check_chart(chart: Chart) -> None:
+    """Refuse a chart that cannot be shown; the sentence names the entry and the field.
+
+    Raises
+    ------
+    ValueError
+    """
+    check_fields("the chart", chart)
+    for label, locus in chart.loci.items():
+        check_fields(label, locus)
+        check_branch(label, locus.branch)
+        if locus.real.shape != locus.branch.values.shape or locus.real.dtype != bool:
+            raise ValueError(f"{label}: its arrays are not of the same length")
+    for label, point in chart.points.items():
+        check_fields(label, point)
+        if point.label != label:
+            raise ValueError(f"{label}: its label is {point.label!r}")
+    for region in chart.regions:
+        check_fields("a region", region)
+        for place in ({"at": list(region.at), "attractors": region.attractors}, *region.elsewhere):
+            motions = place.get("attractors")
+            if not fits(place.get("at"), list[float]) or len(place["at"]) != 2 or not _motions(motions):
+                raise ValueError("a region has a place or a motion that is none")
+    for crossing in chart.crossings:
+        if not fits(crossing.get("on"), list[str]) or not fits(crossing.get("value"), dict[str, float]):
+            raise ValueError("a crossing has no place")

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..interrupts import HELD
 from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, cut_short, damaged, pending
-from .packing import digest_of, packed, split, unpacked
+from .packing import digest_of, packed, printable, split, unpacked
 from .publishing import draft_of, publish
 
 _SCHEMA = """
@@ -219,6 +219,7 @@ class Store:
 
         entries: dict[str, dict[str, Any]] = {}
         for kind, key, content in self._entries("e.kind != 'journal'"):  # as one checkpoint has left them
+            kind, key, content = printable(kind, key, content)
             entries.setdefault(kind, {})[key] = content
         try:
             if "chart" in entries:

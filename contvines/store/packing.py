@@ -7,6 +7,7 @@ JSON text that round-trips exactly; every entry carries a digest of all its part
 import hashlib
 import json
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -50,6 +51,23 @@ def unpacked(dtype: str, shape: str, data: bytes) -> np.ndarray:
     if min(sizes, default=0) < 0 or math.prod(sizes) * np.dtype(dtype).itemsize != len(data):
         raise ValueError(f"an array of shape {shape!r} in {len(data)} bytes")
     return np.frombuffer(data, dtype=dtype).reshape(sizes).copy()
+
+
+CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""Characters that a terminal obeys, line ends and tabs apart."""
+
+
+def printable(*parts: Any) -> tuple[Any, ...]:
+    """Texts, and values with texts in them, that show control characters (as \\x1b): what a file says is printed on terminals."""
+    return tuple(map(_shown, parts))
+
+
+def _shown(value: Any) -> Any:
+    if isinstance(value, str):
+        return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), value)
+    if isinstance(value, dict):
+        return {_shown(key): _shown(part) for key, part in value.items()}
+    return [_shown(part) for part in value] if isinstance(value, list) else value
 
 
 def digest_of(kind: str, key: str, scalars: str, rows: list[tuple[str, str, str, bytes]]) -> bytes:

@@ -66,8 +66,8 @@ REFUSED = {
     'name = "stop.py"': 'names a page but no machine on it; "stop.py:machine" would do',
     'name = "stop.py:other"': "it has no machine 'other'; it declares machine",
     'name = "none.py:machine"': "there is no such file",
-    'name = "../elsewhere/stop.py:machine"': "a study runs machine files of its own folder (or of folders in it) only",
-    'name = "/elsewhere/stop.py:machine"': '"stop.py:machine" would do',
+    'name = "../elsewhere/stop.py:machine"': "a study runs Python files of its own folder (or of folders in it) only",
+    'name = "/elsewhere/stop.py:machine"': '"stop.py" would do',
     'name = "stop.py:machine"\nmass = 1.0': "the machine 'stop' has no such parameter",
     'name = "stop.py:machine"\ndamping = "much"': "[model] damping = 'much' is not a number",
     'name = "stop.py:machine"\nrestitution = 2.0': "the restitution of wall 'R' is above 0 and at most 1",
@@ -157,6 +157,11 @@ def test_a_survey_of_a_page(study):
     assert [row["stable_R"] for row in rows] == pytest.approx([rows[0]["stable_R"]] * 3, rel=1e-9)
     study.write_text(study.read_text().replace('"stable:R"', '"dissipation"'))
     assert "'dissipation' is told by the built-in machines alone" in str(run("survey", study).exception)
+    for file in ("../own.py", "/own.py"):
+        study.write_text(study.read_text().replace('"dissipation"', f'"{file}:tall"'))
+        refused = str(run("survey", study).exception)
+        study.write_text(study.read_text().replace(f'"{file}:tall"', '"dissipation"'))
+        assert "a study runs Python files of its own folder" in refused
     study.write_text(study.read_text().replace("forcing = [1", "mass = [1"))
     assert "has no such parameter; it has forcing, frequency" in str(run("survey", study).exception)
 
