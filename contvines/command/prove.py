@@ -131,6 +131,7 @@ def _proved(
 def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
     """The certificates kept in a file, by label."""
     from contvines.command.study import is_database
+    from contvines.store import printable
 
     if is_database(file):
         from contvines.store import load
@@ -139,8 +140,11 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
         found = {label: proof["certificate"] for label, proof in kept.items()}
     else:
         try:
-            found = json_.loads(file.read_text(encoding="utf-8"))
-        except (json_.JSONDecodeError, UnicodeDecodeError):
+            (found,) = printable(json_.loads(file.read_text(encoding="utf-8")))
+        except (
+            ValueError,
+            RecursionError,
+        ):  # text that is no JSON, numbers of thousands of digits, lists in lists without end
             raise ValueError(f"{file}: this is neither a .vines file nor a file of certificates.") from None
         if isinstance(found, dict) and "format" in found:
             found = {"certificate": found}

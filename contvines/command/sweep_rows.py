@@ -232,7 +232,7 @@ class Rows:
             if json.loads(lines[0]) != self.header:
                 return []
             found.extend(Kept(**json.loads(line)) for line in lines[1:-1])
-        except (ValueError, TypeError):
+        except (ValueError, TypeError, RecursionError):
             pass
         return found
 

@@ -36,6 +36,8 @@ def toml_data(text: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise TomlError(f"this is not valid TOML: {_hint(text) or error}") from None
+    except ValueError:  # of Python, which reads no numbers so long
+        raise TomlError("this is not valid TOML: a number has thousands of digits") from None
     except RecursionError:
         raise TomlError(
             "its values are nested too deeply; a study has sections of keys, one level deep"
@@ -81,6 +83,6 @@ def _habit(value: str) -> str:
 def _is_toml(text: str) -> bool:
     try:
         tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         return False
     return True

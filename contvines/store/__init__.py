@@ -7,5 +7,6 @@ damaged, is newer, or belongs to another study is refused with a sentence and le
 from .database import Store
 from .files import load, resume, save
 from .header import APPLICATION_ID, VERSION, StoreError
+from .packing import printable
 
-__all__ = ["APPLICATION_ID", "VERSION", "Store", "StoreError", "load", "resume", "save"]
+__all__ = ["APPLICATION_ID", "VERSION", "Store", "StoreError", "load", "printable", "resume", "save"]

@@ -79,7 +79,7 @@ class Rows:
                 row = Row(**json.loads(_checked(line)))
                 self.found[row.index] = row
                 length += len(line) + 1
-        except (ValueError, TypeError):
+        except (ValueError, TypeError, RecursionError):
             pass  # a line that a kill cut short
         return length if len(lines) > 1 else 0
 

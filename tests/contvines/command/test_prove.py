@@ -103,7 +103,18 @@ def test_without_the_extra_a_sentence_names_it(package, words, tmp_path, capsys,
 
 @pytest.mark.parametrize(
     "paper",
-    ["{}", "[]", "null", '{"start": 7}', '{"start": []}', '{"start": [7]}', '{"start": {"boxes": []}}', "{"],
+    [
+        "{}",
+        "[]",
+        "null",
+        "[" * 100_000,
+        "9" * 5001,
+        '{"start": 7}',
+        '{"start": []}',
+        '{"start": [7]}',
+        '{"start": {"boxes": []}}',
+        "{",
+    ],
 )
 def test_damaged_certificates_are_refused(paper, tmp_path, capsys):
     papers = tmp_path / "papers.json"

@@ -23,3 +23,8 @@ def _refused(text):
     except TomlError:
         return True
     return False
+
+
+def test_numbers_of_thousands_of_digits_are_refused():
+    with pytest.raises(TomlError, match="thousands of digits"):
+        toml_data("[model]\nfriction = " + "1" * 5001)
