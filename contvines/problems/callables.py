@@ -100,7 +100,7 @@ class CallableProblem(ProblemDefaults):
                         f"{place}: there is no parameter of this name{hint}; the problem has {', '.join(self.parameters)}"
                     )
                 if not callable(f) and (f is not None or key == "F"):
-                    text = repr(f) if np.ndim(f) == 0 and not hasattr(f, "shape") else f"a {type(f).__name__}"
+                    text = f"a {type(f).__name__}" if hasattr(f, "shape") or isinstance(f, list) else repr(f)
                     raise ValueError(f"{place} = {text} must be a function of (u, p)")
         return tuple(pieces.wrap(self.given[key], key) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
 
