@@ -332,7 +332,7 @@ class CallableProblem(ProblemDefaults):
             j = int(np.argmax(self.functions.noise))
             return (
                 f"{self.functions.name} has noise of {self.functions.noise[j]:.1g} in row {j}, which moves the solution by "
-                f"{self.noise:.1g} of its size: it may be too much for a branch to be followed"
+                f"{self.noise:.1g} of its size{' or more' if self.noise >= WORST else ''}: it may be too much for a branch to be followed"
             )
         return ""
 

@@ -129,7 +129,8 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
     """
     with np.errstate(all="ignore"):
         here = f(0.0)
-        floor = 1e3 * EPS * np.abs(here) + 30.0 * noise
+        felt = 30.0 * np.broadcast_to(noise, here.shape)
+        floor = 1e3 * EPS * np.abs(here) + felt
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
         beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
@@ -145,7 +146,12 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
             # of many rows those that bend within the same factor are as good as one another: each asked costs evaluations of all
             least = found / FACTOR if many else found
             there = float(here[r])
-            found = min(found, _bend_of_row(f, r, there, lengths, slope[:, r], even[:, r], seen[:, r], least))
+            found = min(
+                found,
+                _bend_of_row(
+                    f, r, there, lengths, slope[:, r], even[:, r], seen[:, r], least, float(felt[r])
+                ),
+            )
         if not np.isfinite(found) and not seen.any():
             found = _end_of_square(f, lengths, even, floor)
     return float(found) if np.isfinite(found) else None
@@ -177,6 +183,7 @@ def _bend_of_row(
     even: np.ndarray,
     seen: np.ndarray,
     least: float,
+    felt: float,
 ) -> float:
     """Length over which row r bends, infinity where it does not, or not below `least`."""
     k = 0
@@ -200,7 +207,7 @@ def _bend_of_row(
                 abs(0.5 * (ahead - back) / middle - reference) + abs(0.5 * (ahead + back) - here) / middle
             )
             low, high = (middle, high) if change <= 0.5 * abs(reference) else (low, middle)
-        if _continuous(f, high, r):
+        if _continuous(f, high, r, felt):
             return high
     return np.inf
 
@@ -272,8 +279,11 @@ def _table(f: Line, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     return np.median(estimates, axis=0), still
 
 
-def _continuous(f: Line, t: float, r: int) -> bool:
-    """Whether entry r of f, or of its mirror image, is continuous near t: no stairs that rounding makes of terms that cancel."""
+def _continuous(f: Line, t: float, r: int, felt: float) -> bool:
+    """Whether entry r of f, or of its mirror image, is continuous near t: no stairs that rounding makes of terms that cancel.
+
+    Jumps up to `felt` are noise that is known.
+    """
     for side in (t, -t):
         places = side * np.linspace(0.3, 1.2, 10)
         values = np.array([float(f(place)[r]) for place in places])
@@ -289,7 +299,7 @@ def _continuous(f: Line, t: float, r: int) -> bool:
                 high, after = middle, value
             else:
                 low, before = middle, value
-        if abs(after - before) > 0.05 * whole:
+        if abs(after - before) > 0.05 * whole + felt:
             return False
     return True
 

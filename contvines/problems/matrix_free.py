@@ -73,6 +73,11 @@ def restarted(
     return x, gap
 
 
+def solved(gap: float, growth: float) -> bool:
+    """Whether a relative residual will do: more is lost to rounding the larger the solution is relative to the side."""
+    return gap < ENOUGH + SINGULAR * growth
+
+
 class Bordered:
     """[[F_u, F_p], [border]] in units of the scales, with its preconditioner.
 
@@ -147,7 +152,7 @@ def iterate(data: Any, work: Any, border: np.ndarray, sides: np.ndarray) -> tupl
         guess = _like_before(work.tangent, border, sides) if k == 1 else None
         for matrix.shift in (0.0, ASIDE):
             found, gap = matrix.solve(sides[:, k], guess, ACCURATE)
-            if gap < ENOUGH + SINGULAR * matrix.growth:
+            if solved(gap, matrix.growth):
                 break
         else:
             data.unsolved = True
@@ -175,7 +180,7 @@ def distance_to_singular(data: Any, work: Any) -> float | None:
     matrix, side, sizes = work.eliminated, data.side, []
     for _ in range(2):
         found, gap = matrix.solve(side, None, ROUGH)
-        if not gap < ENOUGH + SINGULAR * matrix.growth:
+        if not solved(gap, matrix.growth):
             return None
         found = found / matrix.columns
         sizes.append(float(np.linalg.norm(found)))
@@ -190,6 +195,7 @@ class Inverse:
         self.rows, self.columns = data.sizes()
         self.jacobian, self.inverse = work.jacobian, data.preconditioner_at()
         self.shift = shift * (self.columns if plain else self.rows)
+        self.unsolved = False  # whether GMRES has failed, as where the matrix is singular
 
     def _precondition(self, side: np.ndarray) -> np.ndarray:
         if self.inverse is None:
@@ -202,7 +208,9 @@ class Inverse:
     def solve(self, side: np.ndarray) -> np.ndarray:
         """The inverse applied to a vector."""
         right = self._precondition(np.ravel(side))
-        found, _ = restarted(lambda x: self._precondition(self._product(x)), right, None, ACCURATE)
+        found, gap = restarted(lambda x: self._precondition(self._product(x)), right, None, ACCURATE)
+        size = float(np.linalg.norm(right))
+        self.unsolved |= not solved(gap, float(np.linalg.norm(found)) / size if size > 0.0 else 0.0)
         return found * self.columns
 
 
@@ -211,7 +219,8 @@ def nearest_eigenvalues(data: Any, work: Any) -> np.ndarray:
     rows, units = data.sizes()
     values = np.zeros(0)
     for shift in (0.0, ASIDE):
-        values = nearest_sparse(Inverse(data, work, shift), diags_array(rows / units)) + shift
-        if np.isfinite(values).all():
+        inverse = Inverse(data, work, shift)
+        values = nearest_sparse(inverse, diags_array(rows / units)) + shift
+        if np.isfinite(values).all() and not inverse.unsolved:
             break
     return values

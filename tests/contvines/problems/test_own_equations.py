@@ -388,6 +388,23 @@ def test_a_branch_may_end_where_its_equations_do():
     assert all("end of the interval" in said for said in graph["B1"].ended)
 
 
-def test_too_much_noise_is_named():
-    with pytest.raises(ValueError, match="F has noise of"):
-        cv.diagram(cv.AlgebraicProblem(noisy(1e-2), [1.0], 1.0), within=(-1.0, 1.5), depth=0)
+@pytest.mark.parametrize("draw", range(6))
+def test_too_much_noise_is_named(draw):
+    # the draw decides, and with it the last bits of the sine, whether a branch takes no step or a few
+    try:
+        graph = cv.diagram(cv.AlgebraicProblem(noisy(1e-2, draw), [1.0], 1.0), within=(-1.0, 1.5), depth=0)
+    except ValueError as error:
+        said = (str(error),)
+    else:
+        said = graph["B1"].ended
+    assert all("F has noise of" in sentence for sentence in said)
+
+
+@pytest.mark.parametrize("sigma", [1e-4, 1e-2])
+def test_noise_does_not_change_the_length_over_which_equations_bend(sigma):
+    """p - u^2 at u = 1: the square is as large as the linear part where u has changed by 1 to 2."""
+    for draw in range(6):
+        problem = cv.AlgebraicProblem(noisy(sigma, draw), [1.0], 1.0)
+        assert 0.5 < problem.functions.lengths[0] < 4.0
+        # uniform within +- sigma: a standard deviation of sigma / sqrt(3)
+        assert problem.functions.noise[0] == pytest.approx(sigma / math.sqrt(3.0), rel=1.2)
