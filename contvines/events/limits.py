@@ -40,6 +40,7 @@ SURELY = 1e-9
 STRAIGHT = 3e-5  # from its beginning, up to which a short segment's branch is looked for along its tangent
 STRAYING = 0.5  # part of that distance by which it may be missed
 AGREEING = 1e-7  # relative difference of coefficients: those computed at the border are not rounding
+GROWN = 2.0  # times a multiplier at four times the distance: it grows on towards the border
 POLES = 2  # multipliers that grow without bound, at most
 EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # of values times powers of the place
 UNBOUNDED = 1e15  # stands for a multiplier that does
@@ -68,6 +69,8 @@ def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
         if limits is not None:
             m, roots, row = engine.m, _roots(limits), row.copy()
             row[0 : 2 * m : 2], row[1 : 2 * m : 2] = roots.real, roots.imag
+        elif not np.isfinite(row[: 2 * engine.m]).all():
+            row = _by_growth(segment, position, row)
     return point._replace(tangent=tangent, row=row), solved_point(found, -1) if short > 0.0 else None
 
 
@@ -138,6 +141,27 @@ def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[
         return None
     side = np.sign(engine.margins(before[0, 0])[index])
     return [polynomials[0].tolist(), (side * np.median(products, axis=0)).tolist()]
+
+
+def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray:
+    """The row with multipliers as they are nearest to the border, those that still grow there without bound.
+
+    For borders at which more vanishes at once than powers of the distance are extrapolated, and nothing can be computed there.
+    """
+    _, rows = _rows(segment, position, DISTANCES)
+    m = segment.engine.m
+    if not len(rows) or not np.isfinite(rows[-1][:, : 2 * m]).all():
+        return own
+    near, far = (sorted(one, key=abs, reverse=True) for one in segment.engine.spectrum(rows[-1][[0, -1]]))
+    roots = np.array(
+        [
+            UNBOUNDED * one / abs(one) if abs(one) > GROWN * max(1.0, abs(other)) else one
+            for one, other in zip(near, far)
+        ]
+    )
+    row = own.copy()
+    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = roots.real, roots.imag
+    return row
 
 
 def _extrapolated(segment: Segment, position: float) -> np.ndarray:

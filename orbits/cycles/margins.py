@@ -100,8 +100,9 @@ UNBOUNDED = 0.999e15  # multipliers of 1e15, but for rounding, grow without boun
 
 
 def limits_of(multipliers: np.ndarray) -> np.ndarray:
-    """One-sided limits of multipliers at a border; all nan where one of them grows without bound, as at a graze: there are none."""
-    limits = np.asarray(multipliers)
-    if np.any(np.abs(limits) >= UNBOUNDED):
-        return np.full(limits.shape, complex(np.nan, np.nan))
+    """One-sided limits of multipliers at a border: infinite, of their sign, where they grow without bound, as at a graze."""
+    limits = np.array(multipliers, dtype=complex)
+    grown = np.abs(limits) >= UNBOUNDED
+    for part in (limits.real, limits.imag):
+        part[grown & (np.abs(part) > 1.0)] *= np.inf
     return limits

@@ -128,3 +128,38 @@ def test_limits_at_borders(start):
             listed = [point.multipliers, point.multipliers_beyond]
             assert any(m is not None and np.array_equal(m, branch.multipliers[end]) for m in listed)
     assert checked
+
+
+def test_at_a_graze_a_multiplier_is_infinite_and_the_other_one_is_none():
+    """Towards a wall that is touched without speed that of half the motion grows as the speed's inverse; their product is bounded."""
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 1.1), depth=0)
+    end = graph["WG1"].orbit
+    grown, gone = end.multipliers
+    assert grown.real == np.inf and grown.imag == 0.0 and gone == pytest.approx(0.0, abs=1e-12)
+    assert not end.stable
+    beside = [machine.orbit("LR", 1, end.nodes, amplitude=graph["WG1"].value - off) for off in (1e-5, 1e-7)]
+    sizes = [orbit.multipliers[0].real * orbit.margin**2 for orbit in beside]
+    assert sizes[1] == pytest.approx(sizes[0], rel=1e-2) and sizes[1] > 0.0
+
+
+def test_where_more_impacts_graze_at_once_multipliers_are_numbers_too():
+    """In a level cavity with unlike distances LRtR begins where sliding fills the cavity: all its three impacts have no speed there."""
+    machine = Cavity(
+        restitution=0.046107453902862604,
+        friction=0.9142422514851505,
+        gravity=0.718742981349811,
+        mass_ratio=0.05,
+        frequency=1.0389352329136874,
+        distance_left=1.1506578211480742,
+        distance_right=1.1250669831007722,
+    )
+    sticking = find_attractor(machine, {"w_rate": 1.0}, amplitude=1.54).orbit
+    graph = cv.diagram(sticking, over="amplitude", within=(1.43, 1.56), depth=1)
+    branch = next(branch for branch in graph if branch.description["word"] == "LRtR")
+    assert not np.isnan(branch.multipliers).any()
+    end = next(i for i, label in branch.marks if label == branch.seed)
+    grown, gone = branch.orbit(end).multipliers
+    beside = branch.multipliers[1 if end == 0 else end - 1]
+    assert abs(grown.real) == np.inf and np.sign(grown.real) == np.sign(beside[0].real)
+    assert abs(gone) < 1e-12
