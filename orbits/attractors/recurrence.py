@@ -123,11 +123,11 @@ def settle(
         if status != REST:
             window.record(state, max_period)
         if window.at_rest and not last and _will_slip(model, params):
-            length, attempt = 4.0 * length, attempt + 1
+            length, attempt = 4.0 * (length or window.length), attempt + 1
             continue  # the oscillator is still growing, or between two beats
         if status == REST or window.at_rest:
             if not _comes_to_rest(engine, params, state) and not last:
-                length, attempt = 4.0 * length, attempt + 1
+                length, attempt = 4.0 * (length or window.length), attempt + 1
                 continue  # it slips after all
             return _attractor(model, engine, params, "stuck", 0, window, state)
         if not len(window.codes):  # without friction a free motion between the walls has no events
@@ -150,7 +150,7 @@ def settle(
             state[RATE] *= 1.0 + 1e-6  # a motion that only rounding keeps where it is: help it to leave
         if last and not slow:
             break
-        length, attempt = 4.0 * length, attempt + 1
+        length, attempt = 4.0 * (length or window.length), attempt + 1
     kind = "chatter" if np.any(window.codes == HOLD) else "chaotic"
     return _attractor(model, engine, params, kind, 0, window, state)
 
