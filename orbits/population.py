@@ -12,6 +12,7 @@ from contvines_ground.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
 from orbits.attractors.distinct import alike, distinct
+from orbits.attractors.embedded import PERIODS as WANDERED
 from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import RARE, Motion, wandering
@@ -30,6 +31,9 @@ EMBEDDED = 6  # forcing periods of the longest unstable cycle looked for
 TOLERANCE = 1e-8  # difference of two states that counts as a return
 PATIENCE = 3  # times a motion that does not recur is looked at again
 LATE = 3000.0  # forcing periods between two such looks
+GROWTH = 4000  # forcing periods over which the growth of small differences is followed
+RECOGNISED = 1e-7  # difference of two nodes that counts as a return of a single motion
+SOLVED = 1000.0  # forcing periods that take as long as Newton's method for a cycle
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
@@ -72,6 +76,8 @@ class Population:
             else os.cpu_count() or 1
         )
         self.engine = machine(model.name)
+        self.work = 0.0
+        """Forcing periods simulated so far, those that solve for cycles included."""
 
     @property
     def about(self) -> dict[str, Any]:
@@ -139,6 +145,7 @@ class Population:
             tolerance=TOLERANCE,
             workers=self.workers,
         )
+        self.work += float(states[:, TURNS].sum())
         return _Sorting(self, params, p, states, result).sorted()
 
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
@@ -151,7 +158,8 @@ class Population:
         p : float
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
-        cycles = embedded_cycles(self.model, self.engine, params, state, EMBEDDED)
+        cycles = list(embedded_cycles(self.model, self.engine, params, state, EMBEDDED))
+        self.work += WANDERED + SOLVED * len(cycles)
         return distinct((cycle.orbit.root() for cycle in cycles), self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
@@ -165,9 +173,12 @@ class Population:
         p : float
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
-        cycles = returning_cycles(
-            self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED
+        cycles = list(
+            returning_cycles(
+                self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED
+            )
         )
+        self.work += SOLVED * (len(starts) + len(cycles))
         closed = closed_orbits(self.model, params, Orbit)
         return distinct((*closed, *(cycle.orbit.root() for cycle in cycles)), self.parameter, p)
 
@@ -247,22 +258,30 @@ class _Sorting:
         return problem, orbit.seed(problem)[0]
 
     def _settled(self, i: int) -> None:
-        found = settle(self.model, self.engine, self.params, self.states[i].copy(), 8.0, LONGEST, 1e-7, 1)
-        self._add(found, i)
+        self._add(self._looked_at(self.states[i].copy(), 8.0, LONGEST, 1), i)
+
+    def _looked_at(self, state: np.ndarray, transient: float, longest: int, patience: int) -> Attractor:
+        """What a motion settles on; its work is counted."""
+        found = settle(
+            self.model, self.engine, self.params, state, transient, longest, RECOGNISED, patience
+        )
+        self.population.work += float(state[TURNS]) + SOLVED
+        return found
 
     def _unsettled(self, i: int) -> None:
         """A motion that does not recur: looked at with patience once, then told by its growth of small differences."""
         state = self.states[i].copy()
         for _ in range(PATIENCE):  # a chaotic transient may end late
-            found = settle(self.model, self.engine, self.params, state, 200.0, LONGEST, 1e-7, 2)
+            found = self._looked_at(state, 200.0, LONGEST, 2)
             if found.recurrent:
                 self._add(found, i)
                 return
-            exponent, error = lyapunov(self.model.name, state, self.params)
+            exponent, error = lyapunov(self.model.name, state, self.params, GROWTH)
             skip(self.engine, state, self.params, state[TURNS] + LATE, 10**9)
+            self.population.work += 2.0 * GROWTH + LATE
         kind = wandering(exponent, error, self.model.moving_cavity)  # two frequencies need four dimensions
         if kind == "slow":  # neighbours come together: it may recur, but late
-            found = settle(self.model, self.engine, self.params, state, 0.0, RARE, 1e-7, 1)
+            found = self._looked_at(state, 0.0, RARE, 1)
             if found.recurrent:
                 self._add(found, i)
                 return

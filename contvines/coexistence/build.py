@@ -16,11 +16,12 @@ from ..graph.run import Progress, Run
 from ..hints import hinting
 from ..interrupts import listening
 from .census import Counted, census, locate
+from .effort import BUDGET, Effort
 from .handover import Handover
-from .places import scattered, unasked, unresolved
+from .places import scattered, unasked, unknown, unresolved
 from .population import Population, population_of
 from .roots import add_root
-from .windows import Windows
+from .windows import Windows, run_apart
 
 FEW = 16  # starts at each of the further values
 SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
@@ -38,6 +39,7 @@ def atlas(
     starts: int = 256,
     seed: int = 0,
     scan: int | None = None,
+    budget: int | None = None,
     depth: int = 3,
     virtual: bool = False,
     user_functions: Mapping[str, Any] | None = None,
@@ -48,10 +50,16 @@ def atlas(
     """One graph with every attractor that many simulated starts find, and all that hangs together with them.
 
     At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
-    exactly, or the root of a new one, which is traced with everything that leaves it. Where motion is chaotic, unstable cycles near it
-    are traced, and kept where they lead to a stable one. Past every end of a stable stretch the motion that is lost there is followed to what comes after it.
-    Then fewer starts are simulated at many more values: in every stretch between two changes of what is known to be stable, where a kind of motion without a branch begins or ends,
-    and scattered evenly over the interval until `scan` values in a row have met nothing new.
+    exactly, or the root of a new one, which is traced with everything that leaves it. The search begins with the motions that most starts reach:
+
+    1. `starts` starts at each of `values`;
+    2. fewer starts in every stretch between two changes of what is known to be stable, wide stretches first;
+    3. fewer starts at values scattered evenly over the interval, until `scan` values in a row have met nothing new;
+    4. past every end of a stable stretch the motion that is lost there is followed to what comes after it, wide stretches first;
+    5. narrow windows: unstable cycles, from chaos and from a few starts, are traced, and kept where they lead to a stable one;
+    6. steps 4 and 2 for what is new, and values where a kind of motion without a branch begins or ends.
+
+    When the budget is used up, the piece of work at hand is finished, and the message of the graph says what is left out.
 
     Parameters
     ----------
@@ -71,6 +79,9 @@ def atlas(
         So many further values in a row must meet nothing new, with 16 starts each. By default they have as many starts as the given values
         together. 0 leaves them out and all else that looks beyond the given values: unstable cycles, ends of stability that are followed to what
         comes after them, stretches between two changes.
+    budget : int, optional
+        Work that the atlas may take, by default 100000: so many points of branches, or a hundred times as many simulated periods (steps of a map). It does not
+        depend on the machine's speed or load; ``settings["work"]`` of the graph says how much of it was used.
     depth, virtual, user_functions, journal, progress, settings
         As for :func:`contvines.diagram`.
 
@@ -94,6 +105,10 @@ def atlas(
         raise ValueError(f"starts = {starts!r} must be a whole number, 1 or more")
     if not (isinstance(seed, int) and seed >= 0):
         raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more")
+    if budget is None:
+        budget = BUDGET
+    if not (isinstance(budget, int) and budget >= 1):
+        raise ValueError(f"budget = {budget!r} must be a whole number, 1 or more")
     run = new_run(
         population.parameter,
         dict(population.about),
@@ -109,18 +124,18 @@ def atlas(
         scan = -(-len(where) * starts // FEW)
     if not (isinstance(scan, int) and scan >= 0):
         raise ValueError(f"scan = {scan!r} must be a whole number, 0 or more")
-    run.graph.settings |= {"values": len(where), "starts": starts, "seed": seed, "scan": scan}
-    looking = _Looking(run, population, seed)
-    for p in where:
-        looking.at(p, starts)
+    run.graph.settings |= {"values": len(where), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
+    looking = _Looking(run, population, seed, budget)
+    looking.given(where, starts)
     if scan:
-        looking.for_cycles(where)
-        looking.past_ends(FEW * scan)
         looking.between(scan)
         looking.everywhere(scan)
         looking.past_ends(FEW * scan)
+        looking.for_cycles(where)
+        looking.past_ends(FEW * scan)
         looking.between(scan)
         looking.unbranched(scan)
+    looking.tell_left()
     everything = looking.found
     everything.sort(key=lambda counted: counted.attractor.value)
     run.graph.attractors = [counted.attractor for counted in everything]
@@ -185,11 +200,29 @@ def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
 class _Looking:
     """What has been simulated so far, and where next."""
 
-    def __init__(self, run: Run, population: Population, seed: int) -> None:
+    def __init__(self, run: Run, population: Population, seed: int, budget: int) -> None:
         self.run, self.population, self.seed = run, population, seed
         self.asked: list[float] = []
         self.found: list[Counted] = []
         self.handover = Handover(run, population)
+        apart = run_apart(run)
+        self.effort = Effort(population, budget, lambda: run.points + apart.points)
+        self.windows = Windows(run, population, apart, self.effort)
+        self.left: dict[str, int] = {}  # pieces of work that the budget did not allow
+        run.done = lambda: self.effort.share
+
+    def given(self, values: Sequence[float], starts: int) -> None:
+        """Simulate starts at the given values."""
+        for k, p in enumerate(values):
+            if self._over("given values", len(values) - k):
+                break
+            self.at(p, starts)
+
+    def _over(self, what: str, left: int) -> bool:
+        """Whether the budget is used up; then so many pieces of work are left out."""
+        if self.effort.over:
+            self.left[what] = left
+        return self.effort.over
 
     def at(self, p: float, starts: int, seed: int | None = None) -> int:
         """Simulate starts at a value; the number of branches that this has added."""
@@ -201,9 +234,11 @@ class _Looking:
 
     def for_cycles(self, values: Sequence[float]) -> None:
         """Follow unstable cycles, out of the chaos that has been met and from elsewhere, to where they are born with a stable one."""
-        windows = Windows(self.run, self.population)
-        windows.beside(self.found)
-        windows.around(values, SOUGHT, self.seed)
+        given = set(values)
+        self.windows.beside([counted for counted in self.found if counted.attractor.value in given])
+        self.windows.around(values, SOUGHT, self.seed)
+        if self.windows.left:
+            self.left["searches for unstable cycles"] = self.windows.left
 
     def between(self, most: int) -> None:
         """One value at least in each stretch between two changes, new changes included, up to `most` values."""
@@ -216,7 +251,9 @@ class _Looking:
     def _few(self, places: Callable[[Sequence[float], int], list[float]], most: int) -> None:
         while most > 0 and (wanted := places(self.asked, most)):
             most -= len(wanted)
-            for p in wanted:
+            for k, p in enumerate(wanted):
+                if self._over("values between changes", len(wanted) - k):
+                    return
                 self.at(p, FEW, self.seed + len(self.asked))
 
     def _met(self) -> dict[str, list[float]]:
@@ -228,18 +265,31 @@ class _Looking:
     def past_ends(self, most: int) -> None:
         """Follow what is lost at the ends of stable stretches, those of what it leads to included, until `most` starts have been in all."""
         while ends := self.handover.left()[: max(most // FOLLOWED - len(self.handover.done), 0)]:
-            for end in ends:
+            for k, end in enumerate(ends):
+                if self._over("ends of stable stretches", len(ends) - k):
+                    break
                 found = self.handover.follow(end)
                 self.found += found
                 join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
+            if self.effort.over:
+                break
         left = len(self.handover.left())
         self.run.graph.settings |= {"followed": len(self.handover.done), "unfollowed": left}
 
     def everywhere(self, scan: int) -> None:
         """Scattered values until `scan` of them in a row have added nothing."""
         quiet = k = 0
-        while quiet < scan and k < LONGEST_SCAN * scan:
+        while quiet < scan and k < LONGEST_SCAN * scan and not self._over("scattered values", scan - quiet):
             added = self.at(scattered(self.run.graph.within, self.seed, k), FEW, self.seed + len(self.asked))
             quiet = 0 if added else quiet + 1
             k += 1
         self.run.graph.settings |= {"scanned": k, "quiet": quiet}
+
+    def tell_left(self) -> None:
+        """Keep how much work was done, and say what the budget and the choice of values leave out."""
+        graph, effort = self.run.graph, self.effort
+        graph.settings |= {"work": effort.spent, "unknown": [list(p) for p in unknown(graph, self.asked)]}
+        if self.left:
+            left = ", ".join(f"{count} {what}" for what, count in self.left.items())
+            stopped = f"stopped at budget = {effort.budget}, left out are {left}: raise budget to look on"
+            graph.message, graph.complete = "; ".join(filter(None, (graph.message, stopped))), False

@@ -11,6 +11,7 @@ import numpy as np
 from ..graph.attractor import Attractor
 from ..graph.run import Run
 from ..problems.registry import rebuild
+from .effort import recall_work
 from .population import Population
 
 
@@ -69,9 +70,10 @@ def _settled(
     """What starts settle on, with shares of them; the starts are made where the journal does not know."""
     known = journal.recall(key)
     recalled = None if known is None else _recalled(known, p)
-    if recalled is not None:
+    if known is not None and recalled is not None:
+        recall_work(population, float(known.get("work", 0.0)))
         return recalled
-    starts = starts_of()
+    starts, before = starts_of(), float(getattr(population, "work", 0.0))
     motions, index, mirrored = population.settle(starts, p)
     found = []
     for k, motion in enumerate(motions):
@@ -89,7 +91,8 @@ def _settled(
             float(motion.error),
         )
         found.append(Counted(attractor, motion.problem, motion.u, motion.state))
-    journal.record(key, _recorded(found))
+    work = float(getattr(population, "work", 0.0)) - before
+    journal.record(key, {**_recorded(found), "work": work})
     return found
 
 

@@ -63,6 +63,8 @@ class MapPopulation:
             if self._box.shape != (problem.node, 2) or not np.all(self._box[:, 0] < self._box[:, 1]):
                 raise ValueError(f"box = {box!r}: give {problem.node} pairs (low, high), one per state")
         self.size = float(np.ptp(self._box, axis=1).max())
+        self.work = 0.0
+        """Steps of single points so far, those that solve for cycles included."""
 
     @property
     def about(self) -> dict[str, Any]:
@@ -116,6 +118,7 @@ class MapPopulation:
 
     def _advance(self, step: _Iteration, x: np.ndarray, count: int) -> np.ndarray:
         middle = self._box.mean(axis=1)
+        self.work += count * len(x)
         for _ in range(count):
             with np.errstate(all="ignore"):
                 x = step(x)
@@ -154,6 +157,7 @@ class MapPopulation:
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
         """Unstable cycles that the chaotic motion through a state passes near; see `contvines.coexistence.population`."""
         step = _Iteration(self.problem, p, state[None])
+        self.work += EMBEDDED_IN
         run = np.empty((EMBEDDED_IN, self.problem.node))
         run[0] = state
         for k in range(1, EMBEDDED_IN):
@@ -200,6 +204,7 @@ class MapPopulation:
         """The points, shape (n, d), of the cycle next to a guess, by Newton's method on the n-th image; None if there is none."""
         x, n, functions = guess[0].copy(), len(guess), self.problem.functions
         for _ in range(NEWTON):
+            self.work += n
             points, image, matrix = [], x, np.eye(len(x))
             for _ in range(n):
                 points.append(image)
@@ -226,6 +231,7 @@ class MapPopulation:
         functions = self.problem.functions
         vector = np.ones(self.problem.node) / np.sqrt(self.problem.node)
         logs = np.empty(GROWTH)
+        self.work += GROWTH
         for k in range(GROWTH):
             vector = functions.jacobian(x, p) @ vector
             size = float(np.linalg.norm(vector))

@@ -36,11 +36,11 @@ def changes(graph: Graph) -> np.ndarray:
 
 
 def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
-    """Values where what attracts may differ from what has been seen at `asked`, at most `most`, in increasing order.
+    """Values where what attracts may differ from what has been seen at `asked`, at most `most`, those of wide stretches first.
 
     Between two neighbouring changes of what is stable something else may have taken over: there is one value at least in
     each such stretch, in its middle if none lies there, and one right beyond each change, where a motion that ceases to be stable
-    hands over to another, and beside each end of the interval. Wide stretches come first.
+    hands over to another, and beside each end of the interval.
     """
     size = graph.within[1] - graph.within[0]
     known = np.sort(np.asarray(asked, dtype=float))
@@ -60,13 +60,15 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
             if not np.any(np.abs(inside - p) <= 2.0 * step):
                 wanted.append((0.25 * width, float(p)))
     wanted.sort(key=lambda entry: (-entry[0], entry[1]))
-    return sorted({p for _, p in wanted[:most]})
+    return list(dict.fromkeys(p for _, p in wanted[:most]))
 
 
 def unresolved(
     met: Mapping[str, Sequence[float]], asked: Sequence[float], within: tuple[float, float], most: int
 ) -> list[float]:
-    """Values between two neighbours of which one has met a kind of motion without a branch and the other has not, at most `most`.
+    """Values between two neighbours of which one has met a kind of motion without a branch and the other has not.
+
+    At most `most`, those of distant neighbours first.
 
     Parameters
     ----------
@@ -83,4 +85,17 @@ def unresolved(
         for first, last in pairwise(sorted(here | set(asked)) if here else ()):
             if (first in here) != (last in here) and last - first > RESOLVED * (within[1] - within[0]):
                 wanted[0.5 * (first + last)] = last - first
-    return sorted(sorted(wanted, key=lambda p: (-wanted[p], p))[:most])
+    return sorted(wanted, key=lambda p: (-wanted[p], p))[:most]
+
+
+def unknown(graph: Graph, asked: Sequence[float]) -> list[tuple[float, float]]:
+    """Stretches of the interval, none narrower than a hundredth, with no stable branch and none of the values `asked`."""
+    low, high = graph.within
+    covered = [pair for b in graph.branches.values() if b.real for pair in b.stable_intervals()]
+    marks = sorted({low, high, *asked, *(end for pair in covered for end in pair)})
+    return [
+        (float(first), float(last))
+        for first, last in pairwise(marks)
+        if last - first > RESOLVED * (high - low)
+        and not any(a <= first and last <= b for a, b in covered)
+    ]

@@ -16,6 +16,7 @@ from ..graph.run import Run
 from ..journal import Part
 from ..problems.registry import rebuild
 from .census import Counted
+from .effort import Effort, recall_work
 from .population import Population
 from .roots import add_root
 
@@ -31,16 +32,15 @@ class Windows:
     run : Run
         Of the atlas.
     population : Population
+    apart : Run
+        On which they are traced; see :func:`run_apart`.
+    effort : Effort
+        Nothing is begun once it is over.
     """
 
-    def __init__(self, run: Run, population: Population) -> None:
-        self.run, self.population = run, population
-        whole = run.graph
-        graph = Graph(
-            parameter=whole.parameter, model=whole.model, within=whole.within, settings=dict(whole.settings)
-        )
-        settings = replace(run.settings, max_branches=MOST)
-        self.apart = Run(graph, settings, Part(run.journal, "apart/"), 0, False, None, None, run.limits)
+    def __init__(self, run: Run, population: Population, apart: Run, effort: Effort) -> None:
+        self.run, self.population, self.apart, self.effort = run, population, apart, effort
+        self.left = 0  # searches that have not begun, or were not completed
 
     def beside(self, found: Sequence[Counted]) -> int:
         """Add to the graph the branches that are stable somewhere and hold an unstable cycle of a chaotic motion.
@@ -58,6 +58,9 @@ class Windows:
         parameter = self.population.parameter
         for counted in found:
             if counted.attractor.kind == "chaotic" and counted.state is not None:
+                if self.effort.over:
+                    self.left += 1
+                    continue
                 state, p = counted.state, counted.attractor.value
                 self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
                 self._add(f"cycles/{p!r}", p, partial(self.population.embedded, state, p))
@@ -75,6 +78,9 @@ class Windows:
         """
         before = len(self.run.graph.branches)
         for p in values:
+            if self.effort.over:
+                self.left += 1
+                continue
             starts = self.population.starts(count, seed, p)
             self.run.tell(f"cycles from {count} starts at {self.population.parameter} = {p:.6g}", p)
             self._add(f"cycles/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
@@ -91,8 +97,12 @@ class Windows:
         """A point of every stable stretch to which cycles lead."""
         points = []
         known = self._recalled(key)
-        found = self._recorded(key, cycles()) if known is None else known
+        before = float(getattr(self.population, "work", 0.0))
+        found = self._recorded(key, cycles(), before) if known is None else known
         for k, (problem, u) in enumerate(found):
+            if self.effort.over:
+                self.left += 1
+                break
             if self.run.register.find(problem, u, p) is None:
                 where = f"{self.population.parameter} = {p:.6g}"
                 self.run.tell(f"cycle {k + 1} of {len(found)} at {where}: followed to where it is stable", p)
@@ -105,12 +115,14 @@ class Windows:
         problems = [] if known is None else [rebuild(description) for description in known["problems"]]
         if known is None or any(problem is None for problem in problems):
             return None
+        recall_work(self.population, float(known.get("work", 0.0)))
         return [(problem, known[f"u{k}"]) for k, problem in enumerate(problems)]
 
     def _recorded(
-        self, key: str, cycles: Sequence[tuple[Any, np.ndarray]]
+        self, key: str, cycles: Sequence[tuple[Any, np.ndarray]], before: float
     ) -> Sequence[tuple[Any, np.ndarray]]:
-        record: dict[str, Any] = {"problems": [problem.describe() for problem, _ in cycles]}
+        work = float(getattr(self.population, "work", 0.0)) - before
+        record: dict[str, Any] = {"problems": [problem.describe() for problem, _ in cycles], "work": work}
         record.update({f"u{k}": np.asarray(u, dtype=float) for k, (_, u) in enumerate(cycles)})
         self.run.journal.record(key, record)
         return cycles
@@ -132,6 +144,16 @@ class Windows:
             if branch.real
             for i in _middles(branch, NARROWEST * (self.run.graph.within[1] - self.run.graph.within[0]))
         ]
+
+
+def run_apart(run: Run) -> Run:
+    """A run of its own for branches that are traced apart from the graph of another one."""
+    whole = run.graph
+    graph = Graph(
+        parameter=whole.parameter, model=whole.model, within=whole.within, settings=dict(whole.settings)
+    )
+    settings = replace(run.settings, max_branches=MOST)
+    return Run(graph, settings, Part(run.journal, "apart/"), 0, False, None, None, run.limits)
 
 
 def _middles(branch: Branch, narrowest: float) -> Iterator[int]:

@@ -24,6 +24,7 @@ def shown(*, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
             text = own or (
                 f"{state.message}  |  {state.branches} branch{'' if state.branches == 1 else 'es'}, {state.special} special points, "
                 f"{state.points} points, {state.waiting} waiting"
+                + (f", {state.done:.0%} of the budget" if state.done == state.done else "")
             )
             progress.update(task, description=text)
 

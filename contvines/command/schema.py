@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal, Union
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, model_serializer
 
 from orbits.machines.catalogue import NAMES, model_class
 from orbits.machines.parameters import Parameter
@@ -101,13 +101,19 @@ class SweepSection(Section):
 
 
 class AtlasSection(Section):
-    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed, and how many
-    further values in a row must meet nothing new."""
+    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed, how many
+    further values in a row must meet nothing new, and how much work it may take."""
 
     values: Annotated[int, Field(ge=1, le=10_000)] | list[float] = 16
     starts: Annotated[int, Field(ge=1, le=10_000_000)] = 256
     seed: Annotated[int, Field(ge=0)] = 0
     scan: Annotated[int, Field(ge=0, le=1_000_000)] | None = None
+    budget: Annotated[int, Field(ge=1)] | None = None
+
+    @model_serializer(mode="wrap")
+    def _settings(self, write: Any) -> dict[str, Any]:
+        """Without a budget that was not given: files of studies that knew none are theirs still."""
+        return {name: value for name, value in write(self).items() if (name, value) != ("budget", None)}
 
 
 class ChartSection(Section):

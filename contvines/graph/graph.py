@@ -78,7 +78,7 @@ class Graph:
     start : str
         A sentence where the start that was given is no solution: where the branch begins instead.
     complete : bool
-        False where branches were left waiting at ``max_branches``.
+        False where branches were left waiting at ``max_branches``, or the budget of an atlas was used up.
     looked : bool
         Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
     proofs : dict of dict

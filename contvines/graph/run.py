@@ -34,6 +34,8 @@ class Progress(NamedTuple):
     points: int
     value: float
     waiting: int
+    done: float = float("nan")
+    """Share of its budget that an atlas has used."""
 
 
 class Run:
@@ -69,6 +71,7 @@ class Run:
         self.limits = limits
         self.user_functions = {**(user_functions or {}), **limits.functions}
         self.progress = progress
+        self.done: Callable[[], float] | None = None
         self.queue: deque[Pending] = deque()
         self.register = Register()
         self.numbers: dict[str, int] = {}
@@ -85,7 +88,13 @@ class Run:
             graph = self.graph
             self.progress(
                 Progress(
-                    message, len(graph.branches), len(graph.special), self.points, value, len(self.queue)
+                    message,
+                    len(graph.branches),
+                    len(graph.special),
+                    self.points,
+                    value,
+                    len(self.queue),
+                    float("nan") if self.done is None else self.done(),
                 )
             )
 

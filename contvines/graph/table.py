@@ -146,9 +146,13 @@ def attractors_table(graph: Graph) -> Table:
 
 
 def simulated(graph: Graph) -> str:
-    """At how many values an atlas has simulated, and how long nothing new was met, in a sentence."""
+    """At how many values an atlas has simulated, how long nothing new was met, and where nothing is known, in a sentence."""
     count = len({a.value for a in graph.attractors if a.starts})
     line = f"starts simulated at {count} value{'' if count == 1 else 's'} of {graph.parameter}"
+    number = partial(number_text, digits=6, unit=size_of(graph.within))
+    if empty := graph.settings.get("unknown"):
+        stretches = ", ".join(f"{number(a)}..{number(b)}" for a, b in empty)
+        line += f"; what attracts on {stretches} is not known: give values there, or raise scan or budget"
     scanned, quiet = graph.settings.get("scanned"), graph.settings.get("quiet", 0)
     if not scanned:
         return line
