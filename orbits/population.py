@@ -174,9 +174,7 @@ class Population:
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
         cycles = list(
-            returning_cycles(
-                self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED
-            )
+            returning_cycles(self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED)
         )
         self.work += SOLVED * (len(starts) + len(cycles))
         closed = closed_orbits(self.model, params, Orbit)
@@ -262,9 +260,7 @@ class _Sorting:
 
     def _looked_at(self, state: np.ndarray, transient: float, longest: int, patience: int) -> Attractor:
         """What a motion settles on; its work is counted."""
-        found = settle(
-            self.model, self.engine, self.params, state, transient, longest, RECOGNISED, patience
-        )
+        found = settle(self.model, self.engine, self.params, state, transient, longest, RECOGNISED, patience)
         self.population.work += float(state[TURNS]) + SOLVED
         return found
 

@@ -80,7 +80,7 @@ def atlas(
         together. 0 leaves them out and all else that looks beyond the given values: unstable cycles, ends of stability that are followed to what
         comes after them, stretches between two changes.
     budget : int, optional
-        Work that the atlas may take, by default 100000: so many points of branches, or a hundred times as many simulated periods (steps of a map). It does not
+        Work that the atlas may take, by default 500000: so many points of branches, or a hundred times as many simulated periods (steps of a map). It does not
         depend on the machine's speed or load; ``settings["work"]`` of the graph says how much of it was used.
     depth, virtual, user_functions, journal, progress, settings
         As for :func:`contvines.diagram`.
@@ -124,7 +124,13 @@ def atlas(
         scan = -(-len(where) * starts // FEW)
     if not (isinstance(scan, int) and scan >= 0):
         raise ValueError(f"scan = {scan!r} must be a whole number, 0 or more")
-    run.graph.settings |= {"values": len(where), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
+    run.graph.settings |= {
+        "values": len(where),
+        "starts": starts,
+        "seed": seed,
+        "scan": scan,
+        "budget": budget,
+    }
     looking = _Looking(run, population, seed, budget)
     looking.given(where, starts)
     if scan:

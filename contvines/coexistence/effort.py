@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-BUDGET = 100_000  # units of work that an atlas may take where no number is given
+BUDGET = 500_000  # units of work that an atlas may take where no number is given
 PERIODS = 100  # simulated forcing periods, or steps of a map, that take about as long as a point of a branch
 
 

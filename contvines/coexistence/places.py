@@ -96,6 +96,5 @@ def unknown(graph: Graph, asked: Sequence[float]) -> list[tuple[float, float]]:
     return [
         (float(first), float(last))
         for first, last in pairwise(marks)
-        if last - first > RESOLVED * (high - low)
-        and not any(a <= first and last <= b for a, b in covered)
+        if last - first > RESOLVED * (high - low) and not any(a <= first and last <= b for a, b in covered)
     ]

@@ -83,7 +83,7 @@ def survey(
     gaps, values, starts : int
         Where the systems are simulated besides; see `contvines.survey.work.Job`.
     atlas : mapping, optional
-        ``values``, ``starts``, ``seed``, ``scan`` of `contvines.atlas`: an atlas of each system in place of a diagram.
+        ``values``, ``starts``, ``seed``, ``scan``, ``budget`` of `contvines.atlas`: an atlas of each system in place of a diagram.
     workers : int, optional
         Processes of this machine; all cores by default, 1 for none beside this one.
     cluster : str or distributed.Client, optional

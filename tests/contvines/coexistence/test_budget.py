@@ -1,0 +1,82 @@
+"""The budget of an atlas: what most starts reach comes first, what is left out is said, results depend on nothing else."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+from orbits.attractors import recurrence
+from orbits.attractors.recurrence import LONGEST, settle
+from orbits.simulation.driver import machine
+
+
+def logistic():
+    problem = cv.MapProblem(lambda x, r: r * x * (1.0 - x), [0.6], 2.6, parameter="r")
+    return problem.population(box=[(0.01, 0.99)])
+
+
+def motions(graph):
+    return {(a.value, a.word, a.kind) for a in graph.attractors}
+
+
+def made(budget):
+    return cv.atlas(logistic(), within=(2.55, 3.4), values=4, starts=4, scan=1, depth=1, budget=budget)
+
+
+def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
+    whole = made(10**9)
+    work = whole.settings["work"]
+    assert whole.complete and work > 0
+    enough = made(work + 1)
+    assert enough.complete and motions(enough) == motions(whole) and enough.settings["work"] == work
+    least = made(1)
+    assert len({a.value for a in least.attractors}) == 1  # the first of the four given values
+    assert least.finished and not least.complete
+    assert "3 given values" in least.message and "raise budget" in least.message
+    budget = least.settings["work"] + 1
+    part = made(budget)
+    assert not part.complete and budget <= part.settings["work"] < work
+    assert motions(least) <= motions(part) <= motions(whole)
+
+
+def test_the_given_values_come_first():
+    part = made(made(1).settings["work"] + 1)
+    given = 2.55 + 0.85 * (np.arange(4) + 0.5) / 4
+    assert "given values" in part.message and {a.value for a in part.attractors} <= set(given)
+
+
+@pytest.mark.parametrize("budget", [0, -5, 1.5, "much"])
+def test_a_budget_that_cannot_be_is_refused(budget):
+    with pytest.raises(ValueError, match=r"budget = .* whole number"):
+        cv.atlas(logistic(), within=(2.55, 3.56), budget=budget)
+
+
+def test_a_motion_between_the_given_values_that_all_starts_reach():
+    """All of 30 starts reach LRLt, k = 1, at amplitude 1.50963; its branch hangs together with no other motion of the given values."""
+    absorber = Absorber(restitution=0.8564451, friction=0.1418559, gravity=0.4553905, mass_ratio=0.006)
+    there = 1.50963
+    population = absorber.population("amplitude")
+    (reached,), _, _ = population.settle(population.starts(30, 1, there), there)
+    assert (reached.word, reached.periods) == ("LRLt", 1)
+
+    def atlas(scan):
+        return cv.atlas(
+            absorber, over="amplitude", within=(1.4, 1.7), values=[1.46, 1.66], starts=8, scan=scan, depth=0, budget=2000
+        )  # fmt: skip
+
+    holding = [
+        b for b in atlas(4) if b.real and any(low < there < high for low, high in b.stable_intervals())
+    ]
+    assert [(b.description["word"], b.description["periods"]) for b in holding] == [("LRLt", 1)]
+    assert any(low < there < high for low, high in atlas(0).settings["unknown"])
+
+
+def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
+    """Each wait is four times as long as the one before, with no transient to begin with as well: a few looks reach the longest."""
+    absorber = Absorber(restitution=0.728, friction=0.747, gravity=0.404, mass_ratio=0.006)
+    engine, looks = machine(absorber.name), []
+    collect = recurrence.collect
+    monkeypatch.setattr(recurrence, "collect", lambda *a: looks.append(1) or collect(*a))
+    state = np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0])
+    settle(absorber, engine, absorber.vector({"amplitude": 1.59760071}), state, 0.0, 32, 1e-7, 1)
+    assert len(looks) <= 2 + np.log(LONGEST) / np.log(4.0)
