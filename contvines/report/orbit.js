@@ -36,9 +36,9 @@ function stage(motion) {
   // an absorber in its cavity, or the bodies and walls of a machine on a page: what stands where, and how to draw it
   const canvas = $("animation"), pen = canvas.getContext("2d"), width = 34;
   const cavity = Boolean(motion.box);
-  const tracks = cavity ? [] : Object.values(motion.bodies), walls = cavity ? [] : motion.walls;
+  const tracks = cavity ? [] : Object.values(motion.bodies), walls = motion.walls;
   const all = cavity
-    ? [...motion.box.map((v) => v + motion.half_width), ...motion.box.map((v) => v - motion.half_width)]
+    ? motion.walls.flatMap((wall) => motion.box.map((v) => v - wall))
     : [...tracks.flat(), ...walls.map((wall) => wall.at).flat()];
   const low = Math.min(...all), high = Math.max(...all), sign = motion.left > 0 ? -1 : 1; // the left wall stands on the left
   const at = (v) => canvas.width / 2 + sign * (v - (low + high) / 2) * (canvas.width - 90) / (high - low || 1);
@@ -52,7 +52,7 @@ function stage(motion) {
     pen.beginPath();
     if (cavity) {
       const box = mix(motion.box);
-      const [a, b] = [at(box + motion.half_width), at(box - motion.half_width)].sort((p, q) => p - q);
+      const [a, b] = walls.map((wall) => at(box - wall)).sort((p, q) => p - q);
       pen.moveTo(a - width / 2, 18); pen.lineTo(a - width / 2, 88); pen.lineTo(b + width / 2, 88); pen.lineTo(b + width / 2, 18);
       pen.stroke();
       pen.fillRect(at(mix(motion.body)) - width / 2, 52, width, 34);

@@ -6,6 +6,7 @@ import html
 from typing import Any
 
 from orbits.plots.portrait import title
+from orbits.plots.shown import quantities
 
 
 def page(orbit: Any) -> str:
@@ -22,7 +23,7 @@ def page(orbit: Any) -> str:
     least = min(orbit.margins, key=lambda margin: margin.value, default=None)
     rows = [
         ("motion", title(orbit).split("\n")[0]),
-        *((name, f"{value:.10g}") for name, value in orbit.parameters.items()),
+        *quantities(orbit, 10).items(),
         ("multipliers", multipliers or "-"),
         ("least margin", "-" if least is None else f"{least.value:.6g} ({least.kind})"),
     ]

@@ -9,6 +9,7 @@ import numpy as np
 
 from contvines_ground.figures import new_figure, styled
 from contvines_ground.near_arguments import hinting
+from orbits.plots.shown import Shown, quantities, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +80,7 @@ def portrait(
     """
     if show is not None and show not in PANELS:
         raise ValueError(f"show = {show!r} is unknown; choose one of {', '.join(PANELS)}")
-    motion = orbit.sample(points)
+    seen = shown(orbit, points)
     with styled(style):
         if axes is None:
             size = figsize or ((9.6, 4.0) if show in (None, "both") else (4.8, 4.0))
@@ -104,9 +105,9 @@ def portrait(
                 )
             figure: Any = drawn[0].get_figure(root=True)
         if panels != "history":
-            _phase(drawn[0], orbit, motion)
+            _phase(drawn[0], orbit, seen)
         if panels != "phase":
-            _history(drawn[-1], orbit, motion)
+            _history(drawn[-1], orbit, seen)
             key(figure, drawn[-1], axes is None, legend)
     return figure
 
@@ -119,10 +120,14 @@ def title(orbit: Orbit) -> str:
     else:
         state = "stable" if orbit.stable else "unstable"
     state += "" if orbit.real else ", virtual: no machine can follow it"
+    parameters = quantities(orbit)
+    plain = set(parameters) == set(
+        orbit.parameters
+    )  # numbers have symbols, quantities are called by their names
     here = ", ".join(
-        f"{SYMBOLS.get(name, name)} = {value:.6g}"
-        for name, value in orbit.parameters.items()
-        if (name, value) != ("excitation", 1.0)
+        f"{SYMBOLS.get(name, name) if plain else name.replace('_', ' ')} = {value}"
+        for name, value in parameters.items()
+        if (name, value) != ("excitation", "1")
     )
     told = getattr(
         orbit, "spelling", None
@@ -139,51 +144,50 @@ def title(orbit: Orbit) -> str:
     return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
 
 
-def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
-    w, rate = motion["w"], motion["w_rate"]
-    reach = 1.15 * max(1e-3, float(np.abs(rate).max()))
+def _phase(axes: Axes, orbit: Orbit, seen: Shown) -> None:
+    w, rate = seen.motion["w"], seen.motion["w_rate"]
+    reach = 1.15 * max(1e-3 * seen.half, float(np.abs(rate).max()))
     largest = float(np.abs(w).max())
-    bound = 1.0 if not orbit.word.impact_free or largest > 0.5 or largest == 0.0 else 1.3 * largest
-    if bound == 1.0:
-        for side in (-1.0, 1.0):
-            axes.axvspan(side, 1.16 * side, color=WALL, lw=0.0)
+    if not orbit.word.impact_free or largest > 0.5 * seen.half or largest == 0.0:
+        ends = seen.left + 0.16 * seen.half, seen.right - 0.16 * seen.half
+        for wall, end in zip((seen.left, seen.right), ends):
+            axes.axvspan(wall, end, color=WALL, lw=0.0)
+    else:
+        ends = 1.5 * largest, -1.5 * largest
     axes.axhline(0.0, color="0.75", lw=0.7, zorder=0)
     line = "-" if orbit.real else ":"
     for segment in range(len(orbit.word)):
-        here = motion["segment"] == segment
+        here = seen.motion["segment"] == segment
         axes.plot(w[here], rate[here], line, color=ORBIT, lw=1.6, zorder=2)
     if not len(orbit.word):
         axes.plot([0.0], [0.0], "o", color=ORBIT, zorder=2)
-    table = orbit.events
     for i, letter in enumerate(orbit.word.events):
         if letter in "LR":  # the jump of the velocity
-            axes.plot(
-                [table.w[i]] * 2, [table.rate_pre[i], table.rate_post[i]], color=ORBIT, lw=0.8, ls=(0, (2, 2))
-            )
-    _events(axes, orbit, table.w, table.rate_post)
+            jump = [seen.before[i], seen.after[i]]
+            axes.plot([seen.w[i]] * 2, jump, color=ORBIT, lw=0.8, ls=(0, (2, 2)))
+    _events(axes, orbit, seen.w, seen.after)
+    unit = f" [{seen.length}]" if seen.length else ""
     axes.set(
-        xlim=(1.16 * bound, -1.16 * bound),  # w = +1 is the left wall, and stands on the left
+        xlim=ends,  # w is positive at the left wall, which stands on the left
         ylim=(-reach, reach),
-        xlabel=r"$w = q_1 - q_2$, left wall at $+1$",
-        ylabel=r"relative velocity $w'$",
+        xlabel=f"$w = q_1 - q_2${unit}, left wall at ${seen.left:+.6g}$",
+        ylabel="relative velocity $w'$" + (f" [{seen.velocity}]" if seen.velocity else ""),
     )
 
 
-def _history(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
-    turns = motion["phase"] / (2.0 * np.pi)
+def _history(axes: Axes, orbit: Orbit, seen: Shown) -> None:
+    turns = seen.motion["phase"] / (2.0 * np.pi)
     line = "-" if orbit.real else ":"
-    cavity, absorber = motion["cavity"], motion["absorber"]
-    for side in (-1.0, 1.0):  # where the absorber touches the walls: q2 = q1 -+ 1
-        axes.plot(turns, cavity + side, color=CAVITY, lw=1.0)
-        axes.fill_between(turns, cavity + side, cavity + 1.25 * side, color=WALL, lw=0.0)
+    cavity, absorber = seen.motion["cavity"], seen.motion["absorber"]
+    for wall in (seen.left, seen.right):  # where the absorber touches it: q2 = q1 - w
+        edge = cavity - wall
+        axes.plot(turns, edge, color=CAVITY, lw=1.0)
+        axes.fill_between(turns, edge, edge - 0.25 * seen.half * np.sign(wall), color=WALL, lw=0.0)
     axes.plot(turns, cavity, color=CAVITY, lw=1.0, ls="--", label="cavity, $q_1$")
     axes.plot(turns, absorber, line, color=ABSORBER, lw=1.6, label="absorber, $q_2$")
-    table = orbit.events
-    _, place = orbit.model.bodies(table.w, table.v, orbit.params)
-    _events(axes, orbit, table.phase / (2.0 * np.pi), place, labelled=True)
-    axes.set(
-        xlabel=r"forcing periods $\Psi/2\pi$", ylabel=r"positions in units of $b$", xlim=(turns[0], turns[-1])
-    )
+    _events(axes, orbit, orbit.events.phase / (2.0 * np.pi), seen.place, labelled=True)
+    label = seen.positions if seen.length else r"positions in units of $b$"
+    axes.set(xlabel=r"forcing periods $\Psi/2\pi$", ylabel=label, xlim=(turns[0], turns[-1]))
     axes.margins(y=0.02)
 
 

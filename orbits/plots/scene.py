@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.plots.shown import shown
+
 if TYPE_CHECKING:
     from orbits.orbit import Orbit
 
@@ -25,40 +27,36 @@ def scene(orbit: Orbit, points: int = 120) -> dict[str, Any]:
         ``portrait`` (x, y, their names, walls, the side on which x grows), ``history`` (turns of the forcing, named
         curves, walls), ``animation`` (position of the cavity and of the absorber in it, evenly spaced in time), ``events``.
     """
-    motion = orbit.sample(points)
+    seen = shown(orbit, points)
+    motion = seen.motion
     turns = motion["phase"] / (2.0 * np.pi)
     even = np.linspace(turns[0], turns[-1], points)
     cavity, absorber = (np.interp(even, turns, motion[name]) for name in ("cavity", "absorber"))
-    table = orbit.events
+    walls = [seen.left, seen.right]
     return {
         "portrait": {
             "x": motion["w"],
             "y": motion["w_rate"],
-            "names": ["relative position w (left wall at +1)", "relative velocity w'"],
-            "walls": [1.0, -1.0],
+            "names": list(seen.names),
+            "walls": walls,
             "reversed": True,
         },
         "history": {
             "x": turns,
             "name": "forcing periods",
-            "unit": "positions in units of b",
+            "unit": seen.positions,
             "curves": {"cavity": motion["cavity"], "absorber": motion["absorber"]},
-            "walls": [motion["cavity"] + 1.0, motion["cavity"] - 1.0],
+            "walls": [motion["cavity"] - wall for wall in walls],
         },
         "animation": {
             "box": cavity,
             "body": absorber,
-            "half_width": 1.0,
+            "walls": walls,
             "left": 1.0,
             "periods": orbit.periods,
         },
         "events": [
-            {
-                "event": letter,
-                "at": float(table.phase[i] / (2.0 * np.pi)),
-                "x": float(table.w[i]),
-                "y": float(table.rate_post[i]),
-            }
-            for i, letter in enumerate(orbit.word.events)
+            {"event": letter, "at": float(phase / (2.0 * np.pi)), "x": float(x), "y": float(y)}
+            for letter, phase, x, y in zip(orbit.word.events, orbit.events.phase, seen.w, seen.after)
         ],
     }
