@@ -21,6 +21,7 @@ app = typer.Typer(
     help="Bifurcation graphs of vibro-impact absorbers: every branch, every border, only orbits that exist.",
     no_args_is_help=True,
     add_completion=False,
+    rich_markup_mode=None,  # help texts are printed as they are written: in markup what stands in brackets is lost
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )

@@ -86,13 +86,17 @@ class Command(TyperCommand):
 
 def command(name: str) -> Any:
     """The sub-command of a name, with all its options."""
-    own = typer.Typer(add_completion=False)
+    own = typer.Typer(add_completion=False, rich_markup_mode=None)
     own.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
     return get_command(own)
 
 
 class Listed(TyperCommand):
     """A sub-command of which nothing is known but its name and its sentence until it is called."""
+
+    def get_short_help_str(self, limit: int = 0) -> str:
+        """The whole sentence, which goes on in further lines of the list."""
+        return str(self.help)
 
     def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
         return command(str(self.name)).make_context(info_name, args, parent=parent, **extra)

@@ -227,10 +227,10 @@ def _map(panel: Any, mu: Any, b: Any, values: Any, here: tuple[float, float], ti
 def design(
     study: Path = typer.Argument(..., metavar="STUDY.toml", help="The study whose machine is meant."),
     cavity: float | None = typer.Option(
-        None, "--half-width", "--cavity", help="Half-width b of the cavity \\[m]; 0.02 if no scale is given."
+        None, "--half-width", "--cavity", help="Half-width b of the cavity [m]; 0.02 if no scale is given."
     ),
     natural_frequency: float | None = typer.Option(
-        None, help="f_0 of the oscillator \\[Hz], instead of the cavity."
+        None, help="f_0 of the oscillator [Hz], instead of the cavity."
     ),
     plot: Path | None = typer.Option(
         None, metavar="FILE.png", help="Where the picture goes; STUDY-design.png in this folder if not given."

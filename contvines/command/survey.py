@@ -12,9 +12,7 @@ if TYPE_CHECKING:
 
 
 def survey(
-    study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="The study, with a section \\[survey].")
-    ],
+    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study, with a section [survey].")],
     output: Annotated[
         Path | None,
         typer.Option(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def sweep(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="The study; a section \\[sweep] is optional.")
+        Path, typer.Argument(metavar="STUDY.toml", help="The study; a section [sweep] is optional.")
     ],
     down: Annotated[bool, typer.Option("--down", help="From the interval's upper end to the lower.")] = False,
     output: Annotated[

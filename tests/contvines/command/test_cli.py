@@ -1,8 +1,11 @@
 """The command line on files that are there already, and on bad input: sentences, exit statuses, untouched files."""
 
+import importlib
+import inspect
 import json
 import subprocess
 import sys
+import typing
 from pathlib import Path
 
 import pytest
@@ -27,6 +30,21 @@ def test_the_list_says_of_every_command_what_it_says_of_itself():
     for name, (_, sentence) in commands.COMMANDS.items():
         written = (commands.command(name).help or "").split("\n\n")[0]
         assert sentence == " ".join(written.split()), name
+
+
+@pytest.mark.parametrize("name", commands.COMMANDS)
+def test_help_says_what_is_written(run, name):
+    """Every text as it stands in the source, brackets and all; lines may be broken elsewhere."""
+    function = getattr(importlib.import_module(f"contvines.command.{commands.COMMANDS[name][0]}"), name)
+    annotated = typing.get_type_hints(function, include_extras=True).values()
+    about = [option for hint in annotated for option in getattr(hint, "__metadata__", ())]
+    about += [parameter.default for parameter in inspect.signature(function).parameters.values()]
+    texts = [inspect.getdoc(function), *(getattr(option, "help", None) for option in about)]
+    texts = [text for text in texts if text]
+    assert len(texts) > 1
+    out = "".join(run(name, "--help")[1].split())
+    for text in texts:
+        assert "".join(text.split()) in out
 
 
 def test_help_and_version_import_nothing_heavy():
