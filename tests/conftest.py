@@ -5,6 +5,10 @@ from contextlib import suppress
 from hypothesis import settings
 
 from contvines.core.build import NotBuilt, build, up_to_date
+from tests.children import adopt, no_child_survives_its_test
+
+__all__ = ["no_child_survives_its_test"]
+adopt()
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("search", derandomize=False, deadline=None)

@@ -1,0 +1,96 @@
+"""Processes that tests start do not outlive them, and take Ctrl-C though the suite may ignore it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="what ends with its parent is a matter of Linux"
+)
+
+SUITE = """
+import subprocess, sys
+
+def test_it():
+    child = subprocess.Popen([sys.executable, "-c", "import time; print('up', flush=True); time.sleep(600)"], stdout=subprocess.PIPE)
+    child.stdout.readline()
+    print("child", child.pid, flush=True)
+    {end}
+"""
+
+
+def suite(tmp_path, end):
+    """A suite of one test below a folder `tests` with our conftest, in a process of its own that ignores Ctrl-C."""
+    here = os.path.dirname(__file__)
+    folder = tmp_path / "tests"
+    folder.mkdir()
+    os.symlink(os.path.join(here, "children.py"), folder / "children.py")
+    (folder / "conftest.py").write_text(
+        "from tests.children import adopt, no_child_survives_its_test\nadopt()\n"
+    )
+    (folder / "test_one.py").write_text(SUITE.format(end=end))
+    (tmp_path / "pytest.ini").write_text(
+        "[pytest]\npythonpath = .\naddopts = -p no:cacheprovider --import-mode=importlib\n"
+    )
+    return subprocess.Popen(
+        [sys.executable, "-m", "pytest", "-q", "-s", "-n", "0", "tests"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
+        env={**os.environ, "PYTHONPATH": ""},
+    )
+
+
+def pid_of(process):
+    for line in process.stdout:
+        if line.startswith("child"):
+            return int(line.split()[1])
+    raise AssertionError("the test has not begun")
+
+
+def gone(pid):
+    for _ in range(500):
+        try:
+            if " Z " in Path(f"/proc/{pid}/stat").read_text():
+                return True
+        except FileNotFoundError:
+            return True
+        time.sleep(0.02)
+    return False
+
+
+@pytest.mark.parametrize("end", ["pass", "raise AssertionError"])
+def test_a_child_ends_with_its_test(tmp_path, end):
+    process = suite(tmp_path, end)
+    assert gone(pid_of(process))
+    process.communicate()
+    assert process.returncode == (0 if end == "pass" else 1)
+
+
+def test_a_child_ends_with_a_suite_that_is_killed(tmp_path):
+    process = suite(tmp_path, "child.wait()")
+    pid = pid_of(process)
+    process.kill()
+    assert gone(pid)
+
+
+def test_a_child_takes_an_interrupt_though_the_suite_ignores_it(tmp_path):
+    end = "child.send_signal(2); assert child.wait(60) in (-2, 1, 130)"
+    process = suite(tmp_path, end)
+    assert gone(pid_of(process))
+    process.communicate()
+    assert process.returncode == 0
+
+
+def test_an_interrupt_reaches_a_suite_that_ignored_it(tmp_path):
+    process = suite(tmp_path, "import time; time.sleep(600)")
+    pid_of(process)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 2  # pytest: interrupted
