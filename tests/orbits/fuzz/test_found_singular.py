@@ -32,12 +32,15 @@ def test_a_branch_comes_home_though_steps_would_end_beside_the_doubling(seed, va
     assert np.abs(inside.multipliers).max() < 1.0
 
 
-@pytest.mark.parametrize(("seed", "value"), [(184, 0.6768722557), (25, 1.740995538624)])
+@pytest.mark.parametrize(("seed", "value"), [(184, 0.6768722538612), (25, 1.740995538624)])
 def test_a_virtual_branch_comes_to_its_point_as_well_as_that_is_known(seed, value):
-    """Times run backwards until where rounding, over a speed that vanishes, is all that doubles tell; in eighty digits it comes there."""
+    """Times run backwards until where rounding, over a speed that vanishes, is all that doubles tell; in eighty digits it comes there.
+
+    At the first place two durations vanish: 0.6768722538612062, in eighty digits from either side. Doubles know it to some 2e-9.
+    """
     graph = diagram("cavity", seed, {184: 418, 25: 419}[seed])
     point = next(
-        p for p in graph.special.values() if abs(p.value - value) < 1e-9 and not graph[p.branch].real
+        p for p in graph.special.values() if abs(p.value - value) < 5e-9 and not graph[p.branch].real
     )
     branch = graph[point.branch]
     i = next(i for i, label in branch.marks if label == point.label)
