@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -99,6 +99,16 @@ class Population:
     def names(self) -> tuple[str, ...]:
         """Names of the coordinates in which starts are given: phase, w, w_rate, and v, v_rate of the coupled machine."""
         return ("phase", *self.engine.coordinates)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters and measures by name; none where all are plain numbers."""
+        return self.model.units
+
+    def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]:
+        """What one of these coordinates is in the unit that is shown, and that unit; plain numbers have none."""
+        params = self.model.vector_at(self.parameter, p, self.parameters)
+        return self.model.gauges([name for name in names if name != "phase"], params)
 
     def box(self, p: float) -> np.ndarray:
         """Smallest and largest coordinate of the starts, shape (n, 2): the cavity, and the velocities its walls can give."""

@@ -12,7 +12,7 @@ from ..doors import above
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..hints import hinted, hinting
-from ..problems.abilities import notation_of
+from ..problems.abilities import Gauged, notation_of
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
@@ -52,6 +52,10 @@ class Basins:
         Labels of axes by name of coordinate.
     leftward : str
         The coordinate that grows from right to left in a picture.
+    unit : str
+        Of the parameter's value; empty for a plain number.
+    gauges : dict
+        What one of a coordinate is in the unit in which it is shown, and that unit; none for plain numbers.
     """
 
     parameter: str
@@ -66,6 +70,12 @@ class Basins:
     manifolds: list[Manifold] = field(default_factory=list)
     notation: dict[str, str] = field(default_factory=dict)
     leftward: str = ""
+    unit: str = ""
+    gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
+
+    def shown(self, name: str, values: Any) -> Any:
+        """Values of a coordinate in the unit in which it is shown."""
+        return values * self.gauges.get(name, (1.0, ""))[0]
 
     def __str__(self) -> str:
         return above("basins_table")(self)
@@ -112,22 +122,26 @@ class Basins:
         return float(fit[0]), float(np.sqrt(covariance[0, 0]))
 
     def to_dict(self) -> dict[str, Any]:
-        """Attractors, shares with their intervals, and the uncertainty exponent, ready for JSON."""
+        """Attractors, shares with their intervals, and the uncertainty exponent, ready for JSON, in the units that stand beside the numbers."""
         try:
             exponent: Any = list(self.uncertainty_exponent())
         except ValueError:
             exponent = None
+        units = {name: unit for name, (_, unit) in self.gauges.items()}
+        units |= {self.parameter: self.unit} if self.unit else {}
+        sizes = np.array([self.shown(name, 1.0) for name in self.axes])
         return {
             "parameter": self.parameter,
             "value": self.value,
             "plane": list(self.axes),
             "points": list(self.index.shape),
-            "fixed": self.fixed,
+            "fixed": {name: self.shown(name, value) for name, value in self.fixed.items()},
+            **({"units": units} if units else {}),
             "attractors": [
                 a.to_dict() | {"interval": list(self.interval(k))} for k, a in enumerate(self.attractors)
             ],
             "uncertainty_exponent": exponent,
-            **({"manifolds": [m.to_dict() for m in self.manifolds]} if self.manifolds else {}),
+            **({"manifolds": [m.to_dict(sizes) for m in self.manifolds]} if self.manifolds else {}),
         }
 
     def plot(self, **options: Any) -> Figure:
@@ -247,6 +261,8 @@ def basins(
         curves,
         notation_of(population),
         getattr(population, "leftward", ""),
+        getattr(population, "units", {}).get(population.parameter, ""),
+        population.gauges(names, float(at)) if isinstance(population, Gauged) else {},
     )
 
 

@@ -57,12 +57,12 @@ class Manifold:
     points: np.ndarray
     ended: str
 
-    def to_dict(self) -> dict[str, Any]:
-        """Ready for JSON."""
+    def to_dict(self, sizes: Any = 1.0) -> dict[str, Any]:
+        """Ready for JSON; `sizes` are of one of each coordinate in the unit in which it is shown."""
         return {
             "branch": self.branch,
             "word": self.word,
-            "points": self.points.tolist(),
+            "points": (self.points * sizes).tolist(),
             "ended": self.ended,
         }
 

@@ -54,9 +54,7 @@ def _shares(basins: Basins) -> Table:
 
 def _title(basins: Basins) -> str:
     across, up = basins.axes
-    return (
-        f"{basins.index.size} starts in the plane {across}, {up} at {basins.parameter} = {basins.value:.10g}"
-    )
+    return f"{basins.index.size} starts in the plane {across}, {up} at {basins.parameter} = {basins.value:.10g} {basins.unit}".rstrip()
 
 
 def _boundary(basins: Basins) -> list[str]:

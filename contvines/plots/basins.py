@@ -75,19 +75,24 @@ def plot_basins(
         figure, axes = new_axes(axes, figsize=figsize)
         low = own and axes.get_window_extent().height < LOW * figure.dpi
         axes.grid(False)
-        half_x, half_y = (0.5 * (v[1] - v[0]) for v in (basins.x, basins.y))
-        extent = (basins.x[0] - half_x, basins.x[-1] + half_x, basins.y[0] - half_y, basins.y[-1] + half_y)
+        x, y = (basins.shown(name, v) for name, v in zip(basins.axes, (basins.x, basins.y)))
+        half_x, half_y = (0.5 * (v[1] - v[0]) for v in (x, y))
+        extent = (x[0] - half_x, x[-1] + half_x, y[0] - half_y, y[-1] + half_y)
         axes.imshow(picture, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
         for curve in basins.manifolds:
-            axes.plot(*curve.points.T, color="black", linewidth=0.8)
+            places = (basins.shown(name, v) for name, v in zip(basins.axes, curve.points.T))
+            axes.plot(*places, color="black", linewidth=0.8)
         axes.set_xlim(extent[:2])
         axes.set_ylim(extent[2:])
         if basins.axes[0] == basins.leftward:
             axes.invert_xaxis()
-        across, up = (axis_label(name, notation=basins.notation) for name in basins.axes)
+        across, up = (
+            axis_label(name, unit=basins.gauges.get(name, (1.0, ""))[1], notation=basins.notation)
+            for name in basins.axes
+        )
         axes.set_xlabel(across)
-        axes.set_ylabel(up.removesuffix(" of the start") if low else up)
-        axes.set_title(f"{basins.parameter} = {basins.value:.8g}")
+        axes.set_ylabel(up.replace(" of the start", "") if low else up)
+        axes.set_title(f"{basins.parameter} = {basins.value:.8g} {basins.unit}".rstrip())
         if legend:
             entries = []
             for k, about in enumerate(basins.attractors):
