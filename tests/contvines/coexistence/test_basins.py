@@ -104,7 +104,7 @@ def test_a_machine_with_units_is_drawn_and_told_in_them():
     assert "[mm]" in axes.get_xlabel() and "[mm/s]" in axes.get_ylabel()
     fast = 14.0 * 2.0 * np.pi * 8.0
     assert max(axes.get_ylim()) / fast == pytest.approx(found.y[-1] + 0.5 * (found.y[1] - found.y[0]))
-    assert axes.get_title() == "frequency = 7.9 Hz" and "frequency = 7.9 Hz" in str(found)
+    assert axes.get_title(loc="left") == "frequency = 7.9 Hz" and "frequency = 7.9 Hz" in str(found)
     told = found.to_dict()
     assert told["fixed"]["v"] == pytest.approx(7.0) and told["units"]["v"] == "mm"
     assert told["units"]["frequency"] == "Hz"
