@@ -2,7 +2,11 @@
 #include "cavity.hpp"
 #include "coupled_cycles.hpp"
 #include "loci.hpp"
+#include "math.hpp"
+#include "record.hpp"
+#include "rounds.hpp"
 #include "scan.hpp"
+#include "simulation.hpp"
 
 #if defined(__x86_64__)
 #include <cpuid.h>

@@ -27,14 +27,12 @@ inline void sine_cosine(double x, double& sine, double& cosine) {
     double t = x * (2.0 / PI) + ROUNDING;
     whole q = bits_of(t);
     double n = t - ROUNDING;
-    double r = x - n * P1, w = n * P2, s = r - w;
-    double low = n * P2_REST - ((r - s) - w);
-    double y = s - low, tail = (s - y) - low;
-    double z = y * y, v = z * y, half = 0.5 * z, one = 1.0 - half;
-    double rs = S2 + z * (S3 + z * (S4 + z * (S5 + z * S6)));
-    double rc = z * (C1 + z * (C2 + z * (C3 + z * (C4 + z * (C5 + z * C6)))));
-    double a = y - ((z * (0.5 * tail - v * rs) - tail) - v * S1);
-    double b = one + (((1.0 - one) - half) + (z * rc - y * tail));
+    double r = x - n * P1, w = n * P2, y = r - w, tail = ((r - y) - w) - n * P2_REST;
+    double z = y * y, zz = z * z, half = 0.5 * z, one = 1.0 - half;
+    double ps = ((S1 + z * S2) + zz * (S3 + z * S4)) + (zz * zz) * (S5 + z * S6);  // in pairs, which do not wait for each other
+    double pc = ((C1 + z * C2) + zz * (C3 + z * C4)) + (zz * zz) * (C5 + z * C6);
+    double a = y + (z * y * ps + tail * one);
+    double b = one + (((1.0 - one) - half) + (zz * pc - y * tail));
     bool odd = q & 1;
     double first = odd ? b : a, second = odd ? a : b;
     sine = (q & 2) ? -first : first;
@@ -55,7 +53,7 @@ inline double cosine(double x) {
 inline double beyond_linear(double r) {
     constexpr double P1 = 1.66666666666666019037e-01, P2 = -2.77777777770155933842e-03, P3 = 6.61375632143793436117e-05,
                      P4 = -1.65339022054652515390e-06, P5 = 4.13813679705723846039e-08;
-    double z = r * r, c = r - z * (P1 + z * (P2 + z * (P3 + z * (P4 + z * P5))));
+    double z = r * r, zz = z * z, c = r - z * ((P1 + z * P2) + zz * ((P3 + z * P4) + zz * P5));
     return r * c / (2.0 - c);
 }
 

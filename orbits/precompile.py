@@ -1,7 +1,7 @@
 """Compiling beside other work: what a first run needs later is compiled by a second process meanwhile.
 
 numba compiles one function at a time in a process. On a machine with a second core another process compiles the
-kernel `inspect`, the simulator, the elimination of long words and the loop over many starts, while this one compiles Newton's
+kernel `inspect` and the elimination of long words, while this one compiles Newton's
 method, the continuation loop and what judges borders; both find each other's results in numba's cache on disk. The work is parted so
 that both end at about the same time.
 """
@@ -18,10 +18,8 @@ from numba import config, typeof
 
 from orbits.compiling.waiting import cached, processes
 from orbits.cycles import kernels
-from orbits.cycles.cycle import Cycle
-from orbits.cycles.sampling import positions
 from orbits.elimination import by_address
-from orbits.machines.catalogue import model_class, usual
+from orbits.machines.catalogue import usual
 from orbits.multipliers.factors import scratch_size
 from orbits.multipliers.periodic_qr import periodic_multipliers
 from orbits.multipliers.periodic_schur import multipliers_of, multipliers_of_two
@@ -91,12 +89,10 @@ def compile_as(digest: str, name: str, *more: str) -> None:
 
 def compile_now(name: str, *more: str) -> None:
     """Compile for the model called `name`, in the order in which a run asks for it."""
-    from orbits.attractors.batches import settle_all
     from orbits.problem import OrbitProblem
-    from orbits.simulation.driver import simulate
     from orbits.words import Word
 
-    model, given = usual(name)
+    model, _ = usual(name)
     problem = OrbitProblem(
         model, Word.parse("LR"), 1, model.parameter_names[0], np.zeros(len(model.parameter_names))
     )
@@ -111,21 +107,9 @@ def compile_now(name: str, *more: str) -> None:
     if _is_slow(n):
         factors = np.tile(np.diag(np.arange(1.0, n + 1.0)), (2, 1, 1))
         periodic_multipliers(factors, -factors, 1.0, np.zeros(n), np.zeros(n), np.zeros(scratch_size(2, n)))
-    motion = simulate(model, periods=0.5, **given)  # type: ignore[arg-type]
-    motion.sample()
-    positions(Cycle(model, problem.word, 1, np.zeros((2, n)), problem.params))
     if n == 2:
         by_address.function()
     compiled.flip.compile(tuple(map(typeof, (data, work, 0.0))))
-    settle_all(
-        name,
-        motion.start[None].copy(),
-        motion.params,
-        transients=(0.5,),
-        longest=1,
-        tolerance=1e-8,
-        workers=1,
-    )
 
 
 def _cores() -> int:
@@ -136,7 +120,5 @@ def _cores() -> int:
 
 
 def _missing(name: str) -> bool:
-    """Whether numba's cache lacks the kernel `inspect` or the stepper; False where that cannot be told."""
-    module = model_class(name).stepper()
-    compiled = kernels.assemble(usual(name)[0])
-    return not (cached(compiled.inspect) and cached(module.advance))
+    """Whether numba's cache lacks the kernel `inspect`; False where that cannot be told."""
+    return not cached(kernels.assemble(usual(name)[0]).inspect)

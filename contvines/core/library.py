@@ -91,6 +91,12 @@ def function(name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
     return declared
 
 
+_Memory = ctypes.c_char * 0
+
+
 def address(array: Any) -> int:
     """Address of an array's first element; the array has to be C-contiguous."""
-    return array.__array_interface__["data"][0]
+    try:
+        return ctypes.addressof(_Memory.from_buffer(array))  # three times as fast as what numpy offers
+    except (TypeError, BufferError):  # of an array that is not to be written
+        return array.__array_interface__["data"][0]

@@ -1,145 +1,227 @@
-"""Many motions at once, compiled: each is run until its state recurs from one forcing phase to the next."""
+"""Many motions at once: each is run until its state recurs from one forcing phase to the next."""
 
 from __future__ import annotations
 
+import math
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
-from typing import Any
+from threading import Event
 
 import numpy as np
 
-from orbits.compiling.decorators import specialise
-from orbits.compiling.waiting import wait_for
-from orbits.machines.stepping import EVENTS_FULL, FAILED, HOLD, MODE, RATE, REST, V, W
-from orbits.simulation.driver import machine
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from orbits.machines.native_stepper import NUMBERS, floats, written
+from orbits.machines.stepping import (
+    EVENTS_FULL,
+    FAILED,
+    HOLD,
+    LOW,
+    MODE,
+    PSI,
+    RATE,
+    REST,
+    TURNS,
+    Machine,
+    W,
+)
+from orbits.simulation.driver import buffers, machine
 
 SETTLED, AT_REST, LOST, WANDERING = 1, 2, 3, 0
 """What became of a motion: it recurs, is at rest for ever, left the range of numbers, or does none of these yet."""
 
 BLOCK = 512  # motions that one thread takes at a time
 BUFFER = 1024  # events kept between two looks
+WORK = (
+    2e5  # events and forcing periods of one call of the native core: between two calls an interrupt is seen
+)
+RESULTS = ("periods", "impacts", "holds", "gaps", "outcome")
 
 
-# filled in per machine by `specialise`: its stepper, the length of its states and of its event rows
-launch: Any = None
-advance: Any = None
-width: Any = None
-rows_width: Any = None
+class Interrupted(Exception):
+    """Another thread has been interrupted."""
 
 
-def _settle(states, params, transient, longest, tolerance, periods, impacts, holds, gaps, outcome):
-    """Run every motion that is still wandering until it recurs, rests or is lost."""
-    codes = np.empty(BUFFER, np.int8)
-    modes = np.empty(BUFFER, np.int8)
-    rows = np.empty((BUFFER, rows_width))
-    first = np.empty(width)
-    for i in range(states.shape[0]):
-        state = states[i]
-        if outcome[i] != WANDERING:
-            continue
-        if state[4] < 0.5:
-            launch(state, params)
-        start = np.floor(state[4] + state[0] / (2.0 * np.pi) + 0.5)
-        until = start + transient
-        status = EVENTS_FULL
-        while status == EVENTS_FULL:
-            _, status = advance(state, params, until, codes, modes, rows)
-        if status == REST:
-            outcome[i] = AT_REST
-            continue
-        if status == FAILED:
-            outcome[i] = LOST
-            continue
-        for c in range(width):  # numba compiles the sentence of a wrong shape with every whole assignment
-            first[c] = state[c]
-        hits, held, gaps[i] = 0, 0, np.inf
-        for k in range(1, longest + 1):
-            status = EVENTS_FULL
-            while status == EVENTS_FULL:
-                count, status = advance(state, params, until + k, codes, modes, rows)
-                for j in range(count):
-                    if codes[j] < 2:
-                        hits += 1
-                    elif codes[j] == HOLD:
-                        held += 1
-            if status == REST:
-                outcome[i] = AT_REST
-                break
-            if status == FAILED:
-                outcome[i] = LOST
-                break
-            gap = abs(state[W] - first[W])
-            gap = max(gap, abs(state[RATE] - first[RATE]))
-            gap = max(gap, abs(state[MODE] - first[MODE]))
-            for c in range(V, width):
-                gap = max(gap, abs(state[c] - first[c]))
-            if gap < gaps[i]:
-                gaps[i] = gap
-            if gap < tolerance:
-                periods[i], impacts[i], holds[i], outcome[i] = k, hits, held, SETTLED
-                break
+def settle(
+    engine: Machine,
+    states: np.ndarray,
+    params: np.ndarray,
+    transient: float,
+    longest: int,
+    tolerance: float,
+    found: dict[str, np.ndarray],
+    stopped: Event | None = None,
+) -> None:
+    """Run every motion that is still wandering until it recurs, rests or is lost.
 
-
-def _growth(state, params, left, right, count, distance, logs):
-    """Follow a motion and a neighbour between the walls, drawn back to it once a forcing period."""
-    codes = np.empty(BUFFER, np.int8)
-    modes = np.empty(BUFFER, np.int8)
-    rows = np.empty((BUFFER, rows_width))
-    other = state.copy()
-    other[W] -= distance * np.sign(other[W])
-    other[RATE] += distance * 0.5
-    launch(other, params)
-    now = np.floor(state[4] + state[0] / (2.0 * np.pi) + 0.5)
-    for k in range(count):
-        for one in (state, other):
-            status = EVENTS_FULL
-            while status == EVENTS_FULL:
-                _, status = advance(one, params, now + k + 1.0, codes, modes, rows)
-        apart = (other[W] - state[W]) ** 2 + (other[RATE] - state[RATE]) ** 2
-        for c in range(V, width):
-            apart += (other[c] - state[c]) ** 2
-        apart = np.sqrt(apart)
-        if apart == 0.0:
-            apart = 1e-3 * distance  # a stick has lost the difference: give it one again
-            logs[k] = np.log(1e-3)
-            other[RATE] = state[RATE] + distance
+    Parameters
+    ----------
+    engine : Machine
+    states : ndarray, shape (n, S)
+        Moved along.
+    params : ndarray, shape (P,)
+    transient : float
+        Forcing periods before a recurrence is looked for.
+    longest : int
+        Forcing periods of the longest recurrence.
+    tolerance : float
+        Largest difference of two states that counts as a return.
+    found : dict of ndarray
+        As in `settle_all`, filled.
+    stopped : Event, optional
+        Ends the work with `Interrupted` when it is set.
+    """
+    count, begin = len(states), 0
+    while begin < count:
+        if stopped is not None and stopped.is_set():
+            raise Interrupted
+        if native():
+            begin = _settle_native(
+                engine, begin, states, floats(params), transient, longest, tolerance, found
+            )
         else:
-            logs[k] = np.log(apart / distance)
-            ratio = distance / apart
-            other[W] = state[W] + ratio * (other[W] - state[W])
-            other[RATE] = state[RATE] + ratio * (other[RATE] - state[RATE])
-            for c in range(V, width):
-                other[c] = state[c] + ratio * (other[c] - state[c])
-        other[0], other[4], other[5] = state[0], state[4], state[5]
-        other[W] = min(max(other[W], right), left)
-        launch(other, params)
+            if found["outcome"][begin] == WANDERING:
+                _settle_one(engine, begin, states[begin], params, transient, longest, tolerance, found)
+            begin += 1
 
 
-@cache
-def _with_stepper(function: Any, name: str) -> Any:
-    engine = machine(name)
-    stamp = f"{name}_{engine.advance.py_func.__qualname__.rpartition('_')[2]}"  # the digest of the stepper's sources
-    return specialise(
-        function,
-        stamp,
-        options={"error_model": "numpy", "nogil": True},
-        advance=engine.advance,
-        launch=engine.launch,
-        width=engine.state,
-        rows_width=engine.row,
+def _settle_native(
+    engine: Machine,
+    begin: int,
+    states: np.ndarray,
+    params: np.ndarray,
+    transient: float,
+    longest: int,
+    tolerance: float,
+    found: dict[str, np.ndarray],
+) -> int:
+    """Some motions from number `begin` on; the number of the next one."""
+    work = function(
+        "simulation_settle", WHOLE, WHOLE, WHOLE, WHOLE, POINTER, POINTER, NUMBER, WHOLE, NUMBER, *[POINTER] * 5, NUMBER
+    )  # fmt: skip
+    results = [written(found[name]) for name in RESULTS]
+    number = NUMBERS[engine.name]
+    return work(
+        number,
+        begin,
+        len(states),
+        written(states),
+        address(params),
+        transient,
+        longest,
+        tolerance,
+        *results,
+        WORK,
     )
 
 
-def settle_kernel(name: str) -> Any:
-    """The compiled loop over motions of the machine called `name`."""
-    kernel = _with_stepper(_settle, name)
-    wait_for(name, kernel)
-    return kernel
+def _settle_one(
+    engine: Machine,
+    i: int,
+    state: np.ndarray,
+    params: np.ndarray,
+    transient: float,
+    longest: int,
+    tolerance: float,
+    found: dict[str, np.ndarray],
+) -> None:
+    """Motion number i in plain Python: the reference of `native/many_starts.hpp`."""
+    room = buffers(engine, BUFFER)
+    if state[TURNS] < 0.5:
+        engine.launch(state, params)
+    until = np.floor(state[TURNS] + state[PSI] / (2.0 * np.pi) + 0.5) + transient
+    status, _, _ = _follow(engine, state, params, until, room)
+    first = state.copy()
+    looked_at = [c for c in range(W, engine.state) if c not in (TURNS, LOW)]
+    hits, held, k = 0, 0, 0
+    if status not in (REST, FAILED):
+        found["gaps"][i] = np.inf
+    while status not in (REST, FAILED) and k < longest:
+        k += 1
+        status, more, piled = _follow(engine, state, params, until + k, room)
+        if status in (REST, FAILED):
+            break
+        hits, held = hits + more, held + piled
+        gap = np.abs(state[looked_at] - first[looked_at]).max()
+        found["gaps"][i] = min(found["gaps"][i], gap)
+        if gap < tolerance:
+            found["periods"][i], found["impacts"][i], found["holds"][i] = k, hits, held
+            found["outcome"][i] = SETTLED
+            break
+    if status in (REST, FAILED):
+        found["outcome"][i] = AT_REST if status == REST else LOST
 
 
-def lyapunov_kernel(name: str) -> Any:
-    """The compiled loop that follows a motion and a neighbour of the machine called `name`."""
-    return _with_stepper(_growth, name)
+def _follow(
+    engine: Machine,
+    state: np.ndarray,
+    params: np.ndarray,
+    until: float,
+    room: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> tuple[int, int, int]:
+    """Run on to a time; the status, impacts and impacts that have piled up."""
+    hits, held, status = 0, 0, EVENTS_FULL
+    while status == EVENTS_FULL:
+        count, status = engine.advance(state, params, until, *room)
+        hits += int(np.count_nonzero(room[0][:count] < 2))
+        held += int(np.count_nonzero(room[0][:count] == HOLD))
+    return status, hits, held
+
+
+def growth(
+    engine: Machine,
+    state: np.ndarray,
+    params: np.ndarray,
+    left: float,
+    right: float,
+    count: int,
+    distance: float,
+) -> np.ndarray:
+    """Follow a motion and a neighbour between the walls, drawn back to it once a forcing period; growth factors, shape (count,)."""
+    ratios, other = np.empty(count), state.copy()
+    if not native():
+        _growth(engine, state, other, params, left, right, distance, ratios)
+        return ratios
+    work = function(
+        "simulation_growth", NOTHING, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, WHOLE, WHOLE, NUMBER, POINTER
+    )  # fmt: skip
+    params = floats(params)
+    arrays = written(state), written(other), address(params)
+    for begin in range(0, count, BUFFER):
+        end = min(begin + BUFFER, count)
+        work(NUMBERS[engine.name], *arrays, left, right, begin, end, distance, address(ratios))
+    return ratios
+
+
+def _growth(
+    engine: Machine,
+    state: np.ndarray,
+    other: np.ndarray,
+    params: np.ndarray,
+    left: float,
+    right: float,
+    distance: float,
+    ratios: np.ndarray,
+) -> None:
+    """The same in plain Python: the reference of `native/many_starts.hpp`."""
+    room = buffers(engine, BUFFER)
+    drawn_back = [c for c in range(W, engine.state) if c not in (MODE, TURNS, LOW)]
+    other[W] -= distance * np.sign(other[W])
+    other[RATE] += distance * 0.5
+    engine.launch(other, params)
+    for k in range(len(ratios)):
+        until = np.floor(state[TURNS] + state[PSI] / (2.0 * np.pi) + 0.5) + 1.0
+        for one in (state, other):
+            _follow(engine, one, params, until, room)
+        apart = other[drawn_back] - state[drawn_back]
+        size = math.sqrt(float(apart @ apart))
+        if size == 0.0:  # a stick has lost the difference: give it one again
+            ratios[k] = 1e-3
+            other[RATE] = state[RATE] + distance
+        else:
+            ratios[k] = size / distance
+            other[drawn_back] = state[drawn_back] + distance / size * apart
+        other[[PSI, TURNS, LOW]] = state[[PSI, TURNS, LOW]]
+        other[W] = min(max(other[W], right), left)
+        engine.launch(other, params)
 
 
 def settle_all(
@@ -169,16 +251,14 @@ def settle_all(
         "gaps": np.full(n, np.inf),
         "outcome": np.zeros(n, np.int64),
     }
-    kernel = settle_kernel(name)
-    columns = [found[key] for key in ("periods", "impacts", "holds", "gaps", "outcome")]
+    engine, stopped = machine(name), Event()
 
     def run(block: np.ndarray, transient: float) -> None:
-        part = np.ascontiguousarray(states[block])
-        pieces = [np.ascontiguousarray(column[block]) for column in columns]
-        kernel(part, params, transient, longest, tolerance, *pieces)
+        part, pieces = states[block], {key: column[block] for key, column in found.items()}
+        settle(engine, part, params, transient, longest, tolerance, pieces, stopped)
         states[block] = part
-        for column, piece in zip(columns, pieces, strict=True):
-            column[block] = piece
+        for key, piece in pieces.items():
+            found[key][block] = piece
 
     for transient in transients:
         left = np.flatnonzero(found["outcome"] == WANDERING)
@@ -190,7 +270,11 @@ def settle_all(
                 run(block, float(transient))
         else:
             with ThreadPoolExecutor(workers) as pool:
-                list(pool.map(run, blocks, [float(transient)] * len(blocks)))
+                try:
+                    list(pool.map(run, blocks, [float(transient)] * len(blocks)))
+                except BaseException:
+                    stopped.set()  # else the pool waits until all threads are done
+                    raise
     return found
 
 
@@ -200,9 +284,9 @@ def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = 40
     A neighbour 1e-7 away is drawn back once a period (Benettin et al., Meccanica 15 (1980) 9). The error is that of
     the mean over 20 blocks, which are long against the memory of the motion.
     """
-    logs = np.empty(periods)
-    left, right = machine(name).walls(params)
-    lyapunov_kernel(name)(state.copy(), params, float(left), float(right), periods, 1e-7, logs)
+    engine = machine(name)
+    left, right = engine.walls(params)
+    logs = np.log(growth(engine, state.copy(), params, float(left), float(right), periods, 1e-7))
     blocks = logs[periods // 20 :]
     means = blocks[: 19 * (len(blocks) // 19)].reshape(19, -1).mean(axis=1)
     return float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))

@@ -1,150 +1,89 @@
-"""Compiled: the derivative of a round from those of its flights, and products of rounds, for `orbits.cycles.rounds`."""
+"""The derivative of a round from those of its flights, and products of rounds, for `orbits.cycles.rounds`."""
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from orbits.compiling.decorators import kernel, stored_kernel
+from contvines.core.library import NOTHING, POINTER, WHOLE, address, function, native
+
+LARGEST = 8  # unknowns of a node for which the native core has room
 
 
-@kernel
-def _multiplied(one, other, out):
-    """The product of two square matrices into a third one."""
-    n = one.shape[0]
-    for i in range(n):
-        for j in range(n):
-            entry = 0.0
-            for k in range(n):
-                entry += one[i, k] * other[k, j]
-            out[i, j] = entry
-
-
-@kernel
-def _copied(source, out):
-    for i in range(source.shape[0]):
-        for j in range(source.shape[1]):
-            out[i, j] = source[i, j]
-
-
-@kernel
-def _unit(out):
-    for i in range(out.shape[0]):
-        for j in range(out.shape[0]):
-            out[i, j] = 1.0 if i == j else 0.0
-
-
-@kernel
-def _eliminated(matrix, side):
-    """Gaussian elimination with partial pivoting in place; `side` (n, m) becomes the solution. Returns the determinant."""
-    n, m = matrix.shape[0], side.shape[1]
-    determinant = 1.0
-    for i in range(n):
-        pivot = i
-        for j in range(i + 1, n):
-            if abs(matrix[j, i]) > abs(matrix[pivot, i]):
-                pivot = j
-        if pivot != i:
-            determinant = -determinant
-            for k in range(n):
-                matrix[i, k], matrix[pivot, k] = matrix[pivot, k], matrix[i, k]
-            for k in range(m):
-                side[i, k], side[pivot, k] = side[pivot, k], side[i, k]
-        determinant *= matrix[i, i]
-        if matrix[i, i] == 0.0:
-            return 0.0
-        for j in range(n):
-            if j == i:
-                continue
-            share = matrix[j, i] / matrix[i, i]
-            for k in range(i, n):
-                matrix[j, k] -= share * matrix[i, k]
-            for k in range(m):
-                side[j, k] -= share * side[i, k]
-    for i in range(n):
-        for k in range(m):
-            side[i, k] /= matrix[i, i]
-    return determinant
-
-
-@stored_kernel
-def through_flights(A, D, whole, sizes, room):
-    """The product of -D_i^-1 A_i over all flights, and that of their absolute values; False where one cannot be solved for.
+def through_flights(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray] | None:
+    """The product of -D_i^-1 A_i over all flights, and that of their absolute values; None where one cannot be solved for.
 
     Parameters
     ----------
     A, D : ndarray, shape (l, n, n)
-        Derivatives of the equations of each flight by the node before it and after it; without rows in D those of A are the factors.
-    whole, sizes : ndarray, shape (n, n)
-        Filled.
-    room : ndarray, shape (3, n, n)
+        Derivatives of the equations of each flight by the node before it and after it; without D those of A are the factors.
     """
-    matrix, factor, product = room[0], room[1], room[2]
-    _unit(whole)
-    _unit(sizes)
-    for i in range(A.shape[0]):
-        _copied(A[i], factor)
-        if D.shape[0] > 0:
-            _copied(D[i], matrix)
-            if _eliminated(matrix, factor) == 0.0:
-                return False
-            for j in range(factor.shape[0]):
-                for k in range(factor.shape[0]):
-                    factor[j, k] = -factor[j, k]
-        _multiplied(factor, whole, product)
-        _copied(product, whole)
-        for j in range(factor.shape[0]):
-            for k in range(factor.shape[0]):
-                factor[j, k] = abs(factor[j, k])
-        _multiplied(factor, sizes, product)
-        _copied(product, sizes)
-    return True
+    flights, n = A.shape[:2]
+    if not native() or n > LARGEST:
+        return reference_through_flights(A, D)
+    A, D = np.ascontiguousarray(A, dtype=float), None if D is None else np.ascontiguousarray(D, dtype=float)
+    product, sizes = np.empty((n, n)), np.empty((n, n))
+    work = function("rounds_through_flights", WHOLE, WHOLE, WHOLE, POINTER, POINTER, POINTER, POINTER)
+    after = None if D is None else address(D)
+    return (product, sizes) if work(flights, n, address(A), after, address(product), address(sizes)) else None
 
 
-@stored_kernel
-def sides_of_cycles(maps, keys, sides, products, room):
+def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """For each cycle of some rounds the least and the largest distance of its points from the border, and the product of its rounds.
 
     Parameters
     ----------
     maps : ndarray, shape (2, n, n)
         Derivatives of an unchanged and of a changed round.
-    keys : ndarray of int, shape (c, 2)
+    keys : ndarray of int64, shape (c, 2)
         Numbers of rounds, and of changed ones, which come first.
+
+    Returns
+    -------
     sides : ndarray, shape (c, 2)
-        Filled: det P_i (see `orbits.cycles.rounds`), counted positive on the side on which its first round is real; NaN where one is no number.
+        det P_i (see `orbits.cycles.rounds`), counted positive on the side on which its first round is real; NaN where one is no number.
     products : ndarray, shape (c, n, n)
-        Filled, read from the first point.
-    room : ndarray, shape (3, n, n)
+        Read from the first point.
     """
-    P, M, product = room[0], room[1], room[2]
-    n = maps.shape[1]
-    for c in range(keys.shape[0]):
-        rounds, changed = keys[c, 0], keys[c, 1]
-        low, high = np.inf, -np.inf
+    count, n = len(keys), maps.shape[1]
+    if not native() or n > LARGEST:
+        return reference_sides_of_cycles(maps, keys)
+    maps, keys = np.ascontiguousarray(maps, dtype=float), np.ascontiguousarray(keys, dtype=np.int64)
+    sides, products = np.empty((count, 2)), np.empty((count, n, n))
+    work = function("rounds_sides_of_cycles", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER)
+    work(n, address(maps), count, address(keys), address(sides), address(products))
+    return sides, products
+
+
+@np.errstate(all="ignore")
+def reference_through_flights(
+    A: np.ndarray, D: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """`through_flights` in numpy, which the native core is compared with."""
+    whole = sizes = np.eye(A.shape[1])
+    for i, factor in enumerate(A):
+        if D is not None:
+            try:
+                factor = -np.linalg.solve(D[i], factor)
+            except np.linalg.LinAlgError:
+                return None
+        whole, sizes = factor @ whole, np.abs(factor) @ sizes
+    return whole, sizes
+
+
+@np.errstate(all="ignore")
+def reference_sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """`sides_of_cycles` in numpy, which the native core is compared with."""
+    unit = np.eye(maps.shape[1])
+    sides, products = np.empty((len(keys), 2)), np.empty((len(keys), *unit.shape))
+    for c, (rounds, changed) in enumerate(keys):
+        found = []
         for first in range(rounds):
-            begins = 1 if first < changed else 0
-            _unit(P)
-            _copied(maps[begins], M)
+            P, M = unit, maps[int(first < changed)]
             for later in range(1, rounds):
-                here = maps[1 if (first + later) % rounds < changed else 0]
-                _multiplied(here, P, product)
-                _copied(product, P)
-                for i in range(n):
-                    P[i, i] += 1.0
-                if first == 0:
-                    _multiplied(here, M, product)
-                    _copied(product, M)
+                here = maps[int((first + later) % rounds < changed)]
+                P, M = unit + here @ P, here @ M
             if first == 0:
-                _copied(M, products[c])
-            _unit(product)
-            side = (2.0 * begins - 1.0) * _eliminated(P, product)
-            if side < low or side != side:
-                low = side
-            if side > high or side != side:
-                high = side
-            if not math.isfinite(side):
-                low = high = np.nan
-                break
-        sides[c, 0], sides[c, 1] = low, high
+                products[c] = M
+            found.append((1.0 if first < changed else -1.0) * np.linalg.det(P))
+        sides[c] = (min(found), max(found)) if np.isfinite(found).all() else np.nan
+    return sides, products

@@ -83,10 +83,7 @@ class Rounds(NamedTuple):
 
 def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     """Sides and products of the cycles of up to `most` rounds; see `orbits.cycles.round_maps.sides_of_cycles`."""
-    table, n = _table(most), maps.shape[1]
-    sides, products = np.empty((len(table), 2)), np.empty((len(table), n, n))
-    sides_of_cycles(np.ascontiguousarray(maps), table, sides, products, np.empty((3, n, n)))
-    return sides, products
+    return sides_of_cycles(maps, _table(most))
 
 
 def _lasts(near: float, further: float) -> bool:
@@ -166,11 +163,10 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     D : ndarray, shape (l, n, n), optional
         If given, both are derivatives of the equations of each flight: by the node before it, and after it.
     """
-    n = A.shape[1]
-    whole, sizes = np.empty((2, n, n))
-    after = np.empty((0, n, n)) if D is None else D
-    if not through_flights(np.ascontiguousarray(A), after, whole, sizes, np.empty((3, n, n))):
+    found = through_flights(A, D)
+    if found is None:
         return None
+    whole, sizes = found
     error = ROUNDING * float(sizes.max())
     return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
 

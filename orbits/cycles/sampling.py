@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Any
-
 import numpy as np
 
-from orbits.compiling.decorators import specialise
-from orbits.compiling.waiting import wait_for
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
 from orbits.cycles.cycle import Cycle
 from orbits.machines.catalogue import stepper
-from orbits.machines.states import placed, state_of, states_of
-from orbits.machines.stepping import RATE
+from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
+from orbits.machines.states import state_of, states_of
+from orbits.machines.stepping import Machine
 
 PER_PERIOD = 200  # instants of a forcing period at which motions are compared
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
@@ -83,55 +80,61 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
 
 def positions(orbit: Cycle, instants: int = PER_PERIOD) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
-    count, length = instants * orbit.periods, len(orbit.nodes)
-    if not length:
+    count = instants * orbit.periods
+    if not len(orbit.nodes):
         return np.zeros(count)
-    engine = stepper(orbit.model.name)
-    left, right = engine.walls(orbit.params)
-    starts, states = np.zeros((length, engine.state)), np.empty((count, engine.state))
-    ahead, out = np.zeros(max(count, length)), np.empty((max(count, length), 4))
-    nodes = np.ascontiguousarray(orbit.nodes, dtype=float)
-    codes, modes, whole = orbit.word.codes, orbit.word.mode_codes, 2.0 * np.pi * orbit.periods
-    tracer = _tracer(orbit.model.name)
-    wait_for(orbit.model.name, tracer)
-    tracer(codes, modes, nodes, orbit.params, float(left), float(right), whole, starts, states, ahead, out)
-    return out[:count, 0]
+    length = 2.0 * np.pi * orbit.periods
+    return positions_of(
+        stepper(orbit.model.name), orbit.params, orbit.word.codes, orbit.word.mode_codes, orbit.nodes, length, count
+    )  # fmt: skip
 
 
-@cache
-def _tracer(name: str) -> Any:
-    """What samples a motion of the machine called `name` at equal phases, compiled; numbers as `states_of` and `sample` give them."""
-    sample = stepper(name).sample
-    options = {"error_model": "numpy"}
-    return specialise(_track, sample.py_func.__qualname__ + f"_{name}", options=options, between=sample)
+def positions_of(
+    engine: Machine,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    length: float,
+    count: int,
+) -> np.ndarray:
+    """w of a cycle of `length` radians at `count` equal phases, from phase zero on."""
+    if native():
+        left, right = engine.walls(params)
+        codes, modes, nodes, params, w = (
+            bytes_of(codes),
+            bytes_of(modes),
+            floats(nodes),
+            floats(params),
+            np.empty(count),
+        )
+        work = function(
+            "simulation_positions", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, NUMBER, WHOLE, POINTER
+        )  # fmt: skip
+        events = address(codes), address(modes), address(nodes)
+        work(
+            NUMBERS[engine.name], address(params), len(codes), *events, left, right, length, count, address(w)
+        )
+        return w
+    return reference_positions(engine, params, codes, modes, nodes, length, count)
 
 
-def between(states, params, ahead, out):
-    """Placeholder for a machine's `sample`."""
-    raise TypeError("put in by `_tracer`")
-
-
-def _track(codes, modes, nodes, params, left, right, whole, starts, states, ahead, out):
-    """Sample a cycle of `whole` radians at equal phases into `out`; the other arrays are room, `ahead` has zeros."""
-    count, length = states.shape[0], nodes.shape[0]
-    step = whole / count
-    if placed(codes, modes, nodes, left, right, starts):
-        between(starts, params, ahead[:length], out[:length])
-        for i in range(length):
-            starts[i, RATE] = out[i, 3] - nodes[i, 1] if codes[i] < 2 else 0.0
-    first, segment, before, begins = nodes[0, 0], 0, -1.0, 0.0
-    for i in range(count):
-        wanted = (i * step - first) % whole
-        if wanted < before:
-            segment, begins = 0, 0.0
-        before = wanted
-        while segment + 1 < length and max(begins, nodes[segment + 1, 0] - first) <= wanted:
-            segment += 1
-            begins = max(begins, nodes[segment, 0] - first)
-        for j in range(states.shape[1]):
-            states[i, j] = starts[segment, j]
-        ahead[i] = wanted - begins
-    between(states, params, ahead[:count], out[:count])
+def reference_positions(
+    engine: Machine,
+    params: np.ndarray,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    nodes: np.ndarray,
+    length: float,
+    count: int,
+) -> np.ndarray:
+    """`positions_of` in numpy, which the native core is compared with."""
+    begins = np.maximum.accumulate(nodes[:, 0] - nodes[0, 0])
+    wanted = (np.arange(count) * (length / count) - nodes[0, 0]) % length
+    segment = np.searchsorted(begins, wanted, side="right") - 1
+    states, out = states_of(engine, params, codes, modes, nodes), np.empty((count, 4))
+    engine.sample(states[segment], params, wanted - begins[segment], out)
+    return out[:, 0]
 
 
 def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:

@@ -11,17 +11,19 @@ wall end in contact that lasts: both then move as one until friction no longer h
 
 from __future__ import annotations
 
+import ctypes
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
-from numba import njit
 
+from contvines.core.library import NUMBER, POINTER, WHOLE, address, function, native
 from orbits.machines.base import ParameterError
 
 SLOWEST = 1e-7  # speed of an impact, in half-widths times omega_0, below which the absorber stays on a wall that it is pressed to
 MOST_EVENTS = 20_000  # in a hundredth of the natural period
+SLICE = 20_000  # rows of one call of the native core
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +109,7 @@ def recorded(
     out = np.zeros((int(steps.sum()) + 1, 4))
     hits, lost = np.zeros(100_000), np.zeros(3)
     rate, pull = eps * numbers["damping"], numbers["friction"] * numbers["gravity"]
-    count = _march(times, acceleration, steps, rate, eps, pull, r, out, hits, lost)
+    count = _march(times, acceleration, steps, (rate, eps, pull, r), out, hits, lost)
     if count < 0:
         raise ParameterError(
             f"the machine has more than {MOST_EVENTS} events in a hundredth of its natural period: the record's acceleration "
@@ -119,7 +121,6 @@ def recorded(
     )
 
 
-@njit(cache=True, error_model="numpy")
 def _drift(x, v, mass, rate, force, slope, t):
     """Displacement and speed after t of mass x'' + rate x' + x = force + slope t."""
     alpha = 0.5 * rate / mass
@@ -132,7 +133,6 @@ def _drift(x, v, mass, rate, force, slope, t):
     return y + offset + slope * t, yr + slope
 
 
-@njit(cache=True, error_model="numpy")
 def _at(state, mode, rate, eps, pull, a0, a1, t):
     """(x1, v1, x2, v2) after t in a mode: -1, +1 slide, 0 stick; the base's acceleration is a0 + a1 t."""
     x1, v1, x2, v2 = state
@@ -144,7 +144,6 @@ def _at(state, mode, rate, eps, pull, a0, a1, t):
     return y, yr, x2 + (v2 + (0.5 * push - a1 * t / 6.0) * t) * t, v2 + (push - 0.5 * a1 * t) * t
 
 
-@njit(cache=True, error_model="numpy")
 def _watch(state, mode, rate, eps, pull, a0, a1, t, what):
     """What vanishes at an event: 0, 1 the walls, 2 the relative speed, 3, 4 the reserve of friction while stuck."""
     x1, v1, x2, v2 = _at(state, mode, rate, eps, pull, a0, a1, t)
@@ -158,13 +157,65 @@ def _watch(state, mode, rate, eps, pull, a0, a1, t, what):
     return pull - need if what == 3 else pull + need
 
 
-@njit(cache=True, error_model="numpy")
-def _march(times, acceleration, steps, rate, eps, pull, r, out, hits, lost):
+class _State(ctypes.Structure):
+    """Where the march stands; `RecordState` of `native/record.hpp`."""
+
+    _fields_: ClassVar = [
+        *((name, NUMBER) for name in ("x1", "v1", "x2", "v2", "bare", "bare_rate")),
+        *((name, WHOLE) for name in ("mode", "wall", "row", "hits", "place", "step")),
+        ("lost", NUMBER * 3),
+    ]
+
+
+def _march(
+    times: np.ndarray,
+    acceleration: np.ndarray,
+    steps: np.ndarray,
+    machine: tuple[float, float, float, float],
+    out: np.ndarray,
+    hits: np.ndarray,
+    lost: np.ndarray,
+) -> int:
+    """`_march_plainly` by the native core where there is one, slice by slice: in between an interrupt is seen."""
+    if not native():
+        return _march_plainly(times, acceleration, steps, machine, out, hits, lost)
+    arrays = [np.ascontiguousarray(x, dtype=float) for x in (times, acceleration)]
+    work = function(
+        "record_march", WHOLE, POINTER, WHOLE, *[POINTER] * 3, *[NUMBER] * 4, POINTER, POINTER, WHOLE, WHOLE
+    )
+    state = _State(mode=0 if machine[2] > 0.0 else 1, row=1)
+    out[0, 0] = times[0]
+    more = 1
+    while more == 1:
+        more = work(
+            ctypes.addressof(state),
+            len(steps),
+            *map(address, (*arrays, steps)),
+            *machine,
+            address(out),
+            address(hits),
+            len(hits),
+            SLICE,
+        )
+    lost[:] = state.lost
+    return int(state.hits) if more == 0 else -1
+
+
+def _march_plainly(
+    times: np.ndarray,
+    acceleration: np.ndarray,
+    steps: np.ndarray,
+    machine: tuple[float, float, float, float],
+    out: np.ndarray,
+    hits: np.ndarray,
+    lost: np.ndarray,
+) -> int:
     """Through the record; fills rows (time, x1, w, bare x1), times of impacts and (impacts, friction, damping).
 
     While the mode is 0 (both move as one), `wall` is +1 or -1 where the absorber lies against the left or right wall, which only pushes.
-    The result is -1 where events have no end.
+    The result is the number of impacts, or -1 where events have no end.
     """
+    rate, eps, pull, r = machine
     state = (0.0, 0.0, 0.0, 0.0)
     bare, bare_rate = 0.0, 0.0
     mode = 0 if pull > 0.0 else 1

@@ -9,6 +9,7 @@ from typing import Any
 
 from contvines_ground.near_names import did_you_mean
 from orbits.machines.base import Model
+from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError
 from orbits.machines.stepping import Machine
 
@@ -48,18 +49,28 @@ def usual(name: str) -> tuple[Model, dict[str, float]]:
 
 @cache
 def stepper(name: str) -> Machine:
-    """The compiled stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
+    """The stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
+    reference = model_class(name).stepper()
+    return _machine(name, reference, stepper_functions(name, reference))
+
+
+def reference_stepper(name: str) -> Machine:
+    """The same in plain Python, which the native core is compared with."""
+    reference = model_class(name).stepper()
+    return _machine(name, reference, reference)
+
+
+def _machine(name: str, reference: Any, functions: Any) -> Machine:
     chosen = model_class(name)
-    kernels = chosen.stepper()
     return Machine(
         name,
-        kernels.STATE,
-        kernels.ROW,
-        kernels.launch,
-        kernels.advance,
-        kernels.sample,
-        kernels.works,
-        kernels.energies,
+        reference.STATE,
+        reference.ROW,
+        functions.launch,
+        functions.advance,
+        functions.sample,
+        functions.works,
+        functions.energies,
         chosen.walls,
         chosen.moving_cavity,
     )
@@ -69,4 +80,4 @@ def _by_name(machine: Machine) -> tuple[Any, tuple[str]]:
     return stepper, (machine.name,)
 
 
-copyreg.pickle(Machine, _by_name)  # compiled functions are looked up again
+copyreg.pickle(Machine, _by_name)  # its functions are looked up again

@@ -1,4 +1,4 @@
-"""Between nodes, which continuation solves for, and the states and event rows of the compiled steppers."""
+"""Between nodes, which continuation solves for, and the states and event rows of the steppers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from orbits.compiling.decorators import stored_kernel
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 
 TWO_PI = 2.0 * np.pi
@@ -32,29 +33,24 @@ def states_of(
 ) -> np.ndarray:
     """The states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
     left, right = engine.walls(params)
-    states, speeds = np.zeros((len(nodes), engine.state)), np.zeros((len(nodes), 4))
-    nodes = np.ascontiguousarray(nodes, dtype=float)
-    if placed(codes, modes, nodes, float(left), float(right), states):
-        engine.sample(states, params, speeds[:, 0].copy(), speeds)
-        states[:, RATE] = np.where(codes < 2, speeds[:, 3] - nodes[:, 1], 0.0)
+    states = np.zeros((len(nodes), engine.state))
+    if native():
+        codes, modes, nodes, params = bytes_of(codes), bytes_of(modes), floats(nodes), floats(params)
+        work = function(
+            "simulation_states", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, POINTER
+        )  # fmt: skip
+        events = address(codes), address(modes), address(nodes)
+        work(NUMBERS[engine.name], address(params), len(nodes), *events, left, right, address(states))
+        return states
+    turns = np.floor(nodes[:, 0] / TWO_PI)
+    psi = nodes[:, 0] - turns * TWO_PI
+    states[:, PSI] = np.where((psi >= 0.0) & (psi < TWO_PI), psi, 0.0)
+    states[:, TURNS], states[:, MODE] = turns, modes
+    states[:, V:] = nodes[:, 2:]
+    impact = codes < 2
+    states[:, W] = np.where(impact, np.where(codes == 0, left, right), nodes[:, 1])
+    states[:, RATE] = np.where(impact, _cavity_speed(engine, params, states) - nodes[:, 1], 0.0)
     return states
-
-
-@stored_kernel
-def placed(codes, modes, nodes, left, right, states):
-    """Fill states (n, S) with all that nodes tell without the cavity's speed; whether there is an impact."""
-    hits = False
-    for i in range(nodes.shape[0]):
-        turns = np.floor(nodes[i, 0] / TWO_PI)
-        psi = nodes[i, 0] - turns * TWO_PI
-        states[i, PSI] = psi if 0.0 <= psi < TWO_PI else 0.0
-        states[i, TURNS], states[i, MODE], states[i, W] = turns, modes[i], nodes[i, 1]
-        if states.shape[1] > V_RATE:
-            states[i, V], states[i, V_RATE] = nodes[i, 2], nodes[i, 3]
-        if codes[i] < 2:
-            hits = True
-            states[i, W] = left if codes[i] == 0 else right
-    return hits
 
 
 def nodes_of(

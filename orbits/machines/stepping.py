@@ -1,4 +1,4 @@
-"""What every compiled stepper offers: state, event rows, status, and the functions of a kernel module.
+"""What every stepper offers: state, event rows, status, and the functions of a machine.
 
 1. *State*, float64, one vector for all models::
 
@@ -53,6 +53,8 @@ HOLD = 5
 """Event code of the simulator alone: complete chatter has ended in persistent contact."""
 
 EVENTS_FULL, TIME_REACHED, REST, FAILED = 0, 1, 2, 3
+PAUSED = 4
+"""Status of the native core alone: a slice of a long run is over, nothing has happened."""
 STATUS: dict[int, str] = {
     EVENTS_FULL: "the requested number of events was reached",
     TIME_REACHED: "the requested time was reached",
@@ -65,7 +67,7 @@ PSI, W, RATE, MODE, TURNS, LOW, V, V_RATE = range(8)
 
 @dataclass(frozen=True)
 class Machine:
-    """The compiled functions of one model; see the module's docstring."""
+    """The functions of one model; see the module's docstring."""
 
     name: str
     state: int

@@ -3,7 +3,7 @@
 import numpy as np
 
 from orbits import Absorber
-from orbits.attractors.batches import settle_kernel
+from orbits.attractors.batches import settle
 from orbits.machines.stepping import PSI, RATE, TURNS, V, W
 from orbits.simulation.driver import machine, skip
 
@@ -23,16 +23,14 @@ class Starts:
         self.drawn = self.population.starts(count, 0, AMPLITUDE)
         self.states = np.zeros((count, self.engine.state))
         self.states[:, [PSI, W, RATE]] = self.drawn
-        self.kernel = settle_kernel(model.name)
 
     def batch(self):
         """All in one compiled loop; the states they reach, shape (n, S)."""
         states, n = self.states.copy(), len(self.states)
-        counts = [np.zeros(n, np.int64) for _ in range(3)]
+        found = {name: np.zeros(n, np.int64) for name in ("periods", "impacts", "holds", "outcome")}
+        found["gaps"] = np.full(n, np.inf)
         # no state is as near as 0: every start is followed to the end
-        self.kernel(
-            states, self.params, PERIODS - 1.0, 1, 0.0, *counts, np.full(n, np.inf), np.zeros(n, np.int64)
-        )
+        settle(self.engine, states, self.params, PERIODS - 1.0, 1, 0.0, found)
         return states
 
     def plain(self):

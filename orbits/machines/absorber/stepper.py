@@ -1,11 +1,12 @@
-"""Event-driven stepper of the reduced absorber: that of a cavity with this machine's numbers (compiled)."""
+"""Event-driven stepper of the reduced absorber in plain Python: that of a cavity with this machine's numbers."""
 
 from __future__ import annotations
 
-from orbits.machines.absorber import law as _numbers
 from orbits.machines.absorber.law import law
 from orbits.machines.cavity.stepper import ROW as ROW
 from orbits.machines.cavity.stepper import STATE as STATE
-from orbits.machines.cavity.stepper import stepper_with
+from orbits.machines.cavity.stepper import ShakenStepper
 
-launch, advance, sample, works, energies = stepper_with(law, _numbers)
+stepper = ShakenStepper(law)
+launch, advance, sample = stepper.launch, stepper.advance, stepper.sample
+works, energies = stepper.works, stepper.energies

@@ -1,4 +1,4 @@
-"""What a leg of sliding in a shaken cavity needs to know of its direction, its start, and the zero of its velocity (compiled).
+"""What a leg of sliding in a shaken cavity needs to know of its direction, its start, and the zero of its velocity.
 
 Notation: :mod:`orbits.machines.cavity.simulation`.
 """
@@ -8,13 +8,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from contvines_ground.parts import part
-from orbits.compiling.digits import remainders, wrap
+from orbits.machines.digits import remainders, wrap
 
 TWO_PI = 2.0 * math.pi
 
 
-@part(error_model="numpy")
 def fall(lo, hi, p0, q0, C, A, k0, m0):
     """The zero of p on (lo, hi], where p falls from p(lo) >= 0 to p(hi) <= 0: Newton kept inside the bracket."""
     x = hi
@@ -58,7 +56,6 @@ class Direction(NamedTuple):
     restitution: float
 
 
-@part(error_model="numpy", forceinline=True)
 def direction(pull, law, reach, restitution):
     """What a leg needs to know of its direction of sliding, for the acceleration `pull` against it."""
     C = law.amplitude
@@ -82,7 +79,6 @@ def direction(pull, law, reach, restitution):
     )
 
 
-@part(error_model="numpy", forceinline=True)
 def directions(law):
     """The two directions of sliding: to the right wall, to the left wall."""
     return (
@@ -91,7 +87,6 @@ def directions(law):
     )
 
 
-@part(error_model="numpy", forceinline=True)
 def angle_of(psi, s, alpha):
     """theta: Psi for s = -1, Psi - pi for s = +1, within a turn from where q becomes positive."""
     theta = psi if s < 0.0 else (psi - math.pi if psi >= math.pi else psi + math.pi)
@@ -100,7 +95,6 @@ def angle_of(psi, s, alpha):
     return theta
 
 
-@part(error_model="numpy", forceinline=True)
 def launch_with(law, state):
     """Reduce the phase and set the mode of a start (Psi, w, w', turns, low)."""
     psi, turns = wrap(state[0])

@@ -1,4 +1,4 @@
-"""Motion in a shaken cavity between events: samples, works and energies in closed form (compiled).
+"""Motion in a shaken cavity between events: samples, works and energies in closed form.
 
 Notation and source of the formulas: :mod:`orbits.machines.cavity.simulation`; signatures:
 :mod:`orbits.machines.stepping`, items 4 and 5.
@@ -8,11 +8,9 @@ from __future__ import annotations
 
 import math
 
-from contvines_ground.parts import part
-from orbits.compiling.digits import remainders
+from orbits.machines.digits import remainders
 
 
-@part(error_model="numpy", forceinline=True)
 def sample_with(law, states, ahead, out):
     """w, w', v, v' at given phases after given states; contract, item 4."""
     C = law.amplitude
@@ -38,7 +36,6 @@ def sample_with(law, states, ahead, out):
         out[i, 3] = C * omega * math.cos(psi + x)
 
 
-@part(error_model="numpy", forceinline=True)
 def works_with(law, states, ahead, out):
     """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5.
 
@@ -74,7 +71,6 @@ def works_with(law, states, ahead, out):
         out[i, 2] = friction / square * omega * omega * abs(way)
 
 
-@part(error_model="numpy", forceinline=True)
 def energies_with(law, states, out):
     """Energy of the relative motion per mass of the absorber, w'^2/2 + b w; contract, item 5."""
     for i in range(states.shape[0]):

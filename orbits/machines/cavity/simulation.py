@@ -1,4 +1,4 @@
-"""Event-driven simulation of a shaken cavity, w'' = -C Omega^2 sin Psi - b - s a_s (compiled).
+"""Event-driven simulation of a shaken cavity, w'' = -C Omega^2 sin Psi - b - s a_s.
 
 Everything is written in the phase x = Omega d that has passed since the start of a leg and in the direction of
 the motion s, with theta = Psi (s = -1) or Psi - pi (s = +1), p = s w'/Omega, A = (a_s + s b)/Omega^2:
@@ -21,9 +21,10 @@ from __future__ import annotations
 
 import math
 
-from contvines_ground.parts import part
-from orbits.compiling.digits import remainders, shift, wrap
+import numpy as np
+
 from orbits.machines.cavity.legs import angle_of, directions, fall
+from orbits.machines.digits import remainders, shift, wrap
 
 STATE = 6
 ROW = 5
@@ -34,7 +35,6 @@ _TWO_PI = 2.0 * math.pi
 _TINY = 1e-30
 
 
-@part(error_model="numpy", forceinline=True)
 def advance_with(law, state, until, codes, modes, rows):
     """Run from event to event; see :mod:`orbits.machines.stepping`, item 3.
 
@@ -132,8 +132,8 @@ def advance_with(law, state, until, codes, modes, rows):
         ):
             # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
             back, brake = away - behind.pull, away + A
-            factor = behind.restitution * math.sqrt(back / brake)
-            rest = p * (1.0 / brake + 1.0 / math.sqrt(back * brake))
+            factor = behind.restitution * np.sqrt(back / brake)
+            rest = p * (1.0 / brake + 1.0 / np.sqrt(back * brake))
             if factor < 1.0:
                 rest /= 1.0 - factor
             if (rest * rest * C < 1e-16 * back and factor < 1.0) or p < 1e-13 * size:

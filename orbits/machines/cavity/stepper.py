@@ -1,76 +1,74 @@
-"""Event-driven stepper of a cavity: `orbits.machines.cavity.simulation` with a machine's numbers (compiled).
+"""Event-driven stepper of a cavity in plain Python: `orbits.machines.cavity.simulation` with a machine's numbers.
 
-The signatures are those of :mod:`orbits.machines.stepping`.
+It is the reference of the native core (`native/shaken.hpp`). The signatures are those of :mod:`orbits.machines.stepping`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import ModuleType
-from typing import Any
 
-from orbits.compiling import digits as _digits
-from orbits.compiling.decorators import digest_of, specialise
-from orbits.machines.cavity import law as _law
-from orbits.machines.cavity import legs as _legs
-from orbits.machines.cavity import motion as _motion
-from orbits.machines.cavity import numbers as _numbers
-from orbits.machines.cavity import simulation as _simulation
+import numpy as np
+
+from orbits.machines.cavity.law import Law
 from orbits.machines.cavity.legs import launch_with
 from orbits.machines.cavity.motion import energies_with, sample_with, works_with
 from orbits.machines.cavity.numbers import law
 from orbits.machines.cavity.simulation import advance_with
+from orbits.machines.stepping import FAILED
 
 STATE = 6
 ROW = 5
 
 
-def _launch(state, params):
-    """Set the mode of a start; contract, item 2."""
-    launch_with(law(params), state)
-
-
-def _advance(state, params, until, codes, modes, rows):
-    """Run from event to event; contract, item 3."""
-    return advance_with(law(params), state, until, codes, modes, rows)
-
-
-def _sample(states, params, ahead, out):
-    """w, w', v, v' at given phases after given states; contract, item 4."""
-    sample_with(law(params), states, ahead, out)
-
-
-def _works(states, params, ahead, out):
-    """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5."""
-    works_with(law(params), states, ahead, out)
-
-
-def _energies(states, params, out):
-    """Energy that these works change; contract, item 5."""
-    energies_with(law(params), states, out)
-
-
-def stepper_with(law: Callable[..., Any], source: ModuleType) -> tuple[Any, Any, Any, Any, Any]:
-    """The five functions of the contract for a machine whose equations of motion are a cavity's.
+class ShakenStepper:
+    """The functions of the contract for a machine whose equations of motion are a cavity's.
 
     Parameters
     ----------
     law : callable
-        Compiled; the numbers of the equations of motion (`orbits.machines.cavity.law.Law`) from the parameters.
-    source : module
-        That defines it.
-
-    Returns
-    -------
-    launch, advance, sample, works, energies
+        The numbers of the equations of motion (`orbits.machines.cavity.law.Law`) from the parameters.
     """
-    digest = digest_of(source, _law, _legs, _motion, _simulation, _digits)
-    options = {"error_model": "numpy", "nogil": True}
-    launch, advance, sample, works, energies = (
-        specialise(function, digest, options=options, law=law)
-        for function in (_launch, _advance, _sample, _works, _energies)
-    )
-    return launch, advance, sample, works, energies
+
+    def __init__(self, law: Callable[[np.ndarray], Law]) -> None:
+        self.law = getattr(law, "py_func", law)
+
+    @np.errstate(all="ignore")
+    def launch(self, state: np.ndarray, params: np.ndarray) -> None:
+        """Set the mode of a start; contract, item 2."""
+        launch_with(self.law(params), state)
+
+    @np.errstate(all="ignore")
+    def advance(
+        self,
+        state: np.ndarray,
+        params: np.ndarray,
+        until: float,
+        codes: np.ndarray,
+        modes: np.ndarray,
+        rows: np.ndarray,
+    ) -> tuple[int, int]:
+        """Run from event to event; contract, item 3."""
+        try:
+            return advance_with(self.law(params), state, until, codes, modes, rows)
+        except (OverflowError, ValueError):  # of a number that is no longer finite
+            return 0, FAILED
+
+    @np.errstate(all="ignore")
+    def sample(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+        """w, w', v, v' at given phases after given states; contract, item 4."""
+        sample_with(self.law(params), states, ahead, out)
+
+    @np.errstate(all="ignore")
+    def works(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+        """Work of the shaking, of the damper (none) and of friction inside pieces of segments; contract, item 5."""
+        works_with(self.law(params), states, ahead, out)
+
+    @np.errstate(all="ignore")
+    def energies(self, states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
+        """Energy that these works change; contract, item 5."""
+        energies_with(self.law(params), states, out)
 
 
-launch, advance, sample, works, energies = stepper_with(law, _numbers)
+stepper = ShakenStepper(law)
+launch, advance, sample = stepper.launch, stepper.advance, stepper.sample
+works, energies = stepper.works, stepper.energies

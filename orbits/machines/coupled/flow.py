@@ -28,7 +28,6 @@ import math
 from contvines_ground.parts import part
 
 TINY = 1e-300
-NEAR = 0.03  # Taylor series to order 8 up to here: relative error below roundoff
 
 
 @part(error_model="numpy")
@@ -166,91 +165,3 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
         if tau >= end:
             return end, slope
         value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau)
-
-
-@part(error_model="numpy")
-def ahead(tau, h0, h1, z0, z1, omega, alpha, beta):
-    """q1(tau) - q1(0), q1'(tau) - q1'(0), and h'', z'', h''', z''' at tau, for q1 = harmonic h + damped oscillation z + const.
-
-    h0, h1 and z0, z1 are values and rates at the start.
-    """
-    square = omega * omega
-    kappa = alpha * alpha + beta * beta
-    if tau < NEAR:
-        h2, h3 = -square * h0, -square * h1
-        z2 = -2.0 * alpha * z1 - kappa * z0
-        z3 = -2.0 * alpha * z2 - kappa * z1
-        h4, h5 = -square * h2, -square * h3
-        z4 = -2.0 * alpha * z3 - kappa * z2
-        z5 = -2.0 * alpha * z4 - kappa * z3
-        h6, h7, h8 = -square * h4, -square * h5, square * square * h4
-        z6 = -2.0 * alpha * z5 - kappa * z4
-        z7 = -2.0 * alpha * z6 - kappa * z5
-        z8 = -2.0 * alpha * z7 - kappa * z6
-        d2, d3, d4, d5, d6, d7, d8 = h2 + z2, h3 + z3, h4 + z4, h5 + z5, h6 + z6, h7 + z7, h8 + z8
-        t = tau
-        rate = t * (
-            d2 + t / 2 * (d3 + t / 3 * (d4 + t / 4 * (d5 + t / 5 * (d6 + t / 6 * (d7 + t / 7 * d8)))))
-        )  # fmt: skip
-        way = t * (h1 + z1) + t * t / 2 * (
-            d2 + t / 3 * (d3 + t / 4 * (d4 + t / 5 * (d5 + t / 6 * (d6 + t / 7 * (d7 + t / 8 * d8)))))
-        )
-        H2 = h2 + t * (h3 + t / 2 * (h4 + t / 3 * (h5 + t / 4 * (h6 + t / 5 * (h7 + t / 6 * h8)))))
-        H3 = h3 + t * (h4 + t / 2 * (h5 + t / 3 * (h6 + t / 4 * (h7 + t / 5 * h8))))
-        Z2 = z2 + t * (z3 + t / 2 * (z4 + t / 3 * (z5 + t / 4 * (z6 + t / 5 * (z7 + t / 6 * z8)))))
-        Z3 = z3 + t * (z4 + t / 2 * (z5 + t / 3 * (z6 + t / 4 * (z7 + t / 5 * z8))))
-        return way, rate, H2, Z2, H3, Z3
-    angle = omega * tau
-    s, c = math.sin(angle), math.cos(angle)
-    H0 = h0 * c + h1 / omega * s
-    H1 = h1 * c - omega * h0 * s
-    decay = math.exp(-alpha * tau)
-    angle = beta * tau
-    cosine = decay * math.cos(angle)
-    sine = decay * math.sin(angle) / beta
-    Z0 = z0 * cosine + (z1 + alpha * z0) * sine
-    Z1 = z1 * cosine - (alpha * z1 + kappa * z0) * sine
-    Z2 = -2.0 * alpha * Z1 - kappa * Z0
-    return (
-        (H0 - h0) + (Z0 - z0),
-        (H1 - h1) + (Z1 - z1),
-        -square * H0,
-        Z2,
-        -square * H1,
-        -2.0 * alpha * Z2 - kappa * Z1,
-    )
-
-
-@part(error_model="numpy")
-def decompose(psi, w, rate, v, v_rate, eps, omega, X, Y, offset):
-    """q1's harmonic h and oscillation z with their rates, and q2', of a state."""
-    s, c = math.sin(psi), math.cos(psi)
-    q2_rate = (v_rate - rate) / (1.0 + eps)
-    q1 = (v + eps * w) / (1.0 + eps)
-    h0 = X * s + Y * c
-    h1 = omega * (X * c - Y * s)
-    return h0, h1, q1 - h0 - offset, v_rate - eps * q2_rate - h1, q2_rate
-
-
-@part(error_model="numpy")
-def leg(state, params):
-    """A state's closed form: h, h', z, z' at the start, alpha, beta, q2' and q2'' (q2' is of no use while stuck)."""
-    G, omega, lam, eps, mu, g, chi = (
-        params[0],
-        params[1],
-        params[2],
-        params[3],
-        params[5],
-        params[6],
-        params[7],
-    )
-    s = state[3]
-    drag = eps * lam
-    mass = 1.0 if s != 0.0 else 1.0 + eps
-    X, Y = harmonic(eps * G, chi, drag * omega, 1.0 - mass * omega * omega)
-    alpha, beta = rates(mass, drag)
-    sp = s * mu * g
-    h0, h1, z0, z1, q2_rate = decompose(
-        state[0], state[1], state[2] if s != 0.0 else 0.0, state[6], state[7], eps, omega, X, Y, -eps * sp
-    )
-    return h0, h1, z0, z1, alpha, beta, q2_rate, sp

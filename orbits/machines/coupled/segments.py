@@ -1,4 +1,4 @@
-"""Pieces of the coupled machine's segments: the motion, the work done and the energy (compiled).
+"""Pieces of the coupled machine's segments in plain Python: the motion, the work done and the energy.
 
 Signatures: :mod:`orbits.machines.stepping`, items 4 and 5.
 """
@@ -6,98 +6,124 @@ Signatures: :mod:`orbits.machines.stepping`, items 4 and 5.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
-from orbits.compiling.decorators import stored_with
-from orbits.machines.coupled import flow as _flow
-from orbits.machines.coupled.flow import ahead as _ahead
-from orbits.machines.coupled.flow import leg as _leg
+import numpy as np
+
+from orbits.machines.coupled.oscillation import Numbers, Oscillation, certain, oscillation
+from orbits.machines.stepping import LOW, MODE, PSI, RATE, V_RATE, V, W
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
-@stored_with(_flow, nogil=True)
-def sample(states, params, ahead, out):
+@np.errstate(all="ignore")
+def sample(states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
     """w, w', v, v' at given phases after given states; contract, item 4."""
-    omega, eps = params[1], params[3]
-    for i in range(states.shape[0]):
-        h0, h1, z0, z1, alpha, beta, q2_rate, sp = _leg(states[i], params)
-        tau = ahead[i] / omega
-        way, speed, _h2, _z2, _h3, _z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-        if states[i, 3] == 0.0:
-            out[i, 0] = states[i, 1]
-            out[i, 1] = 0.0
-            out[i, 2] = states[i, 6] + (1.0 + eps) * way
-            out[i, 3] = states[i, 7] + (1.0 + eps) * speed
+    numbers = Numbers(*params)
+    eps = numbers.mass_ratio
+    for state, phase, row in zip(states, ahead, out):
+        q, tau = oscillation(state, numbers), phase / numbers.frequency
+        at = q.at(tau)
+        if state[MODE] == 0.0:
+            row[:2] = state[W], 0.0
+            row[2:] = state[V] + numbers.whole * at.way, state[V_RATE] + numbers.whole * at.speed
         else:
-            travel = (q2_rate + 0.5 * sp * tau) * tau
-            out[i, 0] = states[i, 1] + (states[i, 5] + (way - travel))
-            out[i, 1] = states[i, 2] + speed - sp * tau
-            out[i, 2] = states[i, 6] + way + eps * travel
-            out[i, 3] = states[i, 7] + speed + eps * sp * tau
+            travel = q.travel(tau)
+            row[:2] = state[W] + (state[LOW] + (at.way - travel)), state[RATE] + at.speed - q.q2_pull * tau
+            row[2] = state[V] + at.way + eps * travel
+            row[3] = state[V_RATE] + at.speed + eps * q.q2_pull * tau
 
 
-# Gauss-Legendre rule with 16 nodes, positive half
-_GAUSS = (
-    (0.09501250983763744, 0.1894506104550685),
-    (0.2816035507792589, 0.18260341504492358),
-    (0.45801677765722737, 0.16915651939500254),
-    (0.6178762444026438, 0.14959598881657674),
-    (0.755404408355003, 0.12462897125553388),
-    (0.8656312023878318, 0.09515851168249279),
-    (0.9445750230732326, 0.062253523938647894),
-    (0.9894009349916499, 0.027152459411754096),
-)
+def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
+    """Instants and weights of an integral over a span of time, in which the forcing turns by `phase`.
+
+    The integrands are sums of exponentials; the 16-point Gauss rule on pieces of at most a quarter turn is exact to
+    roundoff for frequencies of order one.
+    """
+    pieces = int(max(phase, span) / 1.6) + 1
+    half = 0.5 * span / pieces
+    middles = (2.0 * np.arange(pieces) + 1.0) * half
+    return (middles[:, None] + half * NODES).ravel(), np.tile(half * WEIGHTS, pieces)
 
 
-@stored_with(_flow, nogil=True)
-def works(states, params, ahead, out):
+@np.errstate(all="ignore")
+def works(states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
     """Work of the excitation, of the damper and of friction inside pieces of segments; contract, item 5.
 
     Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way
-    slid. The integrands are sums of exponentials; the 16-point Gauss rule on pieces of at most a quarter turn is exact to
-    roundoff for frequencies of order one.
+    slid.
     """
-    G, omega, lam, eps, mu, g, chi = (
-        params[0],
-        params[1],
-        params[2],
-        params[3],
-        params[5],
-        params[6],
-        params[7],
-    )
-    drag = eps * lam
-    for i in range(states.shape[0]):
-        h0, h1, z0, z1, alpha, beta, q2_rate, sp = _leg(states[i], params)
-        span = ahead[i] / omega
-        start = h1 + z1
-        pieces = int(max(ahead[i], span) / 1.6) + 1
-        half = 0.5 * span / pieces
-        given = 0.0
-        lost = 0.0
-        for piece in range(pieces):
-            middle = (2 * piece + 1) * half
-            for node, weight in _GAUSS:
-                for side in (-1.0, 1.0):
-                    tau = middle + side * node * half
-                    _way, speed, _h2, _z2, _h3, _z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-                    q1_rate = start + speed
-                    Psi = states[i, 0] + omega * tau
-                    given += weight * q1_rate * (math.sin(Psi) + chi * drag * omega * math.cos(Psi))
-                    lost += weight * q1_rate * q1_rate
-        out[i, 0] = eps * G * half * given
-        out[i, 1] = drag * half * lost
-        out[i, 2] = 0.0
-        if states[i, 3] != 0.0:
-            way, _speed, _h2, _z2, _h3, _z3 = _ahead(span, h0, h1, z0, z1, omega, alpha, beta)
-            out[i, 2] = eps * mu * g * abs(way - (q2_rate + 0.5 * sp * span) * span)
+    numbers = Numbers(*params)
+    eps, omega = numbers.mass_ratio, numbers.frequency
+    base = numbers.excitation * numbers.drag * omega
+    for state, phase, row in zip(states, ahead, out):
+        q, span = oscillation(state, numbers), phase / omega
+        times, weights = quadrature(phase, span)
+        rate = q.h1 + q.z1 + np.array([q.at(tau).speed for tau in times])
+        Psi = state[PSI] + omega * times
+        row[0] = eps * numbers.forcing * (weights * rate) @ (np.sin(Psi) + base * np.cos(Psi))
+        row[1] = numbers.drag * weights @ rate**2
+        slid = q.at(span).way - q.travel(span) if state[MODE] != 0.0 else 0.0
+        row[2] = eps * numbers.pull * abs(slid)
 
 
-@stored_with(_flow, nogil=True)
-def energies(states, params, out):
+def energies(states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
     """Kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2; contract, item 5."""
     eps = params[3]
     whole = 1.0 + eps
-    for i in range(states.shape[0]):
-        q1 = (states[i, 6] + eps * states[i, 1]) / whole
-        q1_rate = (states[i, 7] + eps * states[i, 2]) / whole
-        q2_rate = (states[i, 7] - states[i, 2]) / whole
-        out[i] = 0.5 * (q1_rate * q1_rate + q1 * q1 + eps * q2_rate * q2_rate)
+    q1 = (states[:, V] + eps * states[:, W]) / whole
+    q1_rate = (states[:, V_RATE] + eps * states[:, RATE]) / whole
+    q2_rate = (states[:, V_RATE] - states[:, RATE]) / whole
+    out[:] = 0.5 * (q1_rate**2 + q1**2 + eps * q2_rate**2)
+
+
+@np.errstate(all="ignore")
+def shapes(states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
+    """Per segment: largest |q1|, and the integrals of v sin Psi, v cos Psi and q1 sin Psi over the phase, into `out` (m, 4)."""
+    numbers = Numbers(*params)
+    eps, omega = numbers.mass_ratio, numbers.frequency
+    for state, length, row in zip(states, lengths, out):
+        q, span = oscillation(state, numbers), length / omega
+        q1 = (state[V] + eps * state[W]) / numbers.whole
+        times, weights = quadrature(length, span)
+        way = np.array([q.at(tau).way for tau in times])
+        v = state[V] + (way + eps * q.travel(times) if state[MODE] != 0.0 else numbers.whole * way)
+        Psi = state[PSI] + omega * times
+        row[0] = max(abs(q1 + q.at(tau).way) for tau in (0.0, *_extrema(q, span), span))
+        row[1] = omega * (weights * v) @ np.sin(Psi)
+        row[2] = omega * (weights * v) @ np.cos(Psi)
+        row[3] = omega * (weights * (q1 + way)) @ np.sin(Psi)
+
+
+def _extrema(q: Oscillation, end: float) -> Iterator[float]:
+    """Times up to `end` at which q1 has an extremum.
+
+    With M >= abs(q1''') the rate y = abs(q1') stays positive for `certain(y, y', M)`: steps of that length approach a
+    simple zero like Newton's method, from one side, and never jump over one. A zero where the search starts is left behind:
+    the slope there tells for how long there is no other.
+    """
+    forced = q.omega * math.hypot(q.h0, q.h1 / q.omega)  # amplitudes of the rates
+    own = math.sqrt(q.kappa) * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
+    tiny = 4e-16 * (forced + 2.0 * own)
+
+    def look(tau: float) -> tuple[float, float]:
+        at = q.at(tau)
+        return q.h1 + q.z1 + at.speed, at.h2 + at.z2
+
+    tau = 0.0
+    while tau < end:
+        bound = q.omega**2 * forced + q.kappa * math.exp(-q.alpha * tau) * own
+        if bound <= 1e-300:
+            return
+        value, slope = look(tau)
+        if abs(value) <= tiny + 1e-15 * (1.0 + tau) * abs(slope):
+            tau += max(abs(slope) / bound, 1e-8)
+            value, slope = look(tau)
+        sign = 1.0 if value > 0.0 else -1.0
+        step = math.inf
+        while tau < end and sign * value > tiny and step > 2e-16 * (1.0 + tau):
+            step = certain(sign * value, sign * slope, bound)
+            tau += step
+            value, slope = look(tau)
+        if tau < end:
+            yield tau

@@ -1,6 +1,6 @@
-"""Event-driven stepper of the absorber on its oscillator (compiled).
+"""Event-driven stepper of the absorber on its oscillator in plain Python: the reference of the native core (`native/coupled.hpp`).
 
-Between events the motion is the closed form of :mod:`orbits.machines.coupled.flow`. In the direction s of the sliding let
+Between events the motion is the closed form of :mod:`orbits.machines.coupled.oscillation`. In the direction s of the sliding let
 y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at least
 
     h = 2 y / (sqrt(y'^2 + 2 M y) - y'),
@@ -20,324 +20,304 @@ The signatures are those of :mod:`orbits.machines.stepping`; parameters as in `o
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from orbits.compiling import digits as _digits
-from orbits.compiling.decorators import stored_with
-from orbits.compiling.digits import shift as _shift
-from orbits.compiling.digits import wrap as _wrap
-from orbits.machines.coupled import flow as _flow
-from orbits.machines.coupled.flow import ahead as _ahead
-from orbits.machines.coupled.flow import certain, harmonic, rates
-from orbits.machines.coupled.flow import decompose as _decompose
-from orbits.machines.coupled.launch import launch as launch
+import numpy as np
+
+from orbits.machines.coupled.oscillation import Numbers, Oscillation, Point, certain, oscillation, response
 from orbits.machines.coupled.segments import energies as energies
 from orbits.machines.coupled.segments import sample as sample
 from orbits.machines.coupled.segments import works as works
+from orbits.machines.digits import shift, wrap
+from orbits.machines.stepping import (
+    EVENTS_FULL,
+    FAILED,
+    HOLD,
+    LOW,
+    MODE,
+    PSI,
+    RATE,
+    REST,
+    TIME_REACHED,
+    TURNS,
+    V_RATE,
+    V,
+    W,
+)
 
 STATE = 8
 ROW = 7
 
-_L, _R, _T, _S, _U, _HOLD = 0, 1, 2, 3, 4, 5
-_EVENTS_FULL, _TIME_REACHED, _REST, _FAILED = 0, 1, 2, 3
+_L, _R, _T, _S, _U = range(5)
 _TWO_PI = 2.0 * math.pi
 _HORIZON = 2.5  # M is renewed after this time
 _FOREVER = 1e7  # forcing periods
+_HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
 
 
-@stored_with(_digits, _flow, nogil=True)
-def advance(state, params, until, codes, modes, rows):
-    """Run from event to event; see :mod:`orbits.machines.stepping`, item 3.
+@np.errstate(all="ignore")
+def launch(state: np.ndarray, params: np.ndarray) -> None:
+    """Reduce the phase and set the mode of a start; contract, item 2."""
+    numbers = Numbers(*params)
+    eps, drag, a = numbers.mass_ratio, numbers.drag, numbers.whole * numbers.pull
+    state[PSI], more = wrap(state[PSI])
+    state[TURNS] += more
+    w, rate, v_rate = state[W], state[RATE], state[V_RATE]
+    q1, q1_rate = (state[V] + eps * w) / numbers.whole, (v_rate + eps * rate) / numbers.whole
+    sine, cosine = math.sin(state[PSI]), math.cos(state[PSI])
+    base = numbers.excitation * drag * numbers.frequency
+    push = -q1 - drag * q1_rate + eps * numbers.forcing * (sine + base * cosine)  # v''
+    if push == 0.0 and a == 0.0:  # the third derivative decides
+        force = eps * numbers.forcing * numbers.frequency * (cosine - base * sine)
+        push = force - v_rate / numbers.whole - drag * push
+    if rate != 0.0:
+        state[MODE] = 1.0 if rate > 0.0 else -1.0
+    elif (abs(push) <= a and a > 0.0) or (abs(w) == 1.0 and push * w >= 0.0):
+        state[MODE] = 0.0
+    else:
+        state[MODE] = 1.0 if push >= 0.0 else -1.0
 
-    In one piece: the state of a leg is some thirty local numbers, which every part of the loop reads and changes.
-    """
-    G, omega, lam, eps, r, mu, g, chi = (
-        params[0], params[1], params[2], params[3], params[4], params[5], params[6], params[7]
-    )  # fmt: skip
-    whole = 1.0 + eps
-    pull = mu * g
-    a = whole * pull
-    drag = eps * lam
-    square = omega * omega
-    psi, w, rate, s, turns, low, v, v_rate = (
-        state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7]
-    )  # fmt: skip
-    slide_X, slide_Y = harmonic(eps * G, chi, drag * omega, 1.0 - square)
-    stuck_X, stuck_Y = harmonic(eps * G, chi, drag * omega, 1.0 - whole * square)
-    slide_alpha, slide_beta = rates(1.0, drag)
-    stuck_alpha, stuck_beta = rates(whole, drag)
-    force = eps * abs(G) * math.sqrt(1.0 + chi * chi * drag * drag * square)
-    check = psi + w + rate + v + v_rate + slide_X + slide_Y + stuck_X + stuck_Y + slide_beta + stuck_beta + a
-    if not math.isfinite(check):
-        return 0, _FAILED
-    room = codes.shape[0]
-    limit = min(until, turns + _FOREVER)
-    fresh = False  # the leg starts with a slip: w' = w'' = 0
-    idle = 0  # legs in a row without progress
-    count = 0
-    status = _EVENTS_FULL
-    while True:
-        if count == room:
-            break
-        left = ((limit - turns) * _TWO_PI - psi) / omega
-        if not left > 0.0:
-            status = _TIME_REACHED
-            break
-        # ---- at rest on the floor, or against a wall -------------------------------------------------------
-        if s == 0.0:
-            h0, h1, z0, z1, q2_rate = _decompose(psi, w, 0.0, v, v_rate, eps, omega, stuck_X, stuck_Y, 0.0)
-            alpha, beta = stuck_alpha, stuck_beta
-            kappa = alpha * alpha + beta * beta
-            z2 = -2.0 * alpha * z1 - kappa * z0
-            H2, H3 = -square * h0, -square * h1
-            Z2, Z3 = z2, -2.0 * alpha * z2 - kappa * z1
-            driven = whole * square * math.hypot(h0, h1 / omega)  # bounds of |v''|
-            free = whole * kappa * math.hypot(z0, (z1 + alpha * z0) / beta)
-            tiny = 4e-16 * (driven + free)
-            tau = 0.0
-            way = 0.0
-            speed = 0.0
-            slip = 0.0
-            leap = True  # a zero right at the start is judged by its slope, and left behind
-            renew = -1.0
-            M = 0.0
-            while tau < left:
-                if tau >= renew:
-                    if driven + free * math.exp(-alpha * tau) < a or driven + free == 0.0:
-                        tau = left
-                        status = _REST
-                        break
-                    u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
-                    u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
-                    M = whole * (math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON)
-                    renew = tau + _HORIZON
-                value = whole * (H2 + Z2)
-                slope = whole * (H3 + Z3)
-                step = renew - tau
-                for m in (1.0, -1.0):
-                    if m * w >= 1.0:
-                        continue
-                    y = a - m * value
-                    y_rate = -m * slope
-                    if y <= tiny:
-                        if not leap or y_rate < 0.0 or y < -tiny:
-                            slip = m
-                            break
-                        ahead = y_rate / M if M > 0.0 else step
-                        step = min(step, max(ahead, 1e-9))
-                    else:
-                        ahead = certain(y, y_rate, M) if M > 0.0 or y_rate < 0.0 else step
-                        step = min(step, ahead)
-                        if ahead < 2.3e-16 * (1.0 + tau):
-                            slip = m
-                            break
-                leap = False
-                if slip != 0.0:
+
+@np.errstate(all="ignore")
+def advance(
+    state: np.ndarray,
+    params: np.ndarray,
+    until: float,
+    codes: np.ndarray,
+    modes: np.ndarray,
+    rows: np.ndarray,
+) -> tuple[int, int]:
+    """Run from event to event; contract, item 3."""
+    try:
+        return _Run(state, Numbers(*params)).advance(until, codes, modes, rows)
+    except (OverflowError, ValueError):  # of a number that is no longer finite
+        return 0, FAILED
+
+
+class _Sliding(NamedTuple):
+    """The end of a leg of sliding: how, after which time, y = s w' and y' there, the way s (w - w_0)."""
+
+    outcome: int
+    tau: float
+    at: Point
+    y: float
+    y_rate: float
+    gain: float
+
+
+class _Run:
+    """A motion on its way."""
+
+    def __init__(self, state: np.ndarray, numbers: Numbers) -> None:
+        self.state, self.numbers = state, numbers
+        self.a = numbers.whole * numbers.pull
+        base = numbers.excitation * numbers.drag * numbers.frequency
+        self.force = numbers.mass_ratio * abs(numbers.forcing) * np.sqrt(1.0 + base * base)
+
+    def advance(
+        self, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
+    ) -> tuple[int, int]:
+        state, numbers, a = self.state, self.numbers, self.a
+        known = [*response(1.0, numbers), *response(numbers.whole, numbers)]
+        if not np.isfinite([*known, *state, a]).all() or math.isnan(oscillation(state, numbers).beta):
+            return 0, FAILED
+        limit = min(until, state[TURNS] + _FOREVER)
+        fresh = False  # the leg starts with a slip: w' = w'' = 0
+        idle = 0  # legs in a row without progress
+        count = 0
+
+        def add(code: int, before: float, after: float) -> None:
+            nonlocal count
+            codes[count], modes[count] = code, int(state[MODE])
+            rows[count] = state[PSI], state[TURNS], state[W], before, after, state[V], state[V_RATE]
+            count += 1
+
+        status = EVENTS_FULL
+        while count < len(codes):
+            left = ((limit - state[TURNS]) * _TWO_PI - state[PSI]) / numbers.frequency
+            if not left > 0.0:
+                status = TIME_REACHED
+                break
+            if state[MODE] == 0.0:
+                outcome, way = self._wait(left)
+                if outcome != _SLIPS:
+                    status = REST if outcome == _NEVER else TIME_REACHED
                     break
-                tau = min(tau + step if step < renew - tau else renew, left)
-                way, speed, H2, Z2, H3, Z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-            if tau > 0.0:
-                if status == _REST:
-                    way, speed, H2, Z2, H3, Z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-                v += whole * way
-                v_rate += whole * speed
-                psi, more = _wrap(psi + omega * tau)
-                turns += more
-            rate = 0.0
-            if status == _REST:
-                break
-            if slip == 0.0:
-                status = _TIME_REACHED
-                break
-            s = slip
-            fresh = True
-            if a > 0.0 or abs(w) == 1.0:
-                codes[count] = _U
-                modes[count] = int(s)
-                rows[count, 0] = psi
-                rows[count, 1] = turns
-                rows[count, 2] = w
-                rows[count, 3] = 0.0
-                rows[count, 4] = 0.0
-                rows[count, 5] = v
-                rows[count, 6] = v_rate
-                count += 1
-            continue
-        # ---- one leg of sliding ----------------------------------------------------------------------------
-        sp = s * pull
-        alpha, beta = slide_alpha, slide_beta
-        kappa = alpha * alpha + beta * beta
-        h0, h1, z0, z1, q2_rate = _decompose(psi, w, rate, v, v_rate, eps, omega, slide_X, slide_Y, -eps * sp)
-        H2, H3 = -square * h0, -square * h1
-        Z2 = -2.0 * alpha * z1 - kappa * z0
-        Z3 = -2.0 * alpha * Z2 - kappa * z1
-        Y0 = s * rate  # y and y'
-        Y1 = 0.0 if fresh else s * (H2 + Z2) - pull
-        if Y0 < 1e-6 and s * w == -1.0 and low == 0.0 and Y1 + 2.0 * a < 0.0:
-            # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
-            shove = -Y1 - a  # |v''|
-            factor = r * math.sqrt((shove - a) / (shove + a))
-            rest = Y0 * (1.0 / (shove + a) + 1.0 / math.sqrt((shove - a) * (shove + a)))
-            if factor < 1.0:
-                rest /= 1.0 - factor
-            if (factor < 1.0 and rest < 1e-7 and rest * abs(H3 + Z3) < 0.01 * (shove - a)) or Y0 < 1e-13:
-                rest = min(rest, 1e-7)
-                way, speed, H2, Z2, H3, Z3 = _ahead(rest, h0, h1, z0, z1, omega, alpha, beta)
-                v += rest * v_rate
-                v_rate -= rest * s * shove
-                psi, more = _wrap(psi + omega * rest)
-                turns += more
-                codes[count] = _HOLD
-                modes[count] = 0
-                rows[count, 0] = psi
-                rows[count, 1] = turns
-                rows[count, 2] = w
-                rows[count, 3] = 0.0
-                rows[count, 4] = 0.0
-                rows[count, 5] = v
-                rows[count, 6] = v_rate
-                count += 1
-                rate = 0.0
-                s = 0.0
+                state[MODE], fresh = way, True
+                if a > 0.0 or abs(state[W]) == 1.0:
+                    add(_U, 0.0, 0.0)
                 continue
-        target = (1.0 - s * w) - s * low
-        tau = 0.0
-        way = 0.0  # q1's
-        speed = 0.0
-        gain = 0.0  # s (w(tau) - w(0))
-        y, y_rate = Y0, Y1
-        kind = 0  # 0 time is over, 1 hit, 2 turn
-        renew = -1.0
-        M = 0.0
-        tiny = 1e-300
-        if target <= 0.0:
-            kind = 1
-        while kind == 0:
+            q = oscillation(state, numbers)
+            begin = q.start()
+            s = float(state[MODE])
+            Y0 = s * state[RATE]
+            Y1 = 0.0 if fresh else s * (begin.h2 + begin.z2) - numbers.pull
+            if Y0 < 1e-6 and s * state[W] == -1.0 and state[LOW] == 0.0 and Y1 + 2.0 * a < 0.0:
+                # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
+                shove = -Y1 - a  # |v''|
+                factor = numbers.restitution * np.sqrt((shove - a) / (shove + a))
+                rest = Y0 * (1.0 / (shove + a) + 1.0 / np.sqrt((shove - a) * (shove + a)))
+                if factor < 1.0:
+                    rest /= 1.0 - factor
+                small = factor < 1.0 and rest < 1e-7 and rest * abs(begin.h3 + begin.z3) < 0.01 * (shove - a)
+                if small or Y0 < 1e-13:
+                    rest = min(rest, 1e-7)
+                    state[V] += rest * state[V_RATE]
+                    state[V_RATE] -= rest * s * shove
+                    self._turn(rest)
+                    state[RATE] = state[MODE] = 0.0
+                    add(HOLD, 0.0, 0.0)
+                    continue
+            target = (1.0 - s * state[W]) - s * state[LOW]
+            end = self._slide(q, s, Y0, Y1, target, left)
+            fresh = False
+            tau = left if end.outcome == _NEVER else end.tau
+            idle = idle + 1 if tau < 1e-11 else 0
+            if idle > 10000:
+                status = FAILED
+                break
+            state[V] += end.at.way + numbers.mass_ratio * q.travel(tau)
+            state[V_RATE] += end.at.speed + numbers.mass_ratio * q.q2_pull * tau
+            self._turn(tau)
+            if end.outcome == _HIT:
+                y = end.y if end.y > 1e-30 else 1e-30
+                state[W], state[LOW] = s, 0.0
+                state[RATE], state[MODE] = -s * numbers.restitution * y, -s
+                add(_L if s > 0.0 else _R, s * y, state[RATE])
+                continue
+            w, low = shift(state[W], state[LOW], s * end.gain)
+            if abs(w) > 1.0 or (abs(w) == 1.0 and w * low > 0.0):
+                w, low = math.copysign(1.0, w), 0.0
+            state[W], state[LOW] = w, low
+            if end.outcome != _HALT:
+                state[RATE] = s * end.y if end.y > 0.0 else 0.0
+                status = REST if end.outcome == _NEVER else TIME_REACHED
+                break
+            state[RATE] = 0.0
+            if a == 0.0:  # nothing happens where w' passes zero
+                state[MODE] = -s
+                continue
+            turns_back = end.y_rate < -2.0 * a
+            state[MODE] = -s if turns_back else 0.0
+            add(_T if turns_back else _S, 0.0, 0.0)
+        return count, status if np.isfinite(state).all() else FAILED
+
+    def _turn(self, tau: float) -> None:
+        """Move the forcing phase on."""
+        self.state[PSI], more = wrap(self.state[PSI] + self.numbers.frequency * tau)
+        self.state[TURNS] += more
+
+    def _wait(self, left: float) -> tuple[int, float]:
+        """Move on, sticking, until friction no longer holds, or for the time `left`; how this ends, and the direction of the slip."""
+        state, whole = self.state, self.numbers.whole
+        q = oscillation(state, self.numbers)
+        outcome, tau, at, way = self._until_slip(q, left)
+        if outcome == _NEVER:
+            tau, at = left, q.at(left)
+        if tau > 0.0:
+            state[V] += whole * at.way
+            state[V_RATE] += whole * at.speed
+            self._turn(tau)
+        state[RATE] = 0.0
+        return outcome, way
+
+    def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, Point, float]:
+        a, w, whole, omega = self.a, self.state[W], self.numbers.whole, q.omega
+        driven = whole * omega * omega * math.hypot(q.h0, q.h1 / omega)  # bounds of |v''|
+        free = whole * q.kappa * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
+        tiny = 4e-16 * (driven + free)
+        at, tau, renew, bound = q.start(), 0.0, -1.0, 0.0
+        first = True  # a zero right at the start is judged by its slope, and left behind
+        while tau < left:
             if tau >= renew:
-                u3 = H3 + Z3
-                u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
-                M = math.sqrt(u3 * u3 + u4 * u4 / kappa) + square * omega * force * _HORIZON / math.sqrt(
-                    kappa
-                )
+                if driven + free * math.exp(-q.alpha * tau) < a or driven + free == 0.0:
+                    return _NEVER, tau, at, 0.0
+                own = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa)
+                bound = whole * (own + omega**4 * self.force * _HORIZON)
                 renew = tau + _HORIZON
-            if y <= tiny:
+            value, slope = whole * (at.h2 + at.z2), whole * (at.h3 + at.z3)
+            step = renew - tau
+            for way in (1.0, -1.0):
+                if way * w >= 1.0:
+                    continue
+                y, y_rate = a - way * value, -way * slope
+                if y <= tiny:
+                    if not first or y_rate < 0.0 or y < -tiny:
+                        return _SLIPS, tau, at, way
+                    step = min(step, max(y_rate / bound if bound > 0.0 else step, 1e-9))
+                else:
+                    ahead = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else step
+                    step = min(step, ahead)
+                    if ahead < 2.3e-16 * (1.0 + tau):
+                        return _SLIPS, tau, at, way
+            first = False
+            tau = min(tau + step if step < renew - tau else renew, left)
+            at = q.at(tau)
+        return _TIME_IS_OVER, tau, at, 0.0
+
+    def _slide(self, q: Oscillation, s: float, Y0: float, Y1: float, target: float, left: float) -> _Sliding:
+        """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
+        pull = self.numbers.pull
+        third = q.omega**3 * self.force * _HORIZON / np.sqrt(q.kappa)
+
+        def look(tau: float) -> tuple[Point, float, float, float]:
+            at = q.at(tau)
+            y, y_rate = Y0 + s * at.speed - pull * tau, s * (at.h2 + at.z2) - pull
+            return at, y, y_rate, s * (at.way - q.travel(tau))
+
+        at, tau, y, y_rate, gain = q.start(), 0.0, Y0, Y1, 0.0
+        if target <= 0.0:
+            return _Sliding(_HIT, tau, at, y, y_rate, gain)
+        renew, bound = -1.0, 0.0
+        while True:
+            if tau >= renew:
+                bound = np.sqrt((at.h3 + at.z3) ** 2 + q.fourth(at) ** 2 / q.kappa) + third
+                renew = tau + _HORIZON
+            if y <= 1e-300:
                 if tau > 0.0:
-                    kind = 2
-                    break
+                    return _Sliding(_HALT, tau, at, y, y_rate, gain)
                 # from rest: y' or, after a slip, y'' opens the flight
-                jerk = s * (H3 + Z3)
-                u4 = -square * H2 - 2.0 * alpha * Z3 - kappa * Z2
-                u5 = -square * H3 + 2.0 * alpha * (2.0 * alpha * Z3 + kappa * Z2) - kappa * Z3
-                M4 = math.sqrt(u4 * u4 + u5 * u5 / kappa) + square * square * force * _HORIZON / math.sqrt(
-                    kappa
+                jerk = s * (at.h3 + at.z3)
+                further = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa) + q.omega * third
+                if bound == 0.0 and further == 0.0:  # neither friction nor forcing: nothing moves
+                    return _Sliding(_NEVER, left, at, y, y_rate, gain)
+                steps = (
+                    y_rate / bound if bound > 0.0 else 0.0,
+                    1.5 * jerk / further if further > 0.0 else 0.0,
                 )
-                step = max(y_rate / M if M > 0.0 else 0.0, 1.5 * jerk / M4 if M4 > 0.0 else 0.0)
-                if M == 0.0 and M4 == 0.0:  # neither friction nor forcing: nothing moves
-                    tau = left
-                    status = _REST
-                    break
-                if not step > 1e-13:
-                    step = 1e-13  # no acceleration in this direction to speak of
+                step = max(*steps, 1e-13)  # at least where there is hardly any acceleration in this direction
             else:
-                step = certain(y, y_rate, M) if M > 0.0 or y_rate < 0.0 else math.inf
+                step = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else math.inf
                 if step < 2.3e-16 * tau:
-                    kind = 2
-                    break
-                if step > 2.0 * target / y + 0.5:  # far beyond the wall: no need to know that much
-                    step = 2.0 * target / y + 0.5
+                    return _Sliding(_HALT, tau, at, y, y_rate, gain)
+                step = min(step, 2.0 * target / y + 0.5)  # no further beyond the wall
             before = tau
             tau = min(tau + step if step < renew - tau else renew, left)
-            way, speed, H2, Z2, H3, Z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-            gain = s * (way - (q2_rate + 0.5 * sp * tau) * tau)
-            y = Y0 + s * speed - pull * tau
-            y_rate = s * (H2 + Z2) - pull
+            at, y, y_rate, gain = look(tau)
             if gain >= target:
-                kind = 1
-                lo, hi = before, tau
-                for _ in range(60):
-                    miss = gain - target
-                    if miss >= 0.0:
-                        hi = tau
-                    else:
-                        lo = tau
-                    bottom = 2.0 * y * y - miss * y_rate
-                    step = 2.0 * miss * y / bottom if bottom > 0.0 else math.inf
-                    new = tau - step
-                    if not lo < new < hi:
-                        if abs(step) <= 4.5e-16 * tau:
-                            break
-                        new = 0.5 * (lo + hi)
-                    change = abs(new - tau)
-                    tau = new
-                    way, speed, H2, Z2, H3, Z3 = _ahead(tau, h0, h1, z0, z1, omega, alpha, beta)
-                    gain = s * (way - (q2_rate + 0.5 * sp * tau) * tau)
-                    y = Y0 + s * speed - pull * tau
-                    y_rate = s * (H2 + Z2) - pull
-                    if (
-                        change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau
-                    ) or hi - lo <= 2.3e-16 * hi:
-                        # one Newton step more, from values at hand
-                        step = (gain - target) / y if y > 0.0 else 0.0
-                        if abs(step) < change:
-                            tau -= step
-                            way -= step * (speed + h1 + z1)
-                            speed -= step * (H2 + Z2)
-                            y -= step * y_rate
-                        break
-            elif tau >= left:
                 break
-        fresh = False
-        idle = idle + 1 if tau < 1e-11 else 0
-        if idle > 10000:
-            status = _FAILED
-            break
-        # ---- what ended the leg ----------------------------------------------------------------------------
-        v += way + eps * (q2_rate + 0.5 * sp * tau) * tau
-        v_rate += speed + eps * sp * tau
-        psi, more = _wrap(psi + omega * tau)
-        turns += more
-        if kind == 1:
-            if not y > 1e-30:
-                y = 1e-30
-            w = s
-            low = 0.0
-            codes[count] = _L if s > 0.0 else _R
-            rows[count, 3] = s * y
-            rate = -s * r * y
-            s = -s
-            modes[count] = int(s)
-            rows[count, 4] = rate
-        else:
-            w, low = _shift(w, low, s * gain)
-            if abs(w) > 1.0 or (abs(w) == 1.0 and w * low > 0.0):
-                w = math.copysign(1.0, w)
-                low = 0.0
-            if kind == 0:
-                rate = s * y if y > 0.0 else 0.0
-                if status != _REST:
-                    status = _TIME_REACHED
+            if tau >= left:
+                return _Sliding(_TIME_IS_OVER, tau, at, y, y_rate, gain)
+        lo, hi = before, tau
+        for _ in range(60):  # Halley's method for the hit, kept inside the bracket
+            miss = gain - target
+            lo, hi = (lo, tau) if miss >= 0.0 else (tau, hi)
+            bottom = 2.0 * y * y - miss * y_rate
+            step = 2.0 * miss * y / bottom if bottom > 0.0 else math.inf
+            new = tau - step
+            if not lo < new < hi:
+                if abs(step) <= 4.5e-16 * tau:
+                    break
+                new = 0.5 * (lo + hi)
+            change, tau = abs(new - tau), new
+            at, y, y_rate, gain = look(tau)
+            settled = change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau
+            if settled or hi - lo <= 2.3e-16 * hi:
+                step = (gain - target) / y if y > 0.0 else 0.0  # one Newton step more, from values at hand
+                if abs(step) < change:
+                    tau -= step
+                    y -= step * y_rate
+                    way = at.way - step * (at.speed + q.h1 + q.z1)
+                    at = at._replace(way=way, speed=at.speed - step * (at.h2 + at.z2))
                 break
-            rate = 0.0
-            if a == 0.0:  # nothing happens where w' passes zero
-                s = -s
-                continue
-            if y_rate < -2.0 * a:
-                codes[count] = _T
-                s = -s
-            else:
-                codes[count] = _S
-                s = 0.0
-            modes[count] = int(s)
-            rows[count, 3] = 0.0
-            rows[count, 4] = 0.0
-        rows[count, 0] = psi
-        rows[count, 1] = turns
-        rows[count, 2] = w
-        rows[count, 5] = v
-        rows[count, 6] = v_rate
-        count += 1
-    if not (math.isfinite(psi) and math.isfinite(w) and math.isfinite(rate) and math.isfinite(v)):
-        status = _FAILED
-    state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7] = (
-        psi, w, rate, s, turns, low, v, v_rate
-    )  # fmt: skip
-    return count, status
+        return _Sliding(_HIT, tau, at, y, y_rate, gain)

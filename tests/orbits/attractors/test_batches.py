@@ -1,4 +1,4 @@
-"""Many motions at once: each ends as the same motion run alone does, and the compiled loop is kept on disk."""
+"""Many motions at once: each ends as the same motion run alone does."""
 
 import numpy as np
 
@@ -44,11 +44,3 @@ def test_the_number_of_threads_changes_nothing(monkeypatch):
     one, two = starts(7), starts(7)
     first, second = run(one, 0.8)[1], run(two, 0.8, workers=2)[1]
     assert np.array_equal(one, two) and all(np.array_equal(first[name], second[name]) for name in first)
-
-
-def test_the_loop_is_found_again_on_disk():
-    run(starts(1), 0.55)
-    batches._with_stepper.cache_clear()
-    run(starts(1), 0.55)
-    kernel = batches.settle_kernel("absorber")
-    assert sum(kernel.stats.cache_hits.values()) == 1 and not kernel.stats.cache_misses

@@ -5,7 +5,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
+from contvines.core.library import native
 from orbits import Absorber, Coupled
+from orbits.design import record
 from orbits.design.transients import free_decay, recorded
 from orbits.machines.base import ParameterError
 
@@ -103,3 +105,23 @@ def test_impacts_that_pile_up_end_in_contact(friction):
     assert seen.oscillator[-1] == pytest.approx(-3.0 * 1.02, abs=1e-9)
     assert seen.relative[-1] == pytest.approx(1.0, abs=1e-9)
     assert 10 < seen.impact_times.size < 200
+
+
+def test_the_native_core_marches_as_its_reference_does(monkeypatch):
+    """A noisy record with friction and a long tail, through impacts, sticks and contact with a wall; in slices of a few rows."""
+    rng = np.random.default_rng(7)
+    t = np.sort(rng.uniform(0.0, 30.0, 120))
+    a = rng.normal(0.0, 1.2, t.size)
+    machine = Coupled(
+        restitution=0.3, friction=0.4, gravity=0.5, mass_ratio=0.1, damping=0.8, forcing=1.0, frequency=1.0
+    )
+    found = []
+    for use in (True, False):
+        monkeypatch.setattr(record, "native", lambda use=use: use and native())
+        monkeypatch.setattr(record, "SLICE", 7)
+        found.append(recorded(machine, machine.vector(), t, a, tail=3.0))
+    one, other = found
+    assert len(one.impact_times) == len(other.impact_times) > 3
+    np.testing.assert_allclose(one.impact_times, other.impact_times, rtol=1e-8)
+    for name in ("times", "oscillator", "relative", "bare", "impacts", "friction", "damping"):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name), atol=1e-7)

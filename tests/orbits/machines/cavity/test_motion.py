@@ -12,11 +12,6 @@ A = {1.0: 0.21, -1.0: 0.34}  # friction's accelerations to the left and to the r
 LAW = Law(C, OMEGA, B + A[1.0], B - A[-1.0], B, 0.7, 0.6, 1.2, -0.7)
 
 
-def plain(name):
-    function = getattr(motion, name)
-    return getattr(function, "py_func", function)
-
-
 def quadrature(psi, w, rate, mode, ahead, count=4000):
     tau = np.linspace(0.0, ahead / OMEGA, count + 1)
     shake = -C * OMEGA**2 * np.sin(psi + OMEGA * tau)
@@ -30,7 +25,7 @@ def quadrature(psi, w, rate, mode, ahead, count=4000):
 def test_positions_and_velocities(mode, ahead):
     psi, w, rate = 0.9, 0.25, 1.1 * mode
     out = np.empty((1, 4))
-    plain("sample_with")(LAW, np.array([[psi, w, rate, mode, 0.0, 0.0]]), np.array([ahead]), out)
+    motion.sample_with(LAW, np.array([[psi, w, rate, mode, 0.0, 0.0]]), np.array([ahead]), out)
     _, _, path, speed = quadrature(psi, w, rate, mode, ahead)
     end = psi + ahead
     assert out[0] == pytest.approx([path[-1], speed[-1], C * np.sin(end), C * OMEGA * np.cos(end)], abs=1e-11)
@@ -42,13 +37,13 @@ def test_works_and_their_balance(mode, ahead):
     """The shaking works with -C Omega^2 sin Psi on the relative motion, friction takes a_s times the way, gravity is a potential."""
     psi, w, rate = 3.9, 0.25, 1.6 * mode
     works, energies = np.empty((1, 3)), np.empty(2)
-    plain("works_with")(LAW, np.array([[psi, w, rate, mode, 0.0, 0.0]]), np.array([ahead]), works)
+    motion.works_with(LAW, np.array([[psi, w, rate, mode, 0.0, 0.0]]), np.array([ahead]), works)
     tau, shake, path, speed = quadrature(psi, w, rate, mode, ahead)
     assert np.all(mode * speed >= 0.0)
     friction = A.get(mode, 0.0) * abs(path[-1] - w)
     assert works[0] == pytest.approx([simpson(shake * speed, x=tau), 0.0, friction], abs=1e-10)
     ends = np.zeros((2, 6))
     ends[:, 1], ends[:, 2] = path[[0, -1]], speed[[0, -1]]
-    plain("energies_with")(LAW, ends, energies)
+    motion.energies_with(LAW, ends, energies)
     assert energies[0] == pytest.approx(0.5 * rate**2 + B * w)
     assert energies[1] - energies[0] == pytest.approx(works[0, 0] - works[0, 2], abs=1e-10)

@@ -1,15 +1,12 @@
-"""Arithmetic that keeps its digits: small differences, reduced phases, positions beside a wall (compiled)."""
+"""Arithmetic that keeps its digits: small differences, reduced phases, positions beside a wall."""
 
 from __future__ import annotations
 
 import math
 
-from contvines_ground.parts import part
-
 _TWO_PI = 2.0 * math.pi
 
 
-@part(error_model="numpy", forceinline=True)
 def remainders(x):
     """sin x, 1 - cos x, x - sin x and x^2/2 - 1 + cos x, each to full relative accuracy for small x."""
     z = x * x
@@ -24,7 +21,6 @@ def remainders(x):
     return sine, versine, x - sine, 0.5 * z - versine
 
 
-@part(error_model="numpy", forceinline=True)
 def wrap(angle):
     """The angle reduced to [0, 2 pi), and the number of turns taken away."""
     turns = math.floor(angle / _TWO_PI)
@@ -38,7 +34,6 @@ def wrap(angle):
     return angle, turns
 
 
-@part(error_model="numpy", forceinline=True)
 def shift(w, low, step):
     """w + low + step as a sum of two floats (Knuth's two-sum)."""
     total = w + step

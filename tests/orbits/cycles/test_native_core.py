@@ -1,0 +1,114 @@
+"""The native core's products of flights, sides of cycles and positions against their references in numpy."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contvines.core.library import native
+from orbits import Absorber, Coupled
+from orbits.cycles.round_maps import (
+    LARGEST,
+    reference_sides_of_cycles,
+    reference_through_flights,
+    sides_of_cycles,
+    through_flights,
+)
+from orbits.cycles.sampling import positions_of, reference_positions
+from orbits.machines.catalogue import reference_stepper, stepper
+from orbits.machines.coupled import measures, segments
+from orbits.simulation.driver import simulate
+
+pytestmark = pytest.mark.skipif(not native(), reason="the native core is not loaded")
+
+
+@settings(max_examples=60)
+@given(
+    n=st.integers(1, LARGEST + 1),
+    flights=st.integers(1, 12),
+    seed=st.integers(0, 10**6),
+    solved=st.booleans(),
+)
+def test_products_of_flights(n, flights, seed, solved):
+    rng = np.random.default_rng(seed)
+    A, D = rng.normal(size=(2, flights, n, n))
+    D += 3.0 * np.eye(n)
+    found, wanted = (
+        function(A, D if solved else None) for function in (through_flights, reference_through_flights)
+    )
+    for one, other in zip(found, wanted, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
+
+
+def test_a_flight_that_cannot_be_solved_for():
+    A, D = np.ones((3, 2, 2)), np.stack([np.eye(2), np.zeros((2, 2)), np.eye(2)])
+    assert through_flights(A, D) is None and reference_through_flights(A, D) is None
+
+
+@settings(max_examples=40)
+@given(n=st.integers(1, 5), seed=st.integers(0, 10**6))
+def test_sides_of_cycles(n, seed):
+    maps = np.random.default_rng(seed).normal(size=(2, n, n))
+    keys = np.array([(rounds, changed) for rounds in range(1, 6) for changed in range(1, rounds + 1)])
+    found, wanted = sides_of_cycles(maps, keys), reference_sides_of_cycles(maps, keys)
+    for one, other in zip(found, wanted, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
+
+
+def test_sides_that_are_no_numbers():
+    maps = np.full((2, 2, 2), 1e200)
+    assert np.isnan(sides_of_cycles(maps, np.array([[4, 1]]))[0]).all()
+    assert np.isnan(reference_sides_of_cycles(maps, np.array([[4, 1]]))[0]).all()
+
+
+@pytest.mark.parametrize("name", ["absorber", "coupled"])
+@pytest.mark.parametrize("count", [7, 200])
+def test_positions(name, count):
+    """Of a cycle whose first event comes late in a period, and of one node out of order, as Newton's method may try it."""
+    if name == "absorber":
+        params = np.array([0.55, 0.76, 0.5, 0.211, 0.006, 1.0])
+        nodes = np.array([[5.5, 0.8], [7.6, 0.3], [7.4, -0.2], [9.0, 1.1]])
+    else:
+        params = np.array([2.47, 0.985, 0.9, 0.006, 0.76, 0.5, 0.211, 1.0])
+        nodes = np.array(
+            [[5.5, 0.8, 0.1, 0.4], [7.6, 0.3, 0.2, -0.3], [7.4, -0.2, 0.3, 0.6], [9.0, 1.1, -0.4, 0.2]]
+        )
+    codes, modes = np.array([0, 2, 3, 1], np.int8), np.array([-1, 1, 0, 1], np.int8)
+    arguments = params, codes, modes, nodes, 4.0 * np.pi, count
+    found, wanted = (
+        positions_of(stepper(name), *arguments),
+        reference_positions(reference_stepper(name), *arguments),
+    )
+    np.testing.assert_allclose(found, wanted, atol=1e-13 * np.abs(wanted).max())
+
+
+def test_shapes_of_segments():
+    """Largest displacements against a fine grid, integrals against the trapezoidal rule on it, and both cores against each other."""
+    machine = Coupled(
+        restitution=0.6, friction=0.4, gravity=0.3, mass_ratio=0.2, damping=0.5, forcing=2.0, frequency=0.9
+    )
+    run = simulate(machine, {"w_rate": 0.7, "v": 0.4}, events=12)
+    states, lengths = run.states[:-1][:12], run.lengths[:12]
+    found, wanted = np.empty((2, len(states), 4))
+    measures._shapes(states, run.params, lengths, found)
+    segments.shapes(states, run.params, lengths, wanted)
+    np.testing.assert_allclose(found, wanted, atol=1e-12)
+    for state, length, row in zip(states, lengths, found):
+        ahead = np.linspace(0.0, length, 20001)
+        motion = np.empty((len(ahead), 4))
+        stepper("coupled").sample(np.tile(state, (len(ahead), 1)), run.params, ahead, motion)
+        q1 = (motion[:, 2] + 0.2 * motion[:, 0]) / 1.2
+        psi = state[0] + ahead
+        integrals = [
+            np.trapezoid(y, ahead)
+            for y in (motion[:, 2] * np.sin(psi), motion[:, 2] * np.cos(psi), q1 * np.sin(psi))
+        ]
+        np.testing.assert_allclose(row, [np.abs(q1).max(), *integrals], atol=1e-7)
+
+
+def test_a_kernel_refuses_an_array_that_it_cannot_write():
+    model = Absorber(restitution=0.76, friction=0.5, gravity=0.211)
+    states = np.zeros((6, 2)).T
+    with pytest.raises(TypeError, match="strides"):
+        stepper("absorber").launch(np.zeros((6, 2))[:, 0], model.vector({"amplitude": 0.5}))
+    stepper("absorber").energies(states, model.vector({"amplitude": 0.5}), np.empty(2))

@@ -1,0 +1,94 @@
+"""The motion from a state on in closed form, against its equations of motion in forty digits."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from orbits.machines.coupled.oscillation import (
+    Numbers,
+    Oscillation,
+    certain,
+    oscillation,
+    own_rates,
+    response,
+)
+
+OMEGA, ALPHA, BETA = 1.07, 0.03, 0.98
+START = (0.21, -0.34, 0.55, 0.17)  # harmonic h and its rate, oscillation z and its rate
+PARAMS = Numbers(2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6)
+
+
+def exact(order, tau):
+    """Derivatives of h and z with respect to tau: h'' = -Omega^2 h, z'' = -2 alpha z' - (alpha^2 + beta^2) z."""
+    h0, h1, z0, z1 = (mp.mpf(x) for x in START)
+    W, a, b = mp.mpf(OMEGA), mp.mpf(ALPHA), mp.mpf(BETA)
+    h = mp.matrix([[0, 1], [-W * W, 0]])
+    z = mp.matrix([[0, 1], [-a * a - b * b, -2 * a]])
+    at = mp.expm(h * tau) * mp.matrix([h0, h1]), mp.expm(z * tau) * mp.matrix([z0, z1])
+    return [((m**order) * x)[0] for m, x in zip((h, z), at)]
+
+
+@pytest.mark.parametrize("tau", [1e-7, 1e-4, 0.004, 0.0299, 0.0301, 0.4, 3.0])
+def test_small_differences_keep_their_digits(tau):
+    """Close to the start of a leg from Taylor series, further on from the closed form: the same motion."""
+    found = Oscillation(OMEGA, ALPHA, BETA, *START).at(tau)
+    with mp.workdps(40):
+        t = mp.mpf(tau)
+        way = sum(exact(0, t)) - sum(exact(0, 0))
+        rate = sum(exact(1, t)) - sum(exact(1, 0))
+        wanted = [way, rate, *exact(2, t), *exact(3, t)]
+        near = [1e-14, 1e-14, 1e-13, 1e-13, 1e-10, 1e-10]  # a series of order 8 has fewer terms left for them
+        for value, w, relative in zip(found, wanted, near):
+            assert abs(value - w) < (relative * abs(w) if tau < 0.03 else 1e-14)
+
+
+def test_fourth_and_fifth_derivatives():
+    """Of the motion whose second derivatives are those of h and z, and of z alone the fourth and fifth."""
+    q = Oscillation(OMEGA, ALPHA, BETA, *START)
+    at = q.at(0.7)
+    with mp.workdps(30):
+        assert q.fourth(at) == pytest.approx(float(sum(exact(4, mp.mpf(0.7)))), rel=1e-13)
+        assert q.fifth(at) == pytest.approx(float(sum(exact(5, mp.mpf(0.7)))), rel=1e-13)
+
+
+@pytest.mark.parametrize("excitation", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("mass", [1.0, 1.15])
+def test_the_response_solves_the_forced_oscillator(excitation, mass):
+    """K X - c Y = f and c X + K Y = chi f c for q = X sin Psi + Y cos Psi, drag c, and f (sin + chi c cos) on the right."""
+    numbers = PARAMS._replace(excitation=excitation)
+    force, drag, stiffness = 0.15 * 2.1, 0.15 * 0.8 * 0.97, 1.0 - mass * 0.97**2
+    X, Y = response(mass, numbers)
+    assert stiffness * X - drag * Y == pytest.approx(force, rel=1e-13)
+    assert drag * X + stiffness * Y == pytest.approx(excitation * drag * force, abs=1e-14)
+
+
+def test_damped_and_overdamped():
+    alpha, beta = own_rates(1.3, PARAMS._replace(mass_ratio=0.5, damping=0.8))
+    assert 1.3 * (alpha**2 + beta**2) == pytest.approx(1.0) and 2.0 * 1.3 * alpha == pytest.approx(0.4)
+    assert np.isnan(own_rates(1.0, PARAMS._replace(mass_ratio=1.0, damping=2.1))[1])
+
+
+@pytest.mark.parametrize(("y", "rate"), [(0.3, 0.2), (0.3, -0.2), (1e-9, -1e-3), (0.5, 0.0)])
+def test_the_certain_time_is_the_first_zero_of_the_worst_parabola(y, rate):
+    """y + y' h - bound h^2/2 = 0 at h > 0."""
+    h = certain(y, rate, 0.7)
+    assert h > 0.0 and y + rate * h - 0.35 * h * h == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("mode", [-1.0, 0.0, 1.0])
+def test_a_leg_starts_at_its_state_with_the_acceleration_of_newton(mode):
+    """(1 + eps [stuck]) q1'' = -q1 - eps lambda q1' + eps G (sin Psi + chi eps lambda Omega cos Psi) - eps s mu g."""
+    G, Omega, lam, eps, _, mu, g, chi = PARAMS
+    psi, w, rate, v, v_rate = 0.9, 0.25, 0.4 * mode, 0.3, -0.2
+    q = oscillation(np.array([psi, w, rate, mode, 0.0, 0.0, v, v_rate]), PARAMS)
+    q1, q1_rate = (v + eps * w) / (1 + eps), (v_rate + eps * rate) / (1 + eps)
+    offset = -eps * mode * mu * g
+    assert q.h0 + q.z0 + offset == pytest.approx(q1, abs=1e-15)
+    assert q.h1 + q.z1 == pytest.approx(q1_rate, abs=1e-15)
+    assert q.q2_rate == pytest.approx((v_rate - rate) / (1 + eps)) and q.q2_pull == pytest.approx(
+        mode * mu * g
+    )
+    acceleration = -(Omega**2) * q.h0 - 2 * q.alpha * q.z1 - q.kappa * q.z0
+    base = mp.sin(psi) + chi * eps * lam * Omega * mp.cos(psi)
+    right = -q1 - eps * lam * q1_rate + eps * G * base - eps * mode * mu * g
+    assert acceleration * (1.0 if mode else 1.0 + eps) == pytest.approx(float(right), abs=1e-14)

@@ -1,0 +1,32 @@
+"""Arithmetic that keeps its digits, against forty digits."""
+
+import mpmath as mp
+import pytest
+
+from orbits.machines.digits import remainders, shift, wrap
+
+
+@pytest.mark.parametrize("x", [1e-9, -3e-5, 1e-3, 0.02, 0.3, 0.49, -0.4999, 0.5001, 0.51, 2.0, 6.0])
+def test_remainders_of_sine_and_cosine(x):
+    with mp.workdps(60):
+        z = mp.mpf(x)
+        expected = mp.sin(z), 1 - mp.cos(z), z - mp.sin(z), z * z / 2 - 1 + mp.cos(z)
+        for found, wanted in zip(remainders(x), expected):
+            assert abs(found / wanted - 1) < 1e-13
+
+
+@pytest.mark.parametrize("angle", [0.3, -0.3, 6.0, 7.0, 700.0, -700.0, -1e-18])
+def test_wrapped_angles_are_the_same_angle(angle):
+    reduced, turns = wrap(angle)
+    assert 0.0 <= reduced < 6.283185307179586
+    assert abs(mp.mpf(reduced) + 2 * mp.pi * int(turns) - mp.mpf(angle)) < 1e-12
+
+
+def test_a_sum_of_two_floats_keeps_what_one_would_lose():
+    w, low = 1.0, 0.0
+    with mp.workdps(40):
+        exact = mp.mpf(1)
+        for step in (1e-17, 3e-9, -1e-20, 0.7, -1.1e-12, 2e-17, -0.6):
+            w, low = shift(w, low, step)
+            exact += mp.mpf(step)
+            assert abs(mp.mpf(w) + mp.mpf(low) - exact) < 1e-31
