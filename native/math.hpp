@@ -28,11 +28,11 @@ inline void sine_cosine(double x, double& sine, double& cosine) {
     whole q = bits_of(t);
     double n = t - ROUNDING;
     double r = x - n * P1, w = n * P2, y = r - w, tail = ((r - y) - w) - n * P2_REST;
-    double z = y * y, zz = z * z, half = 0.5 * z, one = 1.0 - half;
+    double z = y * y, zz = z * z, v = z * y, half = 0.5 * z, one = 1.0 - half;
     double ps = ((S1 + z * S2) + zz * (S3 + z * S4)) + (zz * zz) * (S5 + z * S6);  // in pairs, which do not wait for each other
     double pc = ((C1 + z * C2) + zz * (C3 + z * C4)) + (zz * zz) * (C5 + z * C6);
-    double a = y + (z * y * ps + tail * one);
-    double b = one + (((1.0 - one) - half) + (zz * pc - y * tail));
+    double a = y + (v * ps + tail * one);
+    double b = one + (((1.0 - one) - half) + (zz * pc - (y + v * S1) * tail));
     bool odd = q & 1;
     double first = odd ? b : a, second = odd ? a : b;
     sine = (q & 2) ? -first : first;

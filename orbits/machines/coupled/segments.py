@@ -87,7 +87,8 @@ def shapes(states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.
         q1 = (state[V] + eps * state[W]) / numbers.whole
         times, weights = quadrature(length, span)
         way = np.array([q.at(tau).way for tau in times])
-        v = state[V] + (way + eps * q.travel(times) if state[MODE] != 0.0 else numbers.whole * way)
+        travel = (q.q2_rate + 0.5 * q.q2_pull * times) * times
+        v = state[V] + (way + eps * travel if state[MODE] != 0.0 else numbers.whole * way)
         Psi = state[PSI] + omega * times
         row[0] = max(abs(q1 + q.at(tau).way) for tau in (0.0, *_extrema(q, span), span))
         row[1] = omega * (weights * v) @ np.sin(Psi)
