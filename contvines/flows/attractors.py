@@ -8,7 +8,8 @@ import numpy as np
 
 from .simulation import rates
 
-RECURS = 1e-5  # distance of two returns, relative to the size of the motion, that count as one
+RECURS = 1e-4  # distance of two returns, relative to the size of the motion, that count as one
+LEAST = 1e-2  # of the largest range: a state that moves less is as good as still
 STILL = 1e-9  # size of a motion, relative to the state, that is rest
 SAMPLES = 400  # states of a period that are handed over
 FIRST = 50.0  # time scales of the first transient
@@ -30,16 +31,18 @@ def recurrence(
     return _free(field, p, x, transient, longest)
 
 
-def _run(field: Any, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False) -> Any:
+def _run(
+    field: Any, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False, rough: bool = False
+) -> Any:
     from scipy.integrate import solve_ivp
 
-    size: Any = 1e-12 * (field.lengths + np.abs(x))
+    size: Any = (1e-8 if rough else 1e-12) * (field.lengths + np.abs(x))
     found = solve_ivp(
         rates(field, p),
         (start, stop),
         x,
         method="LSODA",
-        rtol=1e-10,
+        rtol=1e-6 if rough else 1e-10,
         atol=size,
         dense_output=dense,
     )
@@ -54,14 +57,15 @@ def _forced(
     period = float(field.length_of_period(p))
     count = 100 if transient is None else max(1, int(np.ceil(transient / period)))
     for _ in range(DOUBLINGS if transient is None else 1):
-        x = _run(field, p, x, 0.0, count * period).y[:, -1]
+        x = _run(field, p, x, 0.0, count * period, rough=True).y[:, -1]
         points = [x]
         low = high = x
         for k in range(1, longest + 1):
             run = _run(field, p, points[-1], 0.0, period)
             points.append(run.y[:, -1])
             low, high = np.minimum(low, run.y.min(axis=1)), np.maximum(high, run.y.max(axis=1))
-            size = np.maximum(high - low, 1e-3 * (high - low).max() + 1e-12)
+            own = (high - low) / field.lengths
+            size = field.lengths * np.maximum(own, LEAST * own.max() + 1e-12)
             if (np.abs(points[-1] - points[0]) <= RECURS * size).all():
                 whole = _run(field, p, points[0], 0.0, k * period, dense=True)
                 times = np.linspace(0.0, k * period, SAMPLES * k + 1)
@@ -84,15 +88,16 @@ def _free(
     if not rate(0.0, x).any():
         x = x + 1e-3 * field.lengths * (-1.0) ** np.arange(len(x))
     for _ in range(DOUBLINGS):
-        x = _run(field, p, x, 0.0, span).y[:, -1]
-        run = _run(field, p, x, 0.0, span)
+        x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
+        run = _run(field, p, x, 0.0, span, rough=True)
         ranges = np.ptp(run.y, axis=1)
         if (ranges <= STILL * (field.lengths + np.abs(x))).all():
             raise ValueError(
                 f"the motion comes to rest at {np.array2string(x, precision=6)}; contvines.diagram of the flow follows equilibria"
             )
         # a plane across the motion where it is fastest, in units of its size
-        unit = np.where(ranges > 0.0, ranges, 1.0)
+        own = ranges / field.lengths
+        unit = field.lengths * np.maximum(own, LEAST * own.max())
         speeds = np.linalg.norm([rate(0.0, y) / unit for y in run.y.T], axis=1)
         best = int(np.argmax(speeds))
         place = run.y[:, best]

@@ -15,6 +15,7 @@ from ..problems.scales import Scales
 from . import mesh
 from .collocation import Rule, rule
 from .field import Field
+from .forms import LARGEST, neimark_sacker, period_doubling
 from .kernels import KERNELS, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
 
@@ -436,6 +437,20 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         rounds = self.rounds if self.free_period else 2 * self.rounds
         problem = self.with_unknowns(doubled, p, 2 * self.intervals, 2 * self.copies, rounds)
         return [Embedding(problem, doubled, direction, kind)]
+
+    def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> float | None:
+        """The coefficient at a period doubling or a Neimark-Sacker point; None where there is none. See :mod:`contvines.flows.forms`."""
+        if self.states > LARGEST:
+            return None
+        try:
+            with np.errstate(all="ignore"):
+                if kind == "period-doubling":
+                    value = period_doubling(self, u, p)
+                else:
+                    value = neimark_sacker(self, u, p, multiplier)
+        except (NotEvaluable, np.linalg.LinAlgError, ValueError):
+            return None
+        return value if np.isfinite(value) else None
 
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:

@@ -14,11 +14,13 @@ TIGHT = {"rtol": 1e-12, "method": "DOP853"}
 def rates(field: Any, p: float) -> Any:
     """(t, x) -> x' for scipy."""
 
+    f, parameters, forced = field.f, field.values.at(p), field.forced
+
     def rate(t: float, x: np.ndarray) -> np.ndarray:
         try:
-            with np.errstate(all="ignore"):
-                return field(x[None, :], p, np.array([t]) if field.forced else None)[0]
-        except NotEvaluable:
+            value = f(x, parameters, t) if forced else f(x, parameters)
+            return np.asarray(value, dtype=float).reshape(len(x))
+        except (ArithmeticError, ValueError, IndexError, NotEvaluable):
             return np.full(len(x), np.nan)
 
     return rate

@@ -16,7 +16,7 @@ from ..events.located import Role
 from ..forms.criticality import cubic_form
 from ..interrupts import OPEN
 from ..journal import NullJournal
-from ..problems.abilities import Onward, everything
+from ..problems.abilities import Adaptive, Onward, everything
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from ..switching.departures import departures
@@ -214,6 +214,8 @@ def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
 
 def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
     """The coefficient from derivatives of the equations, where these can be had; else the one of the branch that leaves."""
+    if isinstance(problem, Adaptive) and name == "minus":
+        return problem.normal_form("period-doubling", u, p)
     if len(u) > DERIVATIVES:
         return rough
     with OPEN:

@@ -18,7 +18,7 @@ from ..continuation.loop import MARGIN
 from ..events.blur import missed, singular_within
 from ..events.kinds import BORDERS, kind_of
 from ..events.located import Located, Role
-from ..forms.criticality import pair_form
+from ..forms.criticality import pair_form, strong_resonance
 from ..interrupts import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
@@ -295,6 +295,8 @@ def _special(
         special.met_from = branch.label
     if kind == "fold":
         special.coefficient = fold_coefficient(engine, point)
+    if isinstance(engine.problem, Adaptive) and kind == "neimark-sacker":
+        _rotates(engine.problem, special)
     own = isinstance(engine.problem, Adaptive)  # its unknowns are more than the states of a map
     if (kind == "neimark-sacker" and not own) or (kind == "hopf" and engine.problem.spectrum == "flow"):
         form = pair_form(engine.problem, special.u, special.value, engine.spectrum(point.row))
@@ -302,6 +304,19 @@ def _special(
         special.remarks = (*special.remarks, form.note) if form.note else special.remarks
     run.events[label] = event
     return special
+
+
+def _rotates(problem: Adaptive, special: SpecialPoint) -> None:
+    """Coefficient and criticality of a Neimark-Sacker point, from the problem's own normal form."""
+    upper = special.multipliers[special.multipliers.imag > 0.0]
+    if not len(upper):
+        return
+    multiplier = complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))])
+    special.coefficient = value = problem.normal_form(special.kind, special.u, special.value, multiplier)
+    if value is not None:
+        special.criticality = "supercritical" if value < 0.0 else "subcritical"
+    if resonance := strong_resonance(multiplier):
+        special.remarks = (*special.remarks, f"near the strong resonance {resonance}")
 
 
 def _replay(problem: Problem, u: np.ndarray, p: float) -> float | None:

@@ -1,0 +1,174 @@
+"""Normal forms of cycles: period doublings and Neimark-Sacker points, of the map from one return to the next.
+
+The equations of one return are those at the Gauss points, with the values x_0 ... x_N at the mesh points, where x_N is the x_0 of the next
+return, and with a period of its own; of autonomous flows x_0 stays in the plane across the motion. With J(m) their Jacobian where x_N = m x_0, K
+its part that belongs to x_N, B and C their second and third derivatives,
+
+    period doubling   -z + c z^3      c = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(-1) v = 0,  J(1) h = -B(v, v)
+    Neimark-Sacker  m z + c z^2 z*    c = -w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.K q),   J(m) q = 0,
+                                      J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);   d = Re(c / m)
+
+Critical vectors have unit length at x_0. The expansion is that of Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7,
+for the return map; Kuznetsov, Govaerts, Doedel and Dhooge, SIAM J. Numer. Anal. 43 (2005) 1407, have it with integrals along the cycle.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve
+
+from . import mesh
+
+LARGEST = 3000  # unknowns of one return up to which there are normal forms
+STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side bends
+FIRST = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
+SECOND = ((1, 1.5), (2, -0.15), (3, 1.0 / 90.0))
+MIDDLE = -49.0 / 18.0
+
+
+class Return:
+    """The equations of one return of a cycle.
+
+    Parameters
+    ----------
+    problem : CycleProblem
+    u, p
+        A cycle.
+
+    Raises
+    ------
+    NotEvaluable
+        If the right-hand side fails there.
+    """
+
+    def __init__(self, problem: Any, u: np.ndarray, p: float) -> None:
+        self.problem, self.p = problem, p
+        r, d, m, count = problem.rule, problem.node, problem.rule.degree, problem.intervals
+        self.free, self.states = problem.free_period, problem.states
+        x, period, widths = problem.parts(u, p)
+        ends = mesh.closed(x)
+        self.points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
+        self.steps = np.repeat(period * widths, m)
+        self.widths = np.repeat(widths, m)
+        begins = np.append(0.0, np.cumsum(widths)[:-1])
+        places = (begins[:, None] + widths[:, None] * r.points).reshape(-1)
+        self.times = period * places if problem.field.forced else None
+        self.jacobian = problem.field.jacobian(self.points, p, self.times)
+        f = problem.field(self.points, p, self.times)
+        size = self.states + self.free
+        whole, closure = np.zeros((size, size)), np.zeros((size, size))
+        blocks = np.einsum(
+            "cj,icab->icajb", r.values, -(self.steps[:, None, None] * self.jacobian).reshape(count, m, d, d)
+        )
+        diagonal = np.arange(d)
+        blocks[:, :, diagonal, :, diagonal] += r.slopes
+        blocks = blocks.reshape(count, m * d, (m + 1) * d)
+        for i in range(count):
+            rows = slice(i * m * d, (i + 1) * m * d)
+            whole[rows, rows] = blocks[i][:, : m * d]
+            if i < count - 1:
+                whole[rows, (i + 1) * m * d : (i + 1) * m * d + d] += blocks[i][:, m * d :]
+            else:
+                closure[rows, :d] = blocks[i][:, m * d :]
+        if self.free:
+            whole[: self.states, -1] = -(self.widths[:, None] * f).reshape(-1)
+            speed = problem.field(x[:1, 0], p)[0]
+            whole[-1, :d] = speed / np.linalg.norm(speed)
+        self.whole, self.closure = whole, closure
+
+    def closed_by(self, factor: complex) -> np.ndarray:
+        """J(m)."""
+        return self.whole + factor * self.closure
+
+    def parts(self, x: np.ndarray, factor: complex) -> tuple[np.ndarray, Any]:
+        """A perturbation at the Gauss points, and that of the period."""
+        problem = self.problem
+        ends = mesh.closed(x[: self.states].reshape(problem.intervals, problem.rule.degree, problem.node))
+        ends[-1, -1] = factor * x[: problem.node]
+        at = np.einsum("cj,ijk->ick", problem.rule.values, ends).reshape(-1, problem.node)
+        return at, x[-1] if self.free else 0.0
+
+    def bent(self, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First and second derivative of the Jacobian of f along a real direction at each Gauss point."""
+        field = self.problem.field
+        size = float((np.abs(direction) / field.lengths).max()) or 1.0
+        step = STEP / size
+
+        def at(k: float) -> np.ndarray:
+            return field.jacobian(self.points + k * step * direction, self.p, self.times)
+
+        sides = {k: (at(float(k)), at(float(-k))) for k, _ in FIRST}
+        one = sum(weight * (sides[k][0] - sides[k][1]) for k, weight in FIRST)
+        two = sum(weight * (sides[k][0] + sides[k][1]) for k, weight in SECOND) + MIDDLE * self.jacobian
+        return np.asarray(one) / step, np.asarray(two) / step**2
+
+    def rows(self, values: np.ndarray) -> np.ndarray:
+        """Second or third derivatives of all equations, from those at the Gauss points."""
+        flat = np.asarray(values).reshape(-1)
+        return np.append(flat, 0.0) if self.free else flat
+
+    def second(self, bent: np.ndarray, a: Any, b: Any) -> np.ndarray:
+        """B(a, b) of perturbations (at the Gauss points, period), where `bent` is the derivative of the Jacobian along a."""
+        (x, t), (y, s) = a, b
+        value = -self.steps[:, None] * _apply(bent, y)
+        value = value - self.widths[:, None] * (t * _apply(self.jacobian, y) + s * _apply(self.jacobian, x))
+        return self.rows(value)
+
+    def critical(self, factor: complex) -> tuple[np.ndarray, np.ndarray, complex]:
+        """Null vector of J(m), of unit length at x_0, the left one, and w.K v."""
+        matrix = self.closed_by(factor)
+        n = len(matrix)
+        # the singular matrix with a row and a column more, which have no pattern
+        edges = np.random.default_rng(6).standard_normal((2, n)) / np.sqrt(n)
+        factors = lu_factor(
+            np.block([[matrix, edges[:1].T], [edges[1:], np.zeros((1, 1))]]), check_finite=False
+        )
+        side = np.append(np.zeros(n), 1.0)
+        v, w = lu_solve(factors, side)[:-1], lu_solve(factors, side, trans=1)[:-1]
+        v = v / np.linalg.norm(v[: self.problem.node])
+        return v, w, complex(w @ self.closure @ v)
+
+
+def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    return np.einsum("nab,nb->na", matrices, vectors)
+
+
+def period_doubling(problem: Any, u: np.ndarray, p: float) -> float:
+    """c at a period doubling."""
+    system = Return(problem, u, p)
+    v, w, weight = system.critical(-1.0)
+    v, w = np.real(v), np.real(w)
+    here = system.parts(v, -1.0)
+    one, two = system.bent(here[0])
+    h = np.linalg.solve(system.closed_by(1.0), -system.second(one, here, here))
+    third = -system.steps[:, None] * _apply(two, here[0]) - 3.0 * system.widths[:, None] * here[1] * _apply(
+        one, here[0]
+    )
+    value = w @ system.rows(third) + 3.0 * w @ system.second(one, here, system.parts(h, 1.0))
+    return -float(value) / (6.0 * float(np.real(weight)))
+
+
+def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -> float:
+    """d at a Neimark-Sacker point: Re(c / m)."""
+    m = multiplier / abs(multiplier)
+    system = Return(problem, u, p)
+    q, w, weight = system.critical(m)
+    here = system.parts(q, m)
+    other: tuple[np.ndarray, Any] = (here[0].conj(), np.conj(here[1]))
+    a1, a2 = system.bent(here[0].real)
+    b1, b2 = system.bent(here[0].imag)
+    along, against = a1 + 1j * b1, a1 - 1j * b1
+    h11 = np.linalg.solve(system.closed_by(1.0).astype(complex), -system.second(along, here, other))
+    h20 = np.linalg.solve(system.closed_by(m**2), -system.second(along, here, here))
+    t, s = here[1], other[1]
+    third = -system.steps[:, None] * _apply(a2 + b2, here[0]) - system.widths[:, None] * (
+        2.0 * t * _apply(along, other[0]) + s * _apply(along, here[0])
+    )
+    terms = (
+        w @ system.rows(third)
+        + 2.0 * w @ system.second(along, here, system.parts(h11, 1.0))
+        + w @ system.second(against, other, system.parts(h20, m**2))
+    )
+    return float(np.real(-0.5 * terms / weight / m))

@@ -1,0 +1,62 @@
+"""Normal forms of cycles against closed forms."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def twisted(rates, turn, shear):
+    """A cycle, the unit circle, beside which the plane across it turns by `turn` times the angle while `rates` act in it."""
+
+    def f(x, p):
+        radius, angle = np.sqrt(x[0] ** 2 + x[1] ** 2), np.arctan2(x[1], x[0])
+        speed = 1.0 + shear * (radius - 1.0)
+        c, s = np.cos(turn * angle), np.sin(turn * angle)
+        a, z = radius - 1.0, x[2]
+        v, w = rates(c * a + s * z, -s * a + c * z, p)
+        # from the frame that turns with the angle back to that at rest
+        outward, upward = c * v - s * w - turn * speed * z, s * v + c * w + turn * speed * a
+        return [outward * x[0] / radius - speed * x[1], outward * x[1] / radius + speed * x[0], upward]
+
+    return f
+
+
+@pytest.mark.parametrize("shear", [0.0, 0.4])
+def test_a_rotation_in_the_plane_across_the_cycle(shear):
+    """z' = (m + i omega) z - z |z|^2 for a period of 2 pi: r -> r - 2 pi r^3, and |z| is r / sqrt 2 with unit vectors."""
+    omega = np.sqrt(2.0) / 2.0
+
+    def rates(v, w, p):
+        square = v**2 + w**2
+        return p.m * v - omega * w - v * square, omega * v + p.m * w - w * square
+
+    flow = cv.FlowProblem(twisted(rates, 0.0, shear), [1.0, 0.0, 0.1], {"m": -0.3})
+    point = cv.diagram(flow.attractor(), over="m", within=(-0.4, 0.2))["NS1"]
+    assert point.value == pytest.approx(0.0, abs=1e-10)
+    angle = (2.0 * np.pi * omega) % (2.0 * np.pi)
+    assert abs(point.frequency) == pytest.approx(min(angle, 2.0 * np.pi - angle), abs=1e-9)
+    assert point.coefficient == pytest.approx(-4.0 * np.pi, rel=1e-7)
+    assert point.criticality == "supercritical"
+
+
+@pytest.mark.parametrize(("sign", "word"), [(1.0, "supercritical"), (-1.0, "subcritical")])
+def test_half_a_turn_in_the_plane_across_the_cycle(sign, word):
+    """v' = m v - v^3 in a frame that turns by half a turn: v -> -v (1 - 2 pi v^2)."""
+
+    def rates(v, w, p):
+        return p.m * v - sign * v**3, -0.5 * w
+
+    times = np.linspace(0.0, 2.0 * np.pi, 101)
+    circle = np.column_stack([np.cos(times), np.sin(times), np.zeros(101)])
+
+    def f(x, p):
+        # the frame is that of an angle between -pi and pi: half a turn makes -v of v, and the rates are odd
+        return twisted(rates, 0.5, 0.2)(x, p)
+
+    flow = cv.FlowProblem(f, [1.0, 0.0, 0.1], {"m": -0.3})
+    graph = cv.diagram(flow.cycle(times, circle), over="m", within=(-0.4, 0.2), depth=1)
+    point = graph["PD1"]
+    assert point.value == pytest.approx(0.0, abs=1e-8)
+    assert point.criticality == word
+    assert point.coefficient == pytest.approx(sign * 2.0 * np.pi, rel=1e-5)
