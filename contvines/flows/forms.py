@@ -157,8 +157,8 @@ def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -
     q, w, weight = system.critical(m)
     here = system.parts(q, m)
     other: tuple[np.ndarray, Any] = (here[0].conj(), np.conj(here[1]))
-    a1, a2 = system.bent(here[0].real)
-    b1, b2 = system.bent(here[0].imag)
+    a1, a2 = system.bent(np.real(here[0]))
+    b1, b2 = system.bent(np.imag(here[0]))
     along, against = a1 + 1j * b1, a1 - 1j * b1
     h11 = np.linalg.solve(system.closed_by(1.0).astype(complex), -system.second(along, here, other))
     h20 = np.linalg.solve(system.closed_by(m**2), -system.second(along, here, here))

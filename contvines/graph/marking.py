@@ -308,7 +308,7 @@ def _special(
 
 def _rotates(problem: Adaptive, special: SpecialPoint) -> None:
     """Coefficient and criticality of a Neimark-Sacker point, from the problem's own normal form."""
-    upper = special.multipliers[special.multipliers.imag > 0.0]
+    upper = special.multipliers[np.imag(special.multipliers) > 0.0]
     if not len(upper):
         return
     multiplier = complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))])
