@@ -110,8 +110,8 @@ def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
     """The quadratic coefficient of a fold, along the null vector that goes with the reference."""
     v, _ = plane.first.null(null.column, null.row)
     found = _forms(plane, rough).quadratic(v)
-    if found.error <= UNSURE * found.size:
-        return found
+    if found.error <= UNSURE * found.size or (rough and found.error < abs(found.value)):
+        return found  # of a rough one the sign is enough
     return _bend(plane, null) if rough else UNKNOWN
 
 
