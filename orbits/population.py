@@ -15,7 +15,7 @@ from orbits.attractors.distinct import alike, distinct
 from orbits.attractors.embedded import PERIODS as WANDERED
 from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
-from orbits.attractors.motion import RARE, Motion, wandering
+from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
 from orbits.attractors.recurrence import settle
 from orbits.attractors.returning import returning_cycles
 from orbits.attractors.sweep import described
@@ -33,7 +33,6 @@ PATIENCE = 3  # times a motion that does not recur is looked at again
 LATE = 3000.0  # forcing periods between two such looks
 GROWTH = 4000  # forcing periods over which the growth of small differences is followed
 RECOGNISED = 1e-7  # difference of two nodes that counts as a return of a single motion
-SOLVED = 1000.0  # forcing periods that take as long as Newton's method for a cycle
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ..branches.special_point import SpecialPoint
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
@@ -30,6 +31,8 @@ def chart(
     progress: Callable[[ChartProgress], None] | None = None,
 ) -> Chart:
     """A chart of two parameters: a locus from every special point of a graph, and again from what is found on them.
+
+    The loci at which a real motion gains or loses its stability come first.
 
     Parameters
     ----------
@@ -68,13 +71,22 @@ def chart(
     if not points:
         raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
     run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), journal, progress)
-    for point in points:
+    for point in sorted(points, key=lambda point: not _ends_stability(graph, point)):
         run.add_special(point)
     run.work(depth)
     if regions:
         run.divide()
     run.finish()
     return run.chart
+
+
+def _ends_stability(graph: Graph, point: SpecialPoint) -> bool:
+    """Whether a real motion gains or loses its stability there; the loci of these points come first."""
+    branch = graph.branches.get(point.branch)
+    if branch is None or not branch.real:
+        return False
+    near = 1e-9 * (graph.within[1] - graph.within[0])
+    return any(abs(point.value - end) <= near for pair in branch.stable_intervals() for end in pair)
 
 
 @listening()

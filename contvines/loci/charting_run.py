@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from time import monotonic
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,17 +39,44 @@ LARGEST = 120  # loci; a chart that was cut there says so
 
 
 class ChartProgress(NamedTuple):
-    """Where a chart is: a sentence, and how much there is so far."""
+    """Where a chart is: a sentence, and how much there is so far.
+
+    Attributes
+    ----------
+    message : str
+    loci : int
+        Finished.
+    points : int
+        Of codimension two, found on them.
+    waiting : int
+        Starts of further loci that are known so far; some may lie on one locus.
+    done, known : int
+        Starts of loci done, and known so far.
+    seconds : float
+        Estimate of the time that the waiting starts will take, from the time of those done; NaN before the first one is done.
+    """
 
     message: str
     loci: int
     points: int
     waiting: int
+    done: int = 0
+    known: int = 0
+    seconds: float = float("nan")
 
     @property
     def sentence(self) -> str:
         """For a progress line."""
-        return f"{self.message}  |  {self.loci} loci, {self.points} points, {self.waiting} waiting"
+        left = f", about {_duration(self.seconds)} left" if self.seconds > 0.0 else ""
+        return (
+            f"{self.message}  |  {self.done} of {self.known} starts of loci known so far{left}; "
+            f"{self.loci} loci, {self.points} points"
+        )
+
+
+def _duration(seconds: float) -> str:
+    """A time as people say it."""
+    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
 class Charting:
@@ -82,13 +110,15 @@ class Charting:
             self.numbers[prefix] = max(self.numbers.get(prefix, 0), int(taken[len(prefix) :] or 0))
         self.forms: dict[str, Engine] = {}
         self.refused: list[str] = []
+        self.done, self.tracing, self.begun = 0, False, monotonic()
 
     def tell(self, message: str) -> None:
         """Report progress."""
         if self.progress is not None:
-            self.progress(
-                ChartProgress(message, len(self.chart.loci), len(self.chart.points), len(self.queue))
-            )
+            waiting, loci, points = len(self.queue), len(self.chart.loci), len(self.chart.points)
+            seconds = (monotonic() - self.begun) * waiting / self.done if self.done else float("nan")
+            known = self.done + waiting + self.tracing
+            self.progress(ChartProgress(message, loci, points, waiting, self.done, known, seconds))
 
     def label(self, prefix: str) -> str:
         """The next label with this prefix."""
@@ -130,24 +160,34 @@ class Charting:
                 self.chart.message = f"stopped at {LARGEST} loci with {len(self.queue)} waiting"
                 break
             candidate, generation = self.queue.popleft()
-            known = self.known(candidate)
-            if known is not None:
-                point = self.chart.points.get(candidate.seed)
-                if point is not None and known.label not in point.on:
-                    point.on.append(known.label)
-                continue
-            locus = self.trace(candidate)
-            if locus is None:
-                continue
-            self.chart.loci[locus.label] = locus
-            fresh = self.mark(locus)
-            self.journal.checkpoint(self.chart)
-            self.tell(f"{locus.label} finished")
-            if generation < depth:
-                for point in fresh:
-                    self.queue += [(c, generation + 1) for c in leaving(point, locus, self.bounds, self.over)]
+            self.tracing, before = True, len(self.chart.loci)
+            fresh = self.follow(candidate)
+            self.tracing, self.done = False, self.done + 1
+            if len(self.chart.loci) > before:
+                self.tell(f"{next(reversed(self.chart.loci))} finished")
+            for point, locus in fresh if generation < depth else ():
+                self.queue += [(c, generation + 1) for c in leaving(point, locus, self.bounds, self.over)]
         else:
             self.chart.message = "finished"
+
+    def follow(self, candidate: Candidate) -> list[tuple[PlanePoint, Locus]]:
+        """Trace the locus of a candidate unless it is known; returns the new points on it, each with the locus."""
+        known = self.known(candidate)
+        if known is not None:
+            point = self.chart.points.get(candidate.seed)
+            if point is not None and known.label not in point.on:
+                point.on.append(known.label)
+            return []
+        locus = self.trace(candidate)
+        if locus is None:
+            return []
+        self.chart.loci[locus.label] = locus
+        self.tell(f"{locus.label}: points of codimension two")
+        fresh = self.mark(locus)
+        done, waiting = self.done + 1, len(self.queue)
+        self.chart.message = f"{done} of {done + waiting} starts of loci known so far are done"
+        self.journal.checkpoint(self.chart)
+        return [(point, locus) for point in fresh]
 
     def trace(self, candidate: Candidate) -> Locus | None:
         """The locus of a candidate; None, with a remark, where it cannot be followed."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
+SOLVED = 1000.0  # forcing periods whose simulation takes about as long as Newton's method for a cycle
 RARE = 32  # forcing periods of the longest recurrence looked for where neighbours come together
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.attractors.distinct import alike, distinct
 from orbits.attractors.low_discrepancy import low_discrepancy
-from orbits.attractors.motion import RARE, Motion, wandering
+from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.declared.attractor import RETURNED, look, returning, skip
@@ -64,6 +64,8 @@ class DeclaredPopulation:
         self.parameters = {k: float(v) for k, v in dict(parameters or {}).items() if k != parameter}
         machine.vector({**self.parameters, parameter: machine.parameters.get(parameter, 1.0)})
         self._boxes: dict[float, np.ndarray] = {}
+        self.work = 0.0
+        """Forcing periods simulated so far, those that solve for cycles included; of a self-excited machine its time over 2 pi."""
 
     @property
     def about(self) -> dict[str, Any]:
@@ -182,14 +184,17 @@ class DeclaredPopulation:
         """Unstable cycles that the chaotic motion through a start passes near, each once, as problems with their unknowns."""
         stepper = Stepper(self.machine, self.vector(p))
         stepper.start(*self._parted(state))
-        return distinct(embedded_cycles(stepper, EMBEDDED), self.parameter, p)
+        cycles = list(embedded_cycles(stepper, EMBEDDED))
+        self.work += (stepper.base + stepper.clock) / TWO_PI + SOLVED * len(cycles)
+        return distinct(cycles, self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
         """Cycles, stable or not, to which Newton's method leads from starts, each once; of a self-excited machine none."""
         if not self.machine.forced:
             return []
         stepper = Stepper(self.machine, self.vector(p))
-        cycles = returning_cycles(stepper, np.asarray(starts, dtype=float), self.box(p), EMBEDDED)
+        cycles = list(returning_cycles(stepper, np.asarray(starts, dtype=float), self.box(p), EMBEDDED))
+        self.work += SOLVED * (len(starts) + len(cycles))
         return distinct(cycles, self.parameter, p)
 
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
@@ -241,11 +246,15 @@ class _Sorting:
     def sort(self, start: np.ndarray) -> tuple[int, bool]:
         """Which motion a start reaches, and whether its mirror image."""
         stepper = Stepper(self.machine, self.params)
+        begin = 0.0
         try:
             stepper.start(*self.population._parted(start))
+            begin = stepper.base + stepper.clock
             return self._followed(stepper)
         except SimulationError:
             return self.plain("escaped")
+        finally:
+            self.population.work += (stepper.base + stepper.clock - begin) / TWO_PI
 
     def _followed(self, stepper: Stepper) -> tuple[int, bool]:
         before: tuple[_Marks | None, float] = (None, np.inf)
