@@ -41,6 +41,40 @@ def test_a_library_that_cannot_be_loaded_is_said_in_one_line(tmp_path, content):
     assert len(done.stderr.splitlines()) == 1 and str(path) in done.stderr
 
 
+INTERRUPTED = """
+import signal, sys
+from contvines.core.library import library, native
+
+calls, most, interrupted = 0, 0, 0
+
+def trace(frame, event, argument):
+    global calls
+    calls += 1
+    if calls == most:
+        signal.raise_signal(signal.SIGINT)
+
+while True:
+    calls, most = 0, most + 1 + most // 4
+    try:
+        sys.setprofile(trace)
+        library()
+        sys.setprofile(None)
+    except KeyboardInterrupt:
+        interrupted += 1
+    sys.setprofile(None)
+    library_is = native()
+    if calls < most:
+        break
+    library.cache_clear()
+print(interrupted > 10, library_is)
+"""
+
+
+def test_interrupted_at_any_call_of_its_loading_it_is_loaded_by_the_next():
+    """Nothing stays half registered: after an interrupt the process uses the same core as one left alone."""
+    assert run(INTERRUPTED).stdout.split() == ["True", run(ASK).stdout.strip()]
+
+
 def test_a_build_elsewhere_gives_libraries_of_these_sources(tmp_path):
     if build.compiler() is None:
         pytest.skip("no compiler")
