@@ -296,6 +296,6 @@ class _Looking:
         graph, effort = self.run.graph, self.effort
         graph.settings |= {"work": effort.spent, "unknown": [list(p) for p in unknown(graph, self.asked)]}
         if self.left:
-            left = ", ".join(f"{count} {what}" for what, count in self.left.items())
-            stopped = f"stopped at budget = {effort.budget}, left out are {left}: raise budget to look on"
+            left = ", ".join(f"{what} ({count})" for what, count in self.left.items())
+            stopped = f"stopped at budget = {effort.budget}; left out are {left}: raise budget to look on"
             graph.message, graph.complete = "; ".join(filter(None, (graph.message, stopped))), False

@@ -57,6 +57,7 @@ SECTIONS = {
 WOULD_DO_IN = {
     ("atlas", "values"): "a whole number of values from 1 to 10000, for example 16, or a list of values",
     ("atlas", "starts"): "a whole number of starts from 1 to 10000000, for example 256",
+    ("atlas", "budget"): "a whole number of 1 or more, for example 500000",
     ("atlas", "scan"): "a whole number of further values from 0 to 1000000; 0: none",
 }
 

@@ -32,7 +32,7 @@ def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
     least = made(1)
     assert len({a.value for a in least.attractors}) == 1  # the first of the four given values
     assert least.finished and not least.complete
-    assert "3 given values" in least.message and "raise budget" in least.message
+    assert "given values (3)" in least.message and "raise budget" in least.message
     budget = least.settings["work"] + 1
     part = made(budget)
     assert not part.complete and budget <= part.settings["work"] < work
