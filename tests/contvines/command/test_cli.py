@@ -85,6 +85,18 @@ def test_show_prints_the_table_or_one_json_object(run, vines):
     } <= set(data["special"][0])
 
 
+def test_switch_on_an_unfinished_file_is_refused_and_leaves_it_alone(run, tmp_path):
+    for finished in (False, True):
+        with Store.create(tmp_path / f"{finished}.vines", "f") as store:
+            store.checkpoint(fakes.pitchfork_graph(finished=finished))
+    before = (tmp_path / "False.vines").read_bytes()
+    status, out, err = run("switch", "False.vines", "SB1")
+    assert status != 0 and not out
+    assert "False.vines" in err and "unfinished" in err and "again" in err
+    assert (tmp_path / "False.vines").read_bytes() == before
+    assert "unfinished" not in run("switch", "True.vines", "SB1")[2]
+
+
 def test_show_on_an_unfinished_file_says_so(run, tmp_path):
     with Store.create(tmp_path / "u.vines", "f") as store:
         store.record("B1/0", {"x": 1.0})

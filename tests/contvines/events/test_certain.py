@@ -9,7 +9,8 @@ import pytest
 import contvines as cv
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from contvines.events.certain import ROUNDING, certain
+from contvines.events.certain import ROUNDING, certain, passes_for_certain
+from contvines.events.segment import Segment
 
 
 def fibonacci(k):
@@ -36,3 +37,20 @@ def test_as_exact_fractions_have_it(k, rows):
     engine = Engine(problem, (-1.0, 1.0), Settings())
     point = Solved(np.zeros(2), 0.0, np.array([0.0, 0.0, 1.0]), np.zeros(engine.row_size), 0.0, 0.0, 0.0)
     assert certain(engine, point) == one_sign(fibonacci(k))
+
+
+def test_a_change_of_sign_is_certain_where_both_ends_are():
+    """det [[1, 1], [1, 1 + p]] = p: next to p = 0 it is rounding, at p = -1 and 1 it is not."""
+    problem = cv.AlgebraicProblem(lambda u, p: [u[0] + u[1], u[0] + (1.0 + p) * u[1]], [0.0, 0.0], -1.0)
+    engine = Engine(problem, (-1.0, 1.0), Settings())
+
+    def point(p):
+        row = np.zeros(engine.row_size)
+        return Solved(np.zeros(2), p, np.array([0.0, 0.0, 1.0]), row, np.sign(p), 0.0, 0.0)
+
+    sure, rounding = point(-1.0), point(1e-16)
+    assert passes_for_certain(Segment(engine, sure, point(1.0)), 0.5)
+    assert not passes_for_certain(Segment(engine, sure, rounding), 0.5)
+    assert not passes_for_certain(Segment(engine, rounding, point(1.0)), 0.5)
+    # next to a place where the determinant is zero it may well be rounding
+    assert passes_for_certain(Segment(engine, sure, rounding), 1.0)
