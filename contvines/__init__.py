@@ -130,7 +130,7 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(_HOME[name], __name__), name)
         globals()[name] = value
         return value
-    from contvines_ground.near_names import did_you_mean
+    from contvines.shared.near_names import did_you_mean
 
     raise AttributeError(
         f"contvines has no {name!r}{did_you_mean(name, __all__)}; it has {', '.join(__all__)}"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from typing import Any, ParamSpec, TypeVar
 
-from contvines_ground import near_arguments
+from contvines.shared import near_arguments
 
 from .doors import above
 

@@ -2,8 +2,7 @@
 
 Python raises KeyboardInterrupt wherever it happens to be. In a callback that compiled code calls it can only be ignored,
 and what the callback was to compute is then wrong; in a write it leaves a transaction open. So there are sections: from
-one that is held the interrupt is raised at the end (but at once while compiled code is being made, which takes seconds);
-from another one at once, and again at the end if it was ignored inside.
+one that is held the interrupt is raised at the end; from another one at once, and again at the end if it was ignored inside.
 """
 
 from __future__ import annotations
@@ -18,7 +17,6 @@ from typing import Any
 
 # what `signal` hands on to: it makes enumerations of handlers, which takes longer than solving a point
 _plain: Any = sys.modules["_signal"]
-PACKAGE = __name__.partition(".")[0] + "."
 
 
 class _State:
@@ -58,6 +56,11 @@ def _unheard() -> bool:
         threading.current_thread() is threading.main_thread()
         and _plain.getsignal(signal.SIGINT) is signal.default_int_handler
     )
+
+
+def wanted() -> bool:
+    """Whether an interrupt has come that is raised at the end of the section."""
+    return _state.wanted
 
 
 def take() -> None:
@@ -115,16 +118,5 @@ HELD, OPEN = Section(True), Section(False)
 
 def _interrupted(number: int, frame: FrameType | None) -> None:
     _state.wanted = True
-    if not _state.held or _being_compiled(frame):
+    if not _state.held:
         raise KeyboardInterrupt
-
-
-def _being_compiled(frame: FrameType | None) -> bool:
-    """Whether what this package has called is the compiler (and not a callback of what it has compiled)."""
-    called = ""
-    while frame is not None:
-        name = str(frame.f_globals.get("__name__", ""))
-        if name.startswith(PACKAGE):
-            return called.startswith("numba.")
-        called, frame = name, frame.f_back
-    return False

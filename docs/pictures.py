@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from contvines_ground.figures import new_figure, styled
+from contvines.shared.figures import new_figure, styled
 
 BLUE, RED, GREY, PALE = "#0b3c6f", "#d9484b", "#8a8a8a", "#dfe7ef"
 STICK = "#b8761f"

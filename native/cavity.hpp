@@ -102,18 +102,19 @@ template <class Law> struct Cavity {
             double size = larger(fabs(F[0]), fabs(F[1]));
             if (!(size <= largest)) largest = size;
         }
-        if (c.pinned == 1) largest = larger(largest, pin(c, u, work));
+        if (c.pinned == 1) largest = larger(largest, pin(c, u, work, law.wall[0] + law.wall[1], rate.wall[0] + rate.wall[1]));
         return largest;
     }
 
-    // Replace the displacement equation of the last flight by w_i + w_{i+1} = 0; returns by how much the mean position is off.
-    static double pin(const Cycle& c, const double* u, Workspace& work) {
+    // Replace the displacement equation of the last flight by w_i + w_{i+1} = middle, the sum of the walls' places; returns by how much the
+    // mean position is off.
+    static double pin(const Cycle& c, const double* u, Workspace& work, double middle, double d_middle) {
         whole last = last_flight(c);
         double *A = work.A + 4 * last + 2, *D = work.D + 4 * last + 2, *kept = work.pin;
         kept[0] = A[0], kept[1] = A[1], kept[2] = D[0], kept[3] = D[1], kept[4] = work.F[2 * last + 1];
-        A[0] = 0.0, A[1] = 1.0, D[0] = 0.0, D[1] = 1.0, work.Q[2 * last + 1] = 0.0;
+        A[0] = 0.0, A[1] = 1.0, D[0] = 0.0, D[1] = 1.0, work.Q[2 * last + 1] = -d_middle;
         double& F = work.F[2 * last + 1];
-        F = u[2 * last + 1] + (last + 1 < c.length ? u[2 * last + 3] : c.twist * u[1]);
+        F = u[2 * last + 1] + (last + 1 < c.length ? u[2 * last + 3] : c.twist * u[1]) - middle;
         return fabs(F);
     }
     static void unpin(const Cycle& c, Workspace& work) {

@@ -80,9 +80,3 @@ EXPORT whole core_multipliers(const double* A, const double* D, whole length, wh
 EXPORT whole core_periodic_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {
     return algebra::periodic_multipliers(A, D, length, int(n), twist, re, im, scratch);
 }
-EXPORT whole core_through_flights(const double* A, const double* D, whole length, whole n, double* product, double* sizes, double* room) {
-    return cycles::through_flights(A, D, length, n, product, sizes, room);
-}
-EXPORT void core_sides_of_cycles(const double* maps, whole n, const whole* keys, whole count, double* sides, double* products, double* room) {
-    cycles::sides_of_cycles(maps, n, keys, count, sides, products, room);
-}

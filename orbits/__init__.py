@@ -56,7 +56,7 @@ def __getattr__(name: str) -> Any:
         return getattr(importlib.import_module(_PLACES[name]), name)
     if name in _ROOMS:
         return importlib.import_module(f"orbits.{name}")
-    from contvines_ground.near_names import did_you_mean
+    from contvines.shared.near_names import did_you_mean
 
     raise AttributeError(f"orbits has no {name!r}{did_you_mean(name, __all__)}; it has {', '.join(__all__)}")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_arguments import hinting
+from contvines.shared.near_arguments import hinting
 from orbits.cycles.solution import Solution
 from orbits.doors import above
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import no_parameter
+from contvines.shared.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
 from orbits.attractors.distinct import alike, distinct

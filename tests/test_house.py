@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("contvines", "orbits", "contvines_ground")
+PACKAGES = ("contvines", "orbits")
 
 
 def module_of(path):

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from contvines_ground.processes import ATTEMPTS, may_be_copied, spread
+from contvines.shared.processes import ATTEMPTS, may_be_copied, spread
 from tests.pieces import deadly, square, wrong
 
 
@@ -65,7 +65,7 @@ COPIED = """
 import sys
 import numpy, scipy.linalg  # they have threads of their own, where there are several cores
 numpy.linalg.eig(numpy.random.rand(300, 300))
-from contvines_ground.processes import may_be_copied, spread
+from contvines.shared.processes import may_be_copied, spread
 here = 1
 def told(n):
     return here + n
@@ -82,7 +82,7 @@ def test_copies_know_what_this_process_knows():
 
 NATIVE = """
 import ctypes, sys
-from contvines_ground.processes import may_be_copied
+from contvines.shared.processes import may_be_copied
 libc = ctypes.CDLL(None)
 waits = ctypes.cast(libc.pause, ctypes.c_void_p)
 print(libc.pthread_create(ctypes.byref(ctypes.c_ulong()), None, waits, None), may_be_copied())
@@ -96,7 +96,7 @@ def test_no_copies_beside_a_thread_that_python_does_not_know():
 
 KILLED = """
 import os, signal, sys, time
-from contvines_ground.processes import spread
+from contvines.shared.processes import spread
 from tests.pieces import square
 if __name__ == "__main__":
     for place, (_, doer) in spread(square, [(n,) for n in range(9)], 2, None):

@@ -1,7 +1,7 @@
 """The command `contvines`: its sub-commands, and how errors reach a user (as sentences).
 
 Each sub-command lives in a file of this folder and has a line in `commands.py`. Importing this module must stay cheap:
-numpy, numba, matplotlib, rich and pydantic are imported by the commands that need them.
+numpy, matplotlib, rich and pydantic are imported by the commands that need them.
 """
 
 import atexit

@@ -119,11 +119,8 @@ def first_orbit(study: "Study") -> Any:
             return seed_of(study)
         except ValueError as error:
             raise ValueError(f"{study.path}: [start] {error}") from error
-    from orbits.precompile import compile_ahead
     from orbits.starts.find import StartWarning
 
-    if study.machine is None:
-        compile_ahead(study.name, "contvines.events.scan:prepare")
     try:
         if study.word is None and study.machine is not None:
             return machine(study).attractor(study.state, **loose(study)).found

@@ -8,9 +8,8 @@ def main() -> None:
     sys.unraisablehook = _unraisable
     try:
         from contvines.command.cli import main as run
-        from contvines_ground.stack import with_room
 
-        with_room(run)
+        run()
     except KeyboardInterrupt:
         print("contvines: stopped; the same command begins again, or goes on.", file=sys.stderr)
         sys.exit(130)

@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, ValidationError
 
 from contvines.command.schema import AtlasSection, ContinueSection, Section, SweepSection
 from contvines.command.sentences import sentences_of, together
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 
 class FlowSection(Section):

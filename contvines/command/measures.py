@@ -21,7 +21,7 @@ def check_bounds(study: "Study", command: str) -> None:
         raise ValueError(
             "[continue] bounds: an atlas follows all that it meets to its end; leave them out, or use contvines diagram."
         )
-    from contvines_ground.near_names import did_you_mean
+    from contvines.shared.near_names import did_you_mean
 
     known = _names(study)
     for name, (low, high) in study.bounds.items():
@@ -54,7 +54,7 @@ def check_axes(study: "Study", axes: dict[str, str | None], plot: Path | None) -
     given = {option: name for option, name in axes.items() if name is not None}
     if not given:
         return
-    from contvines_ground.near_names import did_you_mean
+    from contvines.shared.near_names import did_you_mean
 
     known = list(dict.fromkeys([study.parameter, *_names(study)]))
     for option, name in given.items():

@@ -19,7 +19,7 @@ from contvines.command.schema import (
     SweepSection,
 )
 from contvines.command.sentences import sentences_of, together
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 
 class PageSection(Section):

@@ -11,7 +11,7 @@ from contvines.command.schema import (
     MODEL_SECTIONS,
     PARAMETERS,
 )
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.catalogue import NAMES, model_class
 
 # What would do, for each field of a study that is no parameter; used in every sentence that refuses a value.

@@ -35,7 +35,7 @@ from contvines.command.sentences import (
     would_do,
 )
 from contvines.command.toml_text import TomlError, toml_data
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.catalogue import model_class
 
 

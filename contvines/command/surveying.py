@@ -72,12 +72,9 @@ def _computed(
     )
     from contvines.command.sweep_rows import journal_of
     from contvines.survey.survey import survey as run
-    from orbits.precompile import compile_ahead
 
     plan, model = plan_and_machine(study)
     outcomes, family, journal = outcomes_of(study), family_of(study, model), journal_of(target)
-    if study.machine is None:
-        compile_ahead(study.name, "contvines.events.scan:prepare")
     with without_main(), counted(len(plan), quiet) as tell:
         try:
             found = run(

@@ -1,6 +1,6 @@
-"""Aims: numbers of a solved point that pass zero at a special point, so that compiled code can look for the place where they do.
+"""Aims: numbers of a solved point that pass zero at a special point.
 
-Runs compiled and interpreted, as :mod:`contvines.continuation.corrector` does.
+native/march.hpp has the same functions for compiled problems.
 """
 
 import math

@@ -1,17 +1,29 @@
-"""Sums over the unknowns with numpy, for problems made of Python callables: every unknown has its scale.
+"""Sums over the unknowns: corrections, planes, angles. Every unknown has its scale.
 
-The functions are those of :mod:`contvines.continuation.lengths`, whose docstrings they share; ``scale`` (N + 1,) are the typical
-sizes of unknowns and parameter, ``weights`` (N + 1,) is the diagonal of the metric.
+The native core (native/march.hpp) has the same with loops, for unknowns that all have scale 1 and one weight.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from ..problems.blas import dot, position
-from .lengths import Metric
+
+
+class Metric(NamedTuple):
+    """How lengths are measured: <a, b> = sum of weights_j a_j b_j over unknowns and parameter.
+
+    ``weights`` and ``scale`` (typical sizes) have shape (N + 1,); ``of_unknowns`` and ``of_parameter`` are the weights of
+    unknowns whose scale is 1, and of the parameter.
+    """
+
+    weights: np.ndarray
+    scale: np.ndarray
+    of_unknowns: float
+    of_parameter: float
 
 
 def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -> float:
@@ -26,17 +38,17 @@ def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -
 
 
 def add(u: np.ndarray, step: np.ndarray) -> None:
-    """See lengths."""
+    """Add the part of a correction that belongs to the unknowns."""
     u += step[:-1]
 
 
 def remainder(border: np.ndarray, u: np.ndarray, p: float, target: float) -> float:
-    """See lengths."""
+    """target - border.(u, p)."""
     return target - float(border[-1]) * p - dot(border, u, len(u))
 
 
 def fix_parameter(border: np.ndarray) -> None:
-    """See lengths."""
+    """Fill `border` with the row that picks the parameter."""
     border[:-1] = 0.0
     border[-1] = 1.0
 
@@ -48,7 +60,7 @@ def plane(
     metric: Metric,
     border: np.ndarray,
 ) -> float:
-    """See lengths."""
+    """Fill `border` with the plane through (u, p) across a tangent; returns border.(u, p)."""
     np.multiply(metric.weights, tangent, out=border)
     return dot(border, u, len(u)) + float(border[-1]) * p
 
@@ -62,7 +74,7 @@ def compare(
     guess: float,
     metric: Metric,
 ) -> tuple[float, float, float]:
-    """See lengths."""
+    """Length of a tangent, cosine of its angle with the unit tangent before, distance of a point from its guess."""
     weighted = metric.weights * tangent
     norm = math.sqrt(dot(weighted, tangent))
     gap = u - guess_u
@@ -76,14 +88,14 @@ def orient(
     border: np.ndarray,
     metric: Metric,
 ) -> tuple[float, float, float]:
-    """See lengths."""
+    """Length of a tangent, its inner product with another vector, and border.tangent; the length is infinite where one is not finite."""
     weighted = metric.weights * tangent
     norm = math.sqrt(dot(weighted, tangent)) if np.isfinite(tangent).all() else math.inf
     return norm, dot(weighted, along), dot(border, tangent)
 
 
 def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> float:
-    """See lengths."""
+    """Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p. See :class:`contvines.events.segment.Segment`."""
     a, b = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2
     c, d = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0)
     guess[:] = a * chord[0] + b * chord[1] + c * chord[2] + d * chord[3]
@@ -92,13 +104,13 @@ def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> fl
 
 
 def distance(u: np.ndarray, p: float, guess: np.ndarray, metric: Metric) -> float:
-    """See lengths."""
+    """Distance of (u, p) from a guess."""
     gap = u - guess[:-1]
     return math.sqrt(dot(metric.weights[:-1] * gap, gap) + metric.of_parameter * (p - float(guess[-1])) ** 2)
 
 
 def put(to: np.ndarray, source: np.ndarray, divisor: float) -> None:
-    """See lengths."""
+    """Copy a vector, divided by a number."""
     if divisor == 1.0:
         to[:] = source
     else:
@@ -114,7 +126,10 @@ def extrapolate(
     metric: Metric,
     u: np.ndarray,
 ) -> float:
-    """See lengths."""
+    """Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p.
+
+    The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order).
+    """
     here, value, point = tangents[i - 1], float(values[i - 1]), points[i - 1]
     if i >= 2:
         there = tangents[i - 2]

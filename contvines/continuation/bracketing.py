@@ -1,10 +1,10 @@
-"""Bracketing: the root of a function of one variable, one evaluation at a time, so that compiled code can look for it, too.
+"""Bracketing: the root of a function of one variable, one evaluation at a time.
 
 Chandrupatla's method (Adv. Eng. Software 28 (1997) 145): bisection with inverse quadratic steps where they are safe; the function need
 not be continuous. Where these are not safe, as at a jump or a kink, secants on one side of the zero take the place of bisection: what is
 beyond a jump says nothing of the zero, which is that of the secant on one side.
 
-What is known is kept in a list of numbers (or an array, for compiled code): see the names below.
+What is known is kept in a list of numbers, or an array: see the names below. native/march.hpp has the same functions.
 """
 
 import math

@@ -1,6 +1,6 @@
 """Corrector: Newton's method on the bordered system, along a branch and for single points.
 
-Runs compiled and interpreted: see :mod:`contvines.continuation.loop`.
+For problems in Python; native/march.hpp has the same for compiled ones.
 """
 
 import math
@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .aims import NOTHING, probe
+from .arrays import add, correction_size, distance, hermite, orient, put, remainder
 from .bracketing import JUMP, TOLERANCE, X1, begin, best, follow
-from .lengths import add, correction_size, distance, hermite, orient, put, remainder
 
 # what `points` does
 LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
@@ -36,11 +36,6 @@ class Scratch(NamedTuple):
     guess: np.ndarray
 
 
-def unpack(frame):
-    """Interpreted functions are handed the arguments themselves; compiled ones see :mod:`contvines.continuation.kept`."""
-    return frame
-
-
 class Found(NamedTuple):
     """What is found of k points: shapes (k, N), (k, N + 1), (k, row), (k, 5).
 
@@ -52,21 +47,6 @@ class Found(NamedTuple):
     tangents: np.ndarray
     rows: np.ndarray
     numbers: np.ndarray
-
-
-def linearise(data, u, p, work):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.continuation.binding")
-
-
-def bordered(data, work, border, n, step, tangent):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.continuation.binding")
-
-
-def inspect(data, u, p, work, row):
-    """Placeholder for the problem's kernel."""
-    raise TypeError("kernels are put in by contvines.continuation.binding")
 
 
 def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
@@ -117,7 +97,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
     return p, size, 0
 
 
-def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, metric, noise):
+def correct(kernels, data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, metric, noise):
     """Newton's method for F(u, p) = 0, border.(u, p) = target; u is updated in place.
 
     Each sweep is one linearisation and one elimination, which gives the correction and the tangent.
@@ -135,11 +115,11 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
     size = 0.0
     sign = 0.0
     for sweep in range(max_sweeps):
-        residual = linearise(data, u, p, work)
+        residual = kernels.linearise(data, u, p, work)
         if not residual < 1e300:
             return p, -2, sign, size
         gap = remainder(border, u, p, target)
-        sign = bordered(data, work, border, gap, step, tangent)
+        sign = kernels.bordered(data, work, border, gap, step, tangent)
         p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, metric, noise)
         if verdict != 0:
             return p, sweep + 1 if verdict > 0 else -1, sign, size
@@ -147,6 +127,7 @@ def correct(data, work, u, p, border, target, tolerance, max_sweeps, step, tange
 
 
 def points(
+    kernels,
     frame,
     what,
     chord,
@@ -161,8 +142,6 @@ def points(
 ):
     """Single solutions, and everything about them, or a part of that.
 
-    In one piece: each function is compiled with all that it calls.
-
     EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method from a place on a chord (none at its ends: they are good as they are), then
     linearisation, elimination and multipliers once more at the solution; tangents are unit vectors with <along, tangent> >= 0. With an aim
     the one solution is looked for at which a number passes zero between the chord's ends.
@@ -170,7 +149,9 @@ def points(
 
     Parameters
     ----------
-    frame
+    kernels
+        Of the problem.
+    frame : tuple
         The problem's data and workspace; of a search the final bracket (an array of `bracketing.SIZE` numbers); metric and `Scratch`.
     what : int
     chord : ndarray, shape (4, N + 1)
@@ -191,7 +172,7 @@ def points(
     int
         With an aim: `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
     """
-    data, work, known, metric, scratch = unpack(frame)
+    data, work, known, metric, scratch = frame
     start, length = stretch
     searching = aim.what != NOTHING
     step = scratch.step
@@ -212,14 +193,14 @@ def points(
         for sweep in range(limit + 1):
             gap = start + s * length
             if what != ELIMINATE:
-                residual = linearise(data, u, p, work)
+                residual = kernels.linearise(data, u, p, work)
                 if what == LINEARISE:
                     break
                 if not residual < 1e300:
                     sweeps = -2
                     break
                 gap = remainder(border, u, p, gap)
-            sign = bordered(data, work, border, gap, step, tangent)
+            sign = kernels.bordered(data, work, border, gap, step, tangent)
             if settled:
                 sweeps = sweep
                 break
@@ -230,7 +211,7 @@ def points(
                 break
             settled = verdict > 0
         if sweeps >= 0 and what == EVERYTHING:
-            inspect(data, u, p, work, row)
+            kernels.inspect(data, u, p, work, row)
             norm, same, across = orient(tangent, along, border, metric)
             if norm < 1e300:
                 if same < 0.0:

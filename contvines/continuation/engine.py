@@ -1,9 +1,8 @@
-"""Engine: a problem with its bound loop, work arrays and metric; solves single points tightly."""
+"""Engine: a problem with its loop, work arrays and metric; solves single points tightly."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,8 @@ from . import bracketing, corrector
 from . import loop as source
 from .aims import NO_COLUMNS, NOTHING, Aim
 from .approach import approach
-from .binding import bind
-from .lengths import Metric
+from .arrays import Metric
+from .interpreted import InterpretedLoop
 from .rows import Rows
 from .settings import Settings
 from .solved import Hit as Hit
@@ -53,7 +52,6 @@ class Engine(Rows):
         n = self.n = int(problem.dimension)
         kernels = problem.kernels
         self.compiled = bool(kernels.compiled)
-        self.bound = bind(kernels, settings.step_rule)
         self.section = HELD if self.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
@@ -88,18 +86,19 @@ class Engine(Rows):
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(bracketing.SIZE)
-        # the arrays are kept here, for compiled code knows only where they are
-        self.arguments = (self.data, self.work, self.known, self.metric, self.scratch)
-        self.run: Callable[..., int]
-        self.march: Callable[..., Any] = self.bound.march if self.compiled else _calmly(self.bound.march)
-        self.frame: Any = self.arguments
-        if self.bound.keeper is None:
-            self.run = _calmly(self.bound.points)
-        else:
-            self.run, self.frame, self.memory = self.bound.keeper.keep(self.arguments)
+        self.loop: Any = self._loop(kernels)
         self.part = corrector.Found(
             np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
         )
+
+    def _loop(self, kernels: Any) -> Any:
+        """March and single points, in the native core for compiled problems."""
+        rest = self.metric, self.noise, self.known, self.scratch, self.settings.step_rule
+        if not self.compiled:
+            return InterpretedLoop(kernels, self.data, self.work, *rest)
+        from .native import NativeLoop
+
+        return NativeLoop(kernels.table, self.data, self.work, (self.n, self.row_size), *rest)
 
     def parameter_unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with."""
@@ -234,8 +233,7 @@ class Engine(Rows):
             np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5))
         )
         with self.section:
-            outcome = self.run(
-                self.frame,
+            outcome = self.loop.points(
                 corrector.EVERYTHING,
                 chord,
                 stretch,
@@ -245,7 +243,6 @@ class Engine(Rows):
                 sweeps,
                 found,
                 aim,
-                self.noise,
             )
         return found, outcome
 
@@ -290,8 +287,7 @@ class Engine(Rows):
         return self.scratch.step.copy()
 
     def _part(self, what: int, border: np.ndarray, target: float) -> None:
-        self.run(
-            self.frame,
+        self.loop.points(
             what,
             self.guess,
             (target, 0.0),
@@ -301,15 +297,4 @@ class Engine(Rows):
             0,
             self.part,
             NO_AIM,
-            self.noise,
         )
-
-
-def _calmly(function: Callable[..., Any]) -> Callable[..., Any]:
-    """An interpreted function, whose overflows are nobody's business."""
-
-    def called(*arguments: Any) -> Any:
-        with np.errstate(all="ignore"):
-            return function(*arguments)
-
-    return called

@@ -1,8 +1,6 @@
 """The continuation loop: predict, correct, judge the step, many points a call.
 
-This source runs compiled and interpreted: :mod:`contvines.continuation.binding` makes copies of these functions in which
-``linearise``, ``bordered`` and ``inspect`` are the kernels of a problem and ``judge`` is the step rule of a run. For compiled problems the copies are compiled as
-well. Nothing is allocated here, and nothing is known of events.
+For problems in Python; native/march.hpp has the same for compiled ones. Nothing is known of events here.
 
 Metric: <a, b> = a_u.b_u / N + a_p b_p / (hi - lo)^2, so that step lengths
 depend neither on the number of repetitions of an orbit nor on the unit of the parameter. Unknowns of Python problems have
@@ -14,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .corrector import correct, inspect
-from .lengths import compare, extrapolate, fix_parameter, plane, put
-from .step_rule import by_angle as judge
+from .arrays import compare, extrapolate, fix_parameter, plane, put
+from .corrector import correct
 
 # entries of the control vector
 (
@@ -52,10 +49,8 @@ class Points(NamedTuple):
     corrections: np.ndarray
 
 
-def march(data, work, chunk, first, h, control, metric, scratch):
+def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch):
     """Fill rows first, first + 1, ... of the chunk arrays with points of the branch.
-
-    In one piece: every part of a step reads and changes the same score of local numbers.
 
     Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
 
@@ -64,8 +59,10 @@ def march(data, work, chunk, first, h, control, metric, scratch):
 
     Parameters
     ----------
-    data, work
+    kernels, data, work
         Of the problem.
+    judge : callable
+        Of the step rule.
     chunk : Points
         Filled.
     first : int
@@ -121,6 +118,7 @@ def march(data, work, chunk, first, h, control, metric, scratch):
         put(points[i], u, 1.0)
         guess = p
         p, sweeps, sign, size = correct(
+            kernels,
             data,
             work,
             u,
@@ -165,7 +163,7 @@ def march(data, work, chunk, first, h, control, metric, scratch):
         values[i] = p
         signs[i] = sign
         corrections[i] = size
-        inspect(data, u, p, work, rows[i])
+        kernels.inspect(data, u, p, work, rows[i])
         i += 1
         if fixed:
             return i, h, LEFT_INTERVAL

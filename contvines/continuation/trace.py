@@ -193,12 +193,8 @@ def _march(
             array[i] = known
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     engine.control[source.MAX_STEP] = longest
-    # an interpreted loop is faster with Python's own numbers
-    control: Any = engine.control if engine.compiled else engine.control.tolist()
     with engine.section:
-        filled, h, status = engine.march(
-            engine.data, engine.work, arrays, first, float(h), control, engine.metric, engine.scratch
-        )
+        filled, h, status = engine.loop.march(arrays, first, float(h), engine.control)
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
 
 

@@ -75,6 +75,14 @@ def _open(variant: str) -> Any:
     return found
 
 
+def variant() -> str:
+    """Name of the core that computes: "reference", "baseline" or "avx2"."""
+    found = library()
+    if found is None:
+        return "reference"
+    return next(name for name in variants() if str(path_of(name)) == found._name)
+
+
 def native() -> bool:
     """Whether the native core computes."""
     return library() is not None

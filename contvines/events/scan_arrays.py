@@ -1,14 +1,11 @@
-"""The scan of :mod:`contvines.events.scan` with numpy, for problems made of Python callables, whose loops would be interpreted.
-
-What is marked, and the arguments, are those of :func:`contvines.events.scan.mark_segments`, whose loops are compiled for the others.
-"""
+"""Scanning points of a branch with numpy: which segments are marked, and why. native/scan.hpp does the same for compiled problems."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..continuation.aims import FLOW, MAP, REAL
-from ..continuation.lengths import Metric
+from ..continuation.arrays import Metric
 from ..continuation.loop import MARGIN
 from .bits import (
     APART,
@@ -40,7 +37,22 @@ def mark_segments(
     flags: np.ndarray,
     smallest: np.ndarray,
 ) -> None:
-    """Fill `flags` (n - 1,) and `smallest` (n,); see :func:`contvines.events.scan.mark_segments`."""
+    """Fill `flags` (n - 1,), bits per segment, and `smallest` (n,), the smallest margin (infinity without margins).
+
+    Parameters
+    ----------
+    chunk : Scanned
+    first_margin : int
+        Columns of `rows` before this one are multipliers as (re, im) pairs.
+    kind : int
+        NONE, MAP, FLOW or REAL (real eigenvalues tell branch points; there is no stability).
+    real : bool
+        Whether the branch has positive margins.
+    flat : float
+        Slopes below this are zero.
+    metric : Metric
+    symmetries : Symmetries
+    """
     points, values, slopes, rows, signs = chunk
     orders, images, constants, shift, _ = symmetries
     with np.errstate(all="ignore"):

@@ -12,6 +12,7 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Solved
 from ..continuation.loop import MARGIN
 from . import pairs
+from .bits import BORDER, DAMPED, HUMP, LANDING, MEETING, MULTIPLIER, SHALLOW, SINGULAR
 from .dips import before_border, below_zero
 from .examine import REACHED, ROUNDING, Examiner, changes
 from .excursion import left_between
@@ -19,19 +20,7 @@ from .landing import again, first_landing
 from .leaps import inexact, leap
 from .located import Located, Role
 from .multipliers import balance, counts, nearest_to_circle
-from .scan import (
-    BORDER,
-    DAMPED,
-    HUMP,
-    LANDING,
-    MEETING,
-    MULTIPLIER,
-    SHALLOW,
-    SINGULAR,
-    Scan,
-    Scanner,
-    dips,
-)
+from .scan import Scan, Scanner, dips
 from .scan_arrays import turns_and_landings
 from .segment import Segment
 from .windows import passed, real_inside, windows

@@ -6,8 +6,6 @@ import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from contvines_ground.stack import with_room
-
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
 from ..hints import hinting
@@ -82,7 +80,7 @@ def diagram(
         problem.parameter, about, within, depth, virtual, user_functions, journal, progress, settings, limits
     )
     begin(run, problem, u, p)
-    with_room(work, run)
+    work(run)
     finish(run)
     return run.graph
 
@@ -176,7 +174,7 @@ def switch(
     )
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)
-    with_room(work, run)
+    work(run)
     if finished:  # more of an unfinished graph is still to come
         finish(run)
     new = [name for name in graph.branches if name not in before]

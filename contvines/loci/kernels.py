@@ -21,11 +21,10 @@ differences. Directions and slopes are not worked out again where Newton's metho
 the location is lost. The borders are renewed after a few accepted points, sooner
 where the null vector turns: c becomes the null vector, b the left one.
 
-This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
+native/loci.hpp has the same for compiled problems.
 """
 
 import math
-from typing import Any
 
 from .layout import (
     BASE,
@@ -76,14 +75,6 @@ from .layout import (
 from .probing import frozen, pair_of, slopes_along, tests
 from .spanning import particular, span
 
-# the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
-linearise: Any = None
-bordered: Any = None
-inspect: Any = None
-assign: Any = None
-flip: Any = None
-transpose: Any = None
-
 
 def locus_linearise(data, U, q, work):
     """F, F_u, F_p, F_q and the tests at (U, q); see `linearise` in the protocol."""
@@ -103,14 +94,14 @@ def locus_linearise(data, U, q, work):
     still = frozen(work, U, q)
     if not still:
         state[KNOWN] = min(state[KNOWN], 0.0)
-        assign(calls, second, first, p)
-        largest = linearise(calls, second, u, q, base)
+        calls.assign(second, first, p)
+        largest = calls.linearise(second, u, q, base)
         if not largest < 1e300:
             return math.inf
         for i in range(n):
             columns[1, i] = Q[i]
-    assign(calls, first, second, q)
-    largest = linearise(calls, first, u, p, base)
+    calls.assign(first, second, q)
+    largest = calls.linearise(first, u, p, base)
     if not largest < 1e300:
         return math.inf
     for i in range(n):
@@ -227,11 +218,11 @@ def renew(data, work, b, c, null):
         c[i] = null[i] / scales[i] / scales[i] / size
         lines[0, i] = b[i]
     lines[0, n] = 0.0
-    transpose(data[CALLS], data[FIRST], work[BASE], c[:n], work[TRIAL])
+    data[CALLS].transpose(data[FIRST], work[BASE], c[:n], work[TRIAL])
     F = work[TRIAL_F]
     for i in range(n):
         F[i] = 0.0
-    bordered(data[CALLS], data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
+    data[CALLS].bordered(data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
     size = 0.0
     for i in range(n):
         size += (left[i] * rows[i]) ** 2
@@ -269,12 +260,12 @@ def locus_inspect(data, U, q, work, row):
         if kind == FOLD:
             renew(data, work, borders[B], borders[C], solutions[TESTED])
         else:
-            flip(data[CALLS], first, base, -1.0)
+            data[CALLS].flip(first, base, -1.0)
             renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[TESTED])
-            flip(data[CALLS], first, base, 1.0)
+            data[CALLS].flip(first, base, 1.0)
     own = row.shape[0] - 3
-    assign(data[CALLS], first, data[SECOND], q)  # the tests have asked nearby
-    inspect(data[CALLS], first, U[:n], data[UNIT] * U[n], base, row[:own])
+    data[CALLS].assign(first, data[SECOND], q)  # the tests have asked nearby
+    data[CALLS].inspect(first, U[:n], data[UNIT] * U[n], base, row[:own])
     row[own] = U[n] - reference[3]
     row[own + 1] = reference[4] - U[n]
     row[own + 2] = math.inf

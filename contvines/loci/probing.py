@@ -1,10 +1,9 @@
 """Test functions of a locus at any point, and their derivatives along directions; see :mod:`contvines.loci.kernels`.
 
-This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
+native/loci.hpp has the same for compiled problems.
 """
 
 import math
-from typing import Any
 
 from .layout import (
     BASE_F,
@@ -44,14 +43,6 @@ from .layout import (
     C,
 )
 
-# the problem's kernels, put in by contvines.loci.binding; their first argument is `calls`
-linearise: Any = None
-bordered: Any = None
-inspect: Any = None
-assign: Any = None
-flip: Any = None
-transpose: Any = None
-
 
 def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
     """Solve M (v, g) = (0, 1) with the linearisation at hand, into `tangent`; returns g."""
@@ -61,15 +52,15 @@ def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
         Q[i] = b[i]
         line[i] = c[i]
     line[n] = 0.0
-    bordered(calls, data, linear, line, 0.0, step, tangent)
+    calls.bordered(data, linear, line, 0.0, step, tangent)
     return tangent[n]
 
 
 def flipped_test(calls, data, linear, F, Q, b, c, line, step, tangent):
     """The same for perturbations that change sign over the period; the linearisation is left as it was."""
-    flip(calls, data, linear, -1.0)
+    calls.flip(data, linear, -1.0)
     value = null_test(calls, data, linear, F, Q, b, c, line, step, tangent)
-    flip(calls, data, linear, 1.0)
+    calls.flip(data, linear, 1.0)
     return value
 
 
@@ -112,8 +103,8 @@ def tests(data, work, u, p, q, values):
     )
     n = F.shape[0]
     kind, calls = data[KIND], data[CALLS]
-    assign(calls, first, data[SECOND], q)
-    residual = linearise(calls, first, u, p, trial)
+    calls.assign(first, data[SECOND], q)
+    residual = calls.linearise(first, u, p, trial)
     if not residual < 1e300:
         return residual
     if kind == FOLD:
@@ -130,12 +121,12 @@ def tests(data, work, u, p, q, values):
             Q[i] = borders[B, i]
             lines[0, i] = borders[C, i]
         lines[0, n] = 0.0
-        bordered(calls, first, trial, lines[0], 0.0, lines[1], solutions[TESTED])
+        calls.bordered(first, trial, lines[0], 0.0, lines[1], solutions[TESTED])
         values[0] = solutions[TESTED, n]
         values[1] = lines[1, n]
     else:
         row = work[ROW]
-        inspect(calls, first, u, p, trial, row)
+        calls.inspect(first, u, p, trial, row)
         if kind == MARGIN:
             values[0] = row[2 * data[MULTIPLIERS] + data[WHICH]]
         else:

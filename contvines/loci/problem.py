@@ -7,9 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.library import address
+from ..core.records import pack
+from ..core.table import TableKernels, native_table
 from ..problems.abilities import notation_of
+from ..problems.kernels import Kernels
 from ..problems.protocol import Problem, ProblemDefaults
-from .binding import locus_kernels
+from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
 from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
 
@@ -20,8 +24,30 @@ FURTHER = 100.0  # times the sizes along the branch: no locus is measured with m
 UNSEEN = 1e-12  # typical sizes below this part of the largest one are those of zeros
 
 
+TABLE = 3  # of loci, in the native core
+IN_PYTHON = Kernels(locus_linearise, locus_bordered, locus_inspect)
+NOTHING = np.zeros(0)
+
+
+class Data(NamedTuple):
+    """What the kernels know of a locus; the order is that of the names in :mod:`contvines.loci.layout`.
+
+    ``memory`` is the struct `Data` of native/loci.hpp.
+    """
+
+    first: Any
+    second: Any
+    calls: Any
+    kind: int
+    which: int
+    multipliers: int
+    flow: bool
+    unit: float
+    memory: np.ndarray = NOTHING
+
+
 class Work(NamedTuple):
-    """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`."""
+    """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`. ``memory`` is the struct `Work` of native/loci.hpp."""
 
     residual: np.ndarray
     base: Any
@@ -50,6 +76,7 @@ class Work(NamedTuple):
     state: np.ndarray
     frame: np.ndarray
     kept: np.ndarray
+    memory: np.ndarray = NOTHING
 
 
 class LocusProblem(ProblemDefaults):
@@ -139,31 +166,17 @@ class LocusProblem(ProblemDefaults):
         self.borders = self._fresh_borders() if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
-        self.kernels, calls = locus_kernels(self.first)
-        self._stored: list[Any] = []
         self.compiled = bool(kernels.compiled)
-        self.data = (
-            self._place(self.first.data),
-            self._place(self.second.data),
-            calls,
-            self.condition,
-            self.index,
-            self.n_multipliers,
-            problem.spectrum == "flow",
-            self.unit,
-        )
+        self.kernels: Any = TableKernels(native_table(TABLE)) if self.compiled else IN_PYTHON
+        self.natural = has_natural_units(problem)
+        about = self.condition, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
+        self.data = Data(self.first.data, self.second.data, self.first.kernels, *about)
+        if self.compiled:
+            places = address(self.first.data.memory), address(self.second.data.memory)
+            self.data = self.data._replace(memory=pack(kernels.table, *places, *about))
         shift = problem.period_shift
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
-
-    def _place(self, content: Any) -> Any:
-        """Data or workspace as the kernels of the locus get it: an address if they are compiled."""
-        if not self.compiled:
-            return content
-        from .addresses import Stored
-
-        self._stored.append(Stored(content))
-        return self._stored[-1].address
 
     def _fresh_borders(self) -> np.ndarray:
         borders = np.random.default_rng(5).standard_normal((4, self.size + 1))
@@ -175,10 +188,10 @@ class LocusProblem(ProblemDefaults):
         base, trial = self.first.workspace(), self.first.workspace()
         column = problem.kernels.column
         tests = self.dimension - n
-        return Work(
+        work = Work(
             residual=np.zeros(self.dimension),
-            base=self._place(base),
-            trial=self._place(trial),
+            base=base,
+            trial=trial,
             base_F=base[0].reshape(-1),
             base_Q=base[column].reshape(-1),
             trial_F=trial[0].reshape(-1),
@@ -204,11 +217,16 @@ class LocusProblem(ProblemDefaults):
             frame=np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n),
             kept=np.zeros(self.dimension),
         )
+        if not self.compiled:
+            return work
+        residual, _, _, *arrays = work[: work._fields.index("memory")]
+        sizes = n, self.dimension, len(work.masked), address(base.memory), address(trial.memory)
+        return work._replace(memory=pack(*sizes, residual, *arrays, len(work.row)))
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
         scale = np.ones(self.dimension + 1)
-        if not self.compiled:
+        if not self.natural:
             scales = self.base.scales
             if scales is None and np.isfinite(self.bounds).all():
                 self.base.scale_within(self.bounds)
@@ -319,6 +337,11 @@ class LocusProblem(ProblemDefaults):
             "problem": about,
             "factory": "contvines.loci.problem:from_description" if about.get("factory") else None,
         }
+
+
+def has_natural_units(problem: Problem) -> bool:
+    """Whether all unknowns of a problem are of order 1 by themselves, so that nothing has to be learned of their sizes."""
+    return bool(getattr(problem.kernels, "natural", problem.kernels.compiled))
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> LocusProblem | None:

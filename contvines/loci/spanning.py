@@ -9,11 +9,10 @@ the point before, and C1 is across the parameters' part of the first: where that
 has full rank, at folds and where branches cross, too. At branch points it has not: there b takes the place of C1, and one more
 direction goes along the null vector.
 
-This source runs compiled and interpreted; :mod:`contvines.loci.binding` puts the kernels of the problem in.
+native/loci.hpp has the same for compiled problems.
 """
 
 import math
-from typing import Any
 
 from .layout import (
     ALONG,
@@ -41,9 +40,6 @@ from .layout import (
     B,
     C,
 )
-
-# the problem's kernel, put in by contvines.loci.binding; its first argument is `calls`
-bordered: Any = None
 
 
 def rotate(columns, angle):
@@ -96,7 +92,7 @@ def solve(data, work, side, column, row, step, tangent):
     for i in range(F.shape[0]):
         F[i] = side[i]
         Q[i] = column[i]
-    return bordered(data[CALLS], data[FIRST], work[BASE], row, 0.0, step, tangent)
+    return data[CALLS].bordered(data[FIRST], work[BASE], row, 0.0, step, tangent)
 
 
 def span(data, work):

@@ -15,7 +15,7 @@ from .kinds import condition
 from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
 from .linear import Linearisation
 from .probing import pair_of
-from .problem import LocusProblem
+from .problem import LocusProblem, has_natural_units
 
 ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
 MET = 1e-7  # margins below this are those of a border that is met from its other side
@@ -79,7 +79,7 @@ def begin(
 
 def unit_of(problem: Problem, bounds: tuple[float, float], p: float) -> float:
     """The unit of the first parameter as an unknown among those of a machine: 1, or a power of two where it is of another order."""
-    if not problem.kernels.compiled:
+    if not has_natural_units(problem):
         return 1.0  # all unknowns have scales of their own
     size = max(map(abs, bounds)) if np.isfinite(bounds).all() else abs(p)
     return 1.0 if size == 0.0 or 1.0 / PLAIN <= size <= PLAIN else 2.0 ** round(np.log2(size))

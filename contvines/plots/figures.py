@@ -6,7 +6,7 @@ import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines_ground.figures import new_figure, shrinking, styled, windows
+from contvines.shared.figures import new_figure, shrinking, styled, windows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

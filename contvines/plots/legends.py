@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 from .figures import settle
 from .labels import text_widths

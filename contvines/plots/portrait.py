@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 from ..problems.abilities import Drawable
 from .figures import new_axes, styled

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 
 class Parameters:

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 from .abilities import Doubling
 from .functions import NotEvaluable, UserFunction

@@ -3,7 +3,7 @@
 The contract, in words:
 
 1. A problem is F(u, p) = 0 with N unknowns u (a flat float64 array) and as many equations, and one parameter p.
-2. ``kernels`` holds three functions, compiled by numba or plain Python, with the same signatures:
+2. ``kernels`` holds three functions, plain Python or a table of C functions (`contvines.core.table`), with the same signatures:
 
    ``linearise(data, u, p, work) -> float``
        evaluates F, dF/du and dF/dp into ``work`` and returns the largest absolute residual (inf: not evaluable).
@@ -28,7 +28,7 @@ The contract, in words:
    ``transpose(data, work, column, other) -> None``
        writes the transposed F_u, with ``column`` in the place of F_p, into another workspace.
    ``matrix(data, work) -> ndarray``
-       F_u as it stands in ``work``, shape (N, N); always plain Python, for normal forms at single points.
+       F_u as it stands in ``work``, shape (N, N), for normal forms at single points.
 3. ``data`` and ``workspace()`` are the opaque first and last arguments of the kernels.
 4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none". A problem without one
    may still have real eigenvalues watched for branch points: ``detection`` is then "real".

@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from contvines_ground.processes import ATTEMPTS, spread
+from contvines.shared.processes import ATTEMPTS, spread
 
 from .plan import PlanError
 from .work import Job, Row, work

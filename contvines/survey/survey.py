@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 
 from ..events.kinds import KINDS
 from ..hints import hinting

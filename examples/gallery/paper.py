@@ -22,7 +22,7 @@ from matplotlib.lines import Line2D
 
 from contvines.plots.figures import settle
 from contvines.plots.legends import place_legend
-from contvines_ground.figures import new_figure, styled
+from contvines.shared.figures import new_figure, styled
 
 MASS_RATIO = 0.006
 DAMPING = 0.9

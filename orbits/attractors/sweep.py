@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import no_parameter
-from contvines_ground.processes import ATTEMPTS, spread
+from contvines.shared.near_names import no_parameter
+from contvines.shared.processes import ATTEMPTS, spread
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle

@@ -11,11 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from orbits.compiling.arguments import CycleData, Workspace
+from orbits.arguments import Workspace, cycle_data, workspace
 from orbits.cycles.kernels import assemble
 from orbits.cycles.margins import PER_NODE
 from orbits.cycles.rest_equations import RestEquations
-from orbits.elimination.block_cyclic import workspace
 from orbits.machines.base import Model
 from orbits.machines.path import along
 from orbits.words import Word
@@ -79,23 +78,24 @@ class Equations:
         self.period_shift = np.zeros(self.dimension)
         self.period_shift[::n] = 2.0 * np.pi
         self.unit = unit_nodes(word, n, self.units)
-        own = frame.own.copy()
-        self.data = CycleData(
-            word.codes[:length].copy(),
-            word.mode_codes[:length].copy(),
-            own,
-            self.path if self.units == PLAIN else frame.own_path.copy(),
+        self.data = cycle_data(
+            word.codes[:length],
+            word.mode_codes[:length],
+            frame.own,
+            frame.path if self.units == PLAIN else frame.own_path,
             self.twist,
             self.shift,
             self.pinned,
             frame.active,
-            frame.amounts.copy() if len(frame.law) else own,
+            frame.amounts,
             frame.law,
         )
+        if self.units == PLAIN:
+            self.path = self.data.path
 
     @cached_property
     def kernels(self) -> Any:
-        """linearise, bordered, inspect, newton, examine: the compiled functions of the model."""
+        """linearise, bordered, inspect, newton, examine of the model."""
         return assemble(self.model)
 
     @cached_property

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table

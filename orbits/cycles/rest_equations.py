@@ -19,7 +19,6 @@ class RestKernels(NamedTuple):
     newton: Any
     examine: Any
     compiled: bool = False
-    digest: str = "stuck"
     assign: Any = None
     flip: None = None  # the unknowns hold no perturbations that could change sign
     transpose: Any = None
@@ -52,7 +51,7 @@ class RestEquations:
 
     @property
     def kernels(self) -> Any:
-        """In plain Python: three equations need no compiler."""
+        """In plain Python: there are three equations."""
         return KERNELS
 
     def workspace(self) -> tuple[np.ndarray, ...]:
@@ -148,6 +147,4 @@ def _transpose(data: RestEquations, work: tuple, column: np.ndarray, other: tupl
     other[1][:], other[2][:] = work[1].T, column
 
 
-KERNELS = RestKernels(
-    _linearise, _bordered, _inspect, _newton, _examine, assign=assign.py_func, transpose=_transpose
-)
+KERNELS = RestKernels(_linearise, _bordered, _inspect, _newton, _examine, assign=assign, transpose=_transpose)

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from orbits.declared.engine import LANES
+from orbits.multipliers.periodic_schur import periodic_multipliers
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
@@ -325,14 +326,6 @@ SAFE = 1e5  # product of norms up to which the product of the factors keeps the 
 
 
 def _periodic(chain: np.ndarray, size: int) -> np.ndarray:
-    # kept on disk; what decides between it and the scaled product would be compiled anew by every process
-    from orbits.multipliers.factors import scratch_size
-    from orbits.multipliers.periodic_qr import periodic_multipliers
-
-    length = len(chain)
     re, im = np.zeros(size), np.zeros(size)
-    against = np.tile(-np.eye(size), (length, 1, 1))
-    periodic_multipliers(
-        np.ascontiguousarray(chain), against, 1.0, re, im, np.zeros(scratch_size(length, size))
-    )
+    periodic_multipliers(chain, np.tile(-np.eye(size), (len(chain), 1, 1)), 1.0, re, im)
     return re + 1j * im

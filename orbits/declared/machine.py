@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_arguments import hinting
-from contvines_ground.near_names import no_parameter
+from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import no_parameter
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
 from orbits.declared.machine import Machine

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.cycles.identity import canonical, size_of_one

@@ -1,1 +1,1 @@
-"""Block-cyclic bordered systems, solved in O(l)."""
+"""Block-cyclic bordered systems, solved in O(l): the reference of native/elimination.hpp."""

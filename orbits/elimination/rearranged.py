@@ -9,46 +9,31 @@ from typing import Any
 
 import numpy as np
 
-from orbits.compiling.decorators import inlined_kernel
 
-unpin: Any = None  # filled in per machine by `orbits.cycles.kernels`
-
-
-def flip(data, work, sign):
+def flip(data: Any, work: Any, sign: float) -> None:
     """Turn the closure x_L = T x_0 of the linearisation into x_L = -T x_0 (sign = -1), and back (sign = 1).
 
-    T is the closure's own twist. The shift of an impact-free motion is put back: turned round, the closure needs no pin.
+    T is the closure's own twist. The shift of an impact-free motion has to be put back before (`unpin` of its machine): turned round, the
+    closure needs no pin.
     """
-    unpin(data, work)
-    D = work.D
-    last = D.shape[0] - 1
-    for i in range(D.shape[1]):
-        for c in range(D.shape[1]):
-            D[last, i, c] = -D[last, i, c]
+    np.negative(work.D[-1], out=work.D[-1])
 
 
-@inlined_kernel
-def transpose(data, work, column, other):
+def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
     """Write the transposed system into another workspace, with `column` (L n,) as its last column.
 
     Row k of J ties nodes k and k + 1 by A_k and D_k. Column k + 1 therefore ties the left unknowns of rows k and k + 1 by
     D_k^T and A_{k+1}^T: block k of the new system. The closure's twist, which scales columns of D_{L-1}, scales rows here;
     in the last block it is taken out of the place where the elimination puts it.
     """
-    A, D, twist = work.A, work.D, data.twist
-    new_A, new_D, Q = other.A, other.D, other.Q
-    length, n = A.shape[0], A.shape[1]
-    for k in range(length):
-        following = k + 1 if k + 1 < length else 0
-        for i in range(n):
-            scale = twist if (following == 0 and i > 0) else 1.0
-            Q[k, i] = column[following * n + i]
-            for c in range(n):
-                new_A[k, i, c] = scale * D[k, c, i]
-                new_D[k, i, c] = A[following, c, i] * (twist if (following == 0 and c > 0) else 1.0)
+    other.A[:] = work.D.transpose(0, 2, 1)
+    other.A[-1, 1:] *= data.twist
+    other.D[:] = np.roll(work.A, -1, axis=0).transpose(0, 2, 1)
+    other.D[-1, :, 1:] *= data.twist
+    other.Q[:] = np.roll(column.reshape(other.Q.shape), -1, axis=0)
 
 
-def matrix(data, work) -> np.ndarray:
+def matrix(data: Any, work: Any) -> np.ndarray:
     """The whole Jacobian, shape (L n, L n), of the linearisation in a workspace."""
     A, D, twist = work.A, work.D, data.twist
     length, n = A.shape[0], A.shape[1]

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean, no_parameter
+from contvines.shared.near_names import did_you_mean, no_parameter
 from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest

@@ -7,7 +7,7 @@ import importlib
 from functools import cache
 from typing import Any
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError

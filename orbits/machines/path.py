@@ -1,4 +1,4 @@
-"""How a machine's numbers follow the one parameter that varies (compiled).
+"""How a machine's numbers follow the one parameter that varies.
 
 The numbers that the maps read are products of powers of the named parameters. Of a machine described by its numbers each parameter
 is one of them; a physical quantity may move several: the half-width of the cavity changes the dimensionless gravity and
@@ -11,10 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.compiling.decorators import kernel
 
-
-@kernel
 def place(params, path, p, out):
     """The numbers at p, then their derivatives with respect to p, into `out` (2 P,)."""
     count = params.shape[0]
@@ -31,7 +28,6 @@ def place(params, path, p, out):
             out[count + j] = power * path[0, j] * p ** (power - 1.0)
 
 
-@kernel
 def assign(data, other, value):
     """Give the parameter that varies in `other` a value in `data`, in place.
 

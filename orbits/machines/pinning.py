@@ -6,10 +6,7 @@ takes the place of that of the last flight, whose ends lie on both sides of the 
 
 from __future__ import annotations
 
-from orbits.compiling.decorators import kernel
 
-
-@kernel
 def last_flight(modes):
     """The last event that is followed by a flight."""
     last = modes.size - 1

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.notation import SYMBOLS, WORDS
 from orbits.machines.parameters import Parameter, ParameterError
 from orbits.machines.path import single

@@ -4,13 +4,12 @@ After Bojanczyk, Golub and Van Dooren, Proc. SPIE 1770 (1992) 31: orthogonal cha
 factors bring all but one to upper triangular form and the last to upper Hessenberg form; implicit QR steps then
 chase the rotation round the cycle until the last is triangular too. Complex arithmetic with single shifts keeps
 it short; pairs are made exactly conjugate at the end. Scales are carried as (mantissa, exponent): no overflow.
-O(L) time and memory, no allocation.
+O(L) time and memory.
 """
 
 import math
 
 import numpy as np
-from numba import njit
 
 from orbits.multipliers.factors import (
     LARGE,
@@ -23,7 +22,6 @@ from orbits.multipliers.factors import (
 )
 
 
-@njit(cache=True, error_model="numpy")
 def _rotation(f, g):
     """(c, s) with c real such that [[c, s], [-conj s, c]] maps (f, g) to (r, 0)."""
     size = abs(g)
@@ -36,7 +34,6 @@ def _rotation(f, g):
     return other / norm, (f / other) * (g.conjugate() / norm)
 
 
-@njit(cache=True, error_model="numpy")
 def _rows(X, k, c, s, first, last):
     """Rotate rows k, k+1 of X over columns first..last."""
     for j in range(first, last + 1):
@@ -45,7 +42,6 @@ def _rows(X, k, c, s, first, last):
         X[k + 1, j] = c * y - s.conjugate() * x
 
 
-@njit(cache=True, error_model="numpy")
 def _columns(X, k, c, s, first, last):
     """Rotate columns k, k+1 of X (by the adjoint) over rows first..last."""
     for i in range(first, last + 1):
@@ -54,7 +50,6 @@ def _columns(X, k, c, s, first, last):
         X[i, k + 1] = c * y - s * x
 
 
-@njit(cache=True, error_model="numpy")
 def _carry(T, k, c, s, lo, hi, top):
     """Carry a rotation of rows k, k+1 of the last factor round the cycle to its columns (rows lo..top)."""
     last = T.shape[0] - 1
@@ -66,7 +61,6 @@ def _carry(T, k, c, s, lo, hi, top):
     _columns(T[last], k, c, s, lo, top)
 
 
-@njit(cache=True, error_model="numpy")
 def _reduce(T):
     """Periodic Hessenberg-triangular form: T[0..L-2] upper triangular, T[L-1] upper Hessenberg."""
     length, n = T.shape[0], T.shape[1]
@@ -86,7 +80,6 @@ def _reduce(T):
             _carry(T, k, c, s, 0, n - 1, n - 1)
 
 
-@njit(cache=True, error_model="numpy")
 def _shift(T, hi):
     """Wilkinson's shift of the trailing 2 x 2 of the product over the leading scale: (mantissa, exponent)."""
     last = T.shape[0] - 1
@@ -118,7 +111,6 @@ def _shift(T, hi):
     return p11 - p01 * p10 / total, power
 
 
-@njit(cache=True, error_model="numpy")
 def _iterate(T, turns):
     """Periodic QR iteration on a periodic Hessenberg-triangular form; False if it does not converge."""
     last = T.shape[0] - 1
@@ -192,7 +184,6 @@ def _iterate(T, turns):
     return True
 
 
-@njit(cache=True, error_model="numpy")
 def _apart(x, xp, y, yp):
     """|x 2^xp - conj(y) 2^yp| and |Im x| 2^xp + |Im y| 2^yp, both over 2^max(xp, yp)."""
     top = max(xp, yp)
@@ -201,7 +192,6 @@ def _apart(x, xp, y, yp):
     return abs(a - b.conjugate()), abs(a.imag) + abs(b.imag)
 
 
-@njit(cache=True, error_model="numpy")
 def _diagonal(T, re, im, value, power):
     """Eigenvalues from the converged form: real ones made real, pairs made exactly conjugate."""
     length, n = T.shape[0], T.shape[1]
@@ -245,29 +235,19 @@ def _diagonal(T, re, im, value, power):
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def periodic_multipliers(A, D, twist, re, im, scratch):
+def periodic_multipliers(A, D, twist, re, im):
     """Multipliers by the periodic QR algorithm alone: arguments and result as for `multipliers`."""
-    length, n = A.shape[0], A.shape[1]
-    size = length * n * n
-    M = scratch[:size].reshape((length, n, n))
-    room = scratch[size : size + n * n].reshape((n, n))
-    if not factors(A, D, twist, M, room):
-        re[:] = math.nan
-        im[:] = math.nan
+    n = A.shape[1]
+    M = factors(A, D, twist)
+    if M is None:
+        re[:] = im[:] = math.nan
         return False
-    start = size + n * n + (size + n * n) % 2
-    T = scratch[start : start + 2 * size].view(np.complex128).reshape((length, n, n))
-    small = scratch[start + 2 * size : start + 2 * size + 8 * n].view(np.complex128)
-    for i in range(length):
-        for r in range(n):
-            for c in range(n):
-                T[i, r, c] = M[i, r, c]
-    _reduce(T)
-    converged = _iterate(T, small)
-    _diagonal(T, re, im, small[:n], small[n : 2 * n])
+    T, small = M.astype(complex), np.zeros(4 * n, complex)
+    with np.errstate(all="ignore"):
+        _reduce(T)
+        converged = _iterate(T, small)
+        _diagonal(T, re, im, small[:n], small[n : 2 * n])
     sort_eigenvalues(re, im)
     lost = min(deficiency(A), n)
-    for k in range(n - lost, n):
-        re[k] = im[k] = 0.0
+    re[n - lost :] = im[n - lost :] = 0.0
     return converged

@@ -2,7 +2,6 @@
 
 import math
 
-from orbits.compiling.decorators import kernel
 from orbits.multipliers.factors import LARGE, SMALL, UNIT_ROUNDOFF, scaled
 
 CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted
@@ -13,7 +12,6 @@ PASSABLE = 1e-7
 CERTAIN, UNCERTAIN, BROKEN, UNDEFINED = 1, 0, 2, -1
 
 
-@kernel
 def _simple_bound(length, twist, scratch):
     """A bound on the error that is larger than that of `_bound`, and costs less: from sums of absolute entries.
 
@@ -33,7 +31,6 @@ def _simple_bound(length, twist, scratch):
     return bound
 
 
-@kernel
 def _bound(length, twist, power, scratch):
     """The error bound, and its part that comes from rounding the factors themselves."""
     # (s) is the product after factor i, (p) the product before it
@@ -72,7 +69,6 @@ def _bound(length, twist, power, scratch):
     return bound, inherent
 
 
-@kernel
 def product_of_two(A, D, twist, re, im, scratch):
     """Multipliers of 2 x 2 factors from the scaled product: CERTAIN; UNCERTAIN: the error bound is too large;
     BROKEN: the product vanished or left the range of numbers; UNDEFINED: a D_i is singular."""
@@ -152,7 +148,6 @@ def product_of_two(A, D, twist, re, im, scratch):
     return CERTAIN
 
 
-@kernel
 def dominant_of_two(length, twist, re, im, scratch):
     """Two multipliers of different size: the larger one by carrying its eigenvector round the cycle until it settles.
 

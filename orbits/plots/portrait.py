@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines_ground.figures import new_figure, styled
-from contvines_ground.near_arguments import hinting
+from contvines.shared.figures import new_figure, styled
+from contvines.shared.near_arguments import hinting
 from orbits.plots.shown import Shown, quantities, shown
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines_ground.near_names import no_parameter
+from contvines.shared.near_names import no_parameter
 from orbits.cycles.identity import is_symmetric, root_orbit
 from orbits.cycles.margins import PER_NODE, margin_name
 from orbits.proofs.balls import Given, decimal

@@ -5,9 +5,11 @@ import numpy as np
 import contvines as cv
 from contvines.command.compose import checked_study, first_orbit, run_diagram
 from contvines.continuation import loop as source
-from contvines.continuation.binding import bind
+from contvines.continuation.arrays import Metric
+from contvines.continuation.bracketing import SIZE
 from contvines.continuation.corrector import Scratch
-from contvines.continuation.lengths import Metric
+from contvines.continuation.native import NativeLoop
+from contvines.continuation.step_rule import BY_ANGLE
 from orbits import Absorber
 from orbits.problem import OrbitProblem
 from orbits.words import Word
@@ -54,21 +56,23 @@ class Core:
         )
         metric = Metric(np.ones(n + 1), np.ones(n + 1), *map(float, case.metric(l)))
         scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
-        self.arguments = (
-            self.problem.data,
-            self.problem.workspace(),
-            chunk,
-            1,
-            step,
-            control,
+        made = self.problem
+        self.arguments = chunk, 1, step, control
+        self.loop = NativeLoop(
+            made.kernels.table,
+            made.data,
+            made.workspace(),
+            (n, rows),
             metric,
+            0.0,
+            np.zeros(SIZE),
             scratch,
+            BY_ANGLE,
         )
-        self.march = bind(self.problem.kernels).march
 
     def run(self):
         """Follow the branch; returns the number of points."""
-        return self.march(*self.arguments)[0]
+        return self.loop.march(*self.arguments)[0]
 
     def result(self):
         """The run's points; the last one may lie on the end of the interval."""

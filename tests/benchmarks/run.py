@@ -15,9 +15,10 @@ import tempfile
 import time
 from pathlib import Path
 
-import numba
 import numpy as np
 import scipy
+
+from contvines.core.library import variant as core
 
 from . import case, scripts
 from .auto import Auto
@@ -47,7 +48,7 @@ def machine():
     )
     return (
         f"{model}, {os.cpu_count()} cores; {platform.system()}; Python {platform.python_version()}, "
-        f"numpy {np.__version__}, scipy {scipy.__version__}, numba {numba.__version__}; "
+        f"numpy {np.__version__}, scipy {scipy.__version__}, {core()}; "
         f"C compiler: {(compiler or 'none').splitlines()[0]}"
     )
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from contvines_ground.near_arguments import hinting
+from contvines.shared.near_arguments import hinting
 from orbits.doors import above
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import LevelRest

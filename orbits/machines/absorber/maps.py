@@ -1,4 +1,4 @@
-"""Elementary maps of the reduced absorber: those of a level cavity with equal walls (compiled).
+"""Elementary maps of the reduced absorber: those of a level cavity with equal walls.
 
 See `orbits.machines.cavity.equations`; here a = (1 + eps) mu g. Parameters in order: amplitude C, restitution r, friction mu,
 gravity g, mass_ratio eps, frequency Omega.
@@ -6,22 +6,13 @@ gravity g, mass_ratio eps, frequency Omega.
 
 from __future__ import annotations
 
-from orbits.compiling.decorators import kernel
-from orbits.machines import pinning as _pinning
-from orbits.machines.absorber import law as _law
 from orbits.machines.absorber.law import law, rate
-from orbits.machines.cavity import equations as _equations
-from orbits.machines.cavity import law as _general
-from orbits.machines.cavity import margins as _margins
 from orbits.machines.cavity.equations import cycle
 from orbits.machines.cavity.equations import unpin as unpin
 from orbits.machines.cavity.margins import watch
 from orbits.machines.path import place
 
-SOURCES = (_law.__file__, _general.__file__, _equations.__file__, _pinning.__file__, _margins.__file__)
 
-
-@kernel
 def linearise(data, u, p, work):
     """Residuals and derivatives at the cycle `u`; see `orbits.machines.cavity.equations.cycle`."""
     par = work.numbers
@@ -29,7 +20,6 @@ def linearise(data, u, p, work):
     return cycle(data, u, work, law(par), rate(par, par[data.params.shape[0] :]))
 
 
-@kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility; see `orbits.machines.cavity.margins.watch`."""
     watch(data, u, work, law(work.numbers), out)

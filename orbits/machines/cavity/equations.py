@@ -1,4 +1,4 @@
-"""Elementary maps of a shaken cavity between consecutive events, with exact derivatives (compiled).
+"""Elementary maps of a shaken cavity between consecutive events, with exact derivatives.
 
 A node is (Psi, B+) at an impact and (Psi, w) at a turn, stick or slip. In mode s = -1 or +1, with d = (Psi - Psi_0)/Omega
 and beta = v' - w' at the start (B+ after an impact, C Omega cos Psi_0 from rest),
@@ -14,12 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.compiling.decorators import kernel
-from orbits.compiling.trigonometry import sines_cosines
 from orbits.machines.pinning import last_flight
 
 
-@kernel
 def cycle(data, u, work, law, rate):
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
@@ -49,7 +46,7 @@ def cycle(data, u, work, law, rate):
     speed = C * omega
     d_speed = d_C * omega + C * d_Omega
     largest = 0.0
-    sines_cosines(u, 2, length, sines, cosines)
+    sines[:length], cosines[:length] = np.sin(u[::2]), np.cos(u[::2])
     sines[length] = twist * sines[0]
     cosines[length] = twist * cosines[0]
     for i in range(length):
@@ -170,7 +167,6 @@ def cycle(data, u, work, law, rate):
     return largest
 
 
-@kernel
 def pin(F, A, D, Q, u, twist, modes, middle, d_middle, kept):
     """Replace the displacement equation of the last flight by w_i + w_{i+1} = middle, the sum of the walls' places; it goes to `kept`.
 
@@ -190,7 +186,6 @@ def pin(F, A, D, Q, u, twist, modes, middle, d_middle, kept):
     return abs(F[last, 1])
 
 
-@kernel
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
     if data.pinned == 1:

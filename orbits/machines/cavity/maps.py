@@ -1,29 +1,14 @@
-"""Elementary maps and margins of a cavity: `orbits.machines.cavity.equations` with its numbers (compiled)."""
+"""Elementary maps and margins of a cavity: `orbits.machines.cavity.equations` with its numbers."""
 
 from __future__ import annotations
 
-from orbits.compiling.decorators import kernel
-from orbits.machines import pinning as _pinning
-from orbits.machines.cavity import equations as _equations
-from orbits.machines.cavity import law as _law
-from orbits.machines.cavity import margins as _margins
-from orbits.machines.cavity import numbers as _numbers
 from orbits.machines.cavity.equations import cycle
 from orbits.machines.cavity.equations import unpin as unpin
 from orbits.machines.cavity.margins import watch
 from orbits.machines.cavity.numbers import law, rate
 from orbits.machines.path import place
 
-SOURCES = (
-    _law.__file__,
-    _numbers.__file__,
-    _equations.__file__,
-    _pinning.__file__,
-    _margins.__file__,
-)
 
-
-@kernel
 def linearise(data, u, p, work):
     """Residuals and derivatives at the cycle `u`; see `orbits.machines.cavity.equations.cycle`."""
     par = work.numbers
@@ -31,7 +16,6 @@ def linearise(data, u, p, work):
     return cycle(data, u, work, law(par), rate(par, par[data.params.shape[0] :]))
 
 
-@kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility; see `orbits.machines.cavity.margins.watch`."""
     watch(data, u, work, law(work.numbers), out)

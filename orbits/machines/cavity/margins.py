@@ -1,15 +1,12 @@
-"""Margins of admissibility of orbits in a shaken cavity (compiled); notation: `orbits.machines.cavity.equations`."""
+"""Margins of admissibility of orbits in a shaken cavity; notation: `orbits.machines.cavity.equations`."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from orbits.compiling.decorators import kernel
-
 SLIPPING = 1e-6  # phase by which the slip may miss the instant at which friction gives way: the equations solve for it
 
 
-@kernel
 def reversal(pull, peak):
     """The friction's and slope's share of the shaking, and its arc sine (0 where there is none)."""
     if not peak > 0.0:
@@ -18,7 +15,6 @@ def reversal(pull, peak):
     return ratio, (np.arcsin(ratio) if -1.0 < ratio < 1.0 else 0.0)
 
 
-@kernel
 def _ahead(angle):
     """An angle modulo a turn: 0 or ahead, but for rounding, which must not make a turn of an instant that is now."""
     turn = 2.0 * np.pi
@@ -26,7 +22,6 @@ def _ahead(angle):
     return rest - turn if rest > turn - SLIPPING else rest
 
 
-@kernel
 def _reach(law, w0, beta, psi0, psi1):
     """Smallest distance from the walls at the extrema of w inside a flight on a slope without friction.
 
@@ -61,7 +56,6 @@ def _reach(law, w0, beta, psi0, psi1):
     return least
 
 
-@kernel
 def watch(data, u, work, law, out):
     """Margins of admissibility, none negative for an orbit that a machine can follow.
 

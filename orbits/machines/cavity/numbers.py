@@ -1,17 +1,15 @@
-"""The numbers of a cavity's equations from its parameters (compiled)."""
+"""The numbers of a cavity's equations from its parameters."""
 
 from __future__ import annotations
 
 import math
 
-from orbits.compiling.decorators import kernel
 from orbits.machines.cavity.law import Law
 
 AMPLITUDE, RESTITUTION_LEFT, RESTITUTION_RIGHT, FRICTION_LEFT, FRICTION_RIGHT = range(5)
 GRAVITY, MASS_RATIO, FREQUENCY, SLOPE, DISTANCE_LEFT, DISTANCE_RIGHT = range(5, 11)
 
 
-@kernel
 def law(par):
     """The numbers of the equations of motion: a_s = (1 + eps) mu_s g cos(slope), b = (1 + eps) g sin(slope)."""
     whole, g = 1.0 + par[MASS_RATIO], par[GRAVITY]
@@ -29,7 +27,6 @@ def law(par):
     )
 
 
-@kernel
 def rate(par, slope):
     """Their derivatives along a direction `slope` of the parameters."""
     weight = (1.0 + par[MASS_RATIO]) * par[GRAVITY]

@@ -20,17 +20,14 @@ so stick, slip and turn read exactly as in the reduced model. Whatever the mode,
 with the same alpha and beta: a *wave*. A wave's second derivative is bounded in closed form, which is what lets
 `first_zero` step from zero to zero without ever missing one.
 
-Everything here is compiled; quantities are scalars.
+Quantities are scalars.
 """
 
 import math
 
-from contvines_ground.parts import part
-
 TINY = 1e-300
 
 
-@part(error_model="numpy")
 def harmonic(force, excitation, drag, stiffness):
     """Response of an oscillator to a moving base: force (sin Psi + excitation * drag cos Psi) -> X sin Psi + Y cos Psi.
 
@@ -59,7 +56,6 @@ def harmonic(force, excitation, drag, stiffness):
     return scale * (stiffness + excitation * drag * drag), scale * drag * (excitation * stiffness - 1.0)
 
 
-@part(error_model="numpy")
 def rates(mass, drag):
     """Decay rate alpha and angular frequency beta of mass z'' + drag z' + z = 0; beta is NaN when overdamped."""
     alpha = 0.5 * drag / mass
@@ -69,7 +65,6 @@ def rates(mass, drag):
     return alpha, math.sqrt(square)
 
 
-@part(error_model="numpy")
 def transition(alpha, beta, duration):
     """Entries of the 2x2 matrix that carries (z, z') over `duration`, and the two functions it is made of.
 
@@ -91,19 +86,16 @@ def transition(alpha, beta, duration):
     )
 
 
-@part(error_model="numpy")
 def oscillation(alpha, beta, z, z_rate):
     """Coefficients A, B of exp(-alpha tau) (A cos beta tau + B sin beta tau) with the given initial values."""
     return z, (z_rate + alpha * z) / beta
 
 
-@part(error_model="numpy")
 def derivative(Omega, alpha, beta, P, Q, A, B):
     """Coefficients P, Q, A, B of the derivative of a wave with respect to tau."""
     return -Omega * Q, Omega * P, beta * B - alpha * A, -beta * A - alpha * B
 
 
-@part(error_model="numpy")
 def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau):
     """A wave's value and its derivative at time tau after the phase `phase`."""
     Psi = phase + Omega * tau
@@ -116,7 +108,6 @@ def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau):
     return value, slope
 
 
-@part(error_model="numpy")
 def certain(y, y_rate, bound):
     """Time for which y > 0 stays positive when abs(y'') <= bound: the zero of y + y' h - bound h^2/2."""
     root = math.sqrt(y_rate * y_rate + 2.0 * bound * y)
@@ -125,7 +116,6 @@ def certain(y, y_rate, bound):
     return 2.0 * y / (root - y_rate)
 
 
-@part(error_model="numpy")
 def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
     """First zero of a wave in start < tau < end; `end` when there is none.
 

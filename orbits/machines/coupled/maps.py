@@ -1,4 +1,4 @@
-"""Elementary maps of the absorber on its oscillator between consecutive events, with exact derivatives (compiled).
+"""Elementary maps of the absorber on its oscillator between consecutive events, with exact derivatives.
 
 A node is (Psi, B+, v, v') at an impact and (Psi, w, v, v') at a turn, stick or slip; v = q1 + eps q2, w = q1 - q2 and
 B = v' - w' = (1 + eps) q2'. The map of a segment starts at node i, follows the closed-form motion of
@@ -29,20 +29,12 @@ import math
 
 import numpy as np
 
-from orbits.compiling.decorators import kernel
-from orbits.machines import pinning as _pinning
-from orbits.machines.coupled import flow as _flow
-from orbits.machines.coupled import margins as _margins
 from orbits.machines.coupled.flow import harmonic, rates, transition
 from orbits.machines.coupled.margins import margins as margins
 from orbits.machines.path import place
 from orbits.machines.pinning import last_flight
 
-SOURCES = (_flow.__file__, _margins.__file__, _pinning.__file__)
-"""Files whose compiled functions are part of these kernels: what is kept on disk depends on them too."""
 
-
-@kernel
 def _response(par, slope, mass, d_mass):
     """X, Y, alpha, beta of the oscillator with the given mass, and their derivatives along `slope`."""
     omega, lam, eps, chi = par[1], par[2], par[3], par[7]
@@ -68,7 +60,6 @@ def _response(par, slope, mass, d_mass):
     return X, Y, alpha, beta, dX, dY, d_alpha, d_beta
 
 
-@kernel
 def linearise(data, u, p, work):
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
@@ -90,7 +81,7 @@ def linearise(data, u, p, work):
         Largest residual, infinity where the maps cannot be evaluated (undamped resonance, overdamped oscillator).
     """
     events, modes, twist, shift, pinned = data.events, data.modes, data.twist, data.shift, data.pinned
-    F, A, D, Q, par, trig = work.F, work.A, work.D, work.Q, work.numbers, work.trig
+    F, A, D, Q, par, sines, cosines = work.F, work.A, work.D, work.Q, work.numbers, work.sines, work.cosines
     length = F.shape[0]
     place(data.params, data.path, p, par)
     slope = par[data.params.shape[0] :]
@@ -112,11 +103,8 @@ def linearise(data, u, p, work):
         if modes[i] == 0:
             stuck = _response(par, slope, whole, d_eps)
             break
-    for i in range(length):
-        trig[i, 0] = math.sin(u[4 * i])
-        trig[i, 1] = math.cos(u[4 * i])
-    trig[length, 0] = twist * trig[0, 0]
-    trig[length, 1] = twist * trig[0, 1]
+    sines[:length], cosines[:length] = np.sin(u[::4]), np.cos(u[::4])
+    sines[length], cosines[length] = twist * sines[0], twist * cosines[0]
     largest = 0.0
     for i in range(length):
         event = events[i]
@@ -131,7 +119,7 @@ def linearise(data, u, p, work):
             arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
             after = twist * modes[0]
             psi1, y1, v1, v1_rate = u[0] + shift, twist * u[1], twist * u[2], twist * u[3]
-        s0, c0, s1, c1 = trig[i, 0], trig[i, 1], trig[i + 1, 0], trig[i + 1, 1]
+        s0, c0, s1, c1 = sines[i], cosines[i], sines[i + 1], cosines[i + 1]
         X, Y, alpha, beta, dX, dY, d_alpha, d_beta = slide if mode != 0 else stuck
         kappa = alpha * alpha + beta * beta
         d = (psi1 - psi0) * by_omega
@@ -315,7 +303,6 @@ def linearise(data, u, p, work):
     return largest
 
 
-@kernel
 def _pin(F, A, D, Q, u, modes, pin):
     """Replace the displacement equation of the last flight by w_i + w_{i+1} = 0; what was there goes to `pin`.
 
@@ -335,7 +322,6 @@ def _pin(F, A, D, Q, u, modes, pin):
     return abs(F[last, 1])
 
 
-@kernel
 def unpin(data, work):
     """Put the displacement equation back, for the multipliers."""
     if data.pinned and data.twist > 0.0:

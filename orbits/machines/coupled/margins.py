@@ -1,4 +1,4 @@
-"""Margins of admissibility of the coupled machine's orbits (compiled)."""
+"""Margins of admissibility of the coupled machine's orbits."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ import math
 
 import numpy as np
 
-from orbits.compiling.decorators import kernel
 from orbits.machines.coupled.flow import certain, derivative, first_zero, harmonic, oscillation, rates, wave
 
 
-@kernel
 def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start, end):
     """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none.
 
@@ -59,7 +57,6 @@ def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start,
             return smallest
 
 
-@kernel
 def margins(data, u, p, work, out):
     """Margins of admissibility, none negative for an orbit that a machine can follow.
 
@@ -75,7 +72,7 @@ def margins(data, u, p, work, out):
     3. The duration of the segment.
     """
     events, modes, twist, shift = data.events, data.modes, data.twist, data.shift
-    par, trig = work.numbers, work.trig
+    par, sines, cosines = work.numbers, work.sines, work.cosines
     length = events.shape[0]
     G, omega, lam, eps, r, mu, g, chi = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
     whole = 1.0 + eps
@@ -100,7 +97,7 @@ def margins(data, u, p, work, out):
         else:
             arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
             psi1, y1, v1_rate = u[0] + shift, twist * u[1], twist * u[3]
-        s0, c0 = trig[i, 0], trig[i, 1]
+        s0, c0 = sines[i], cosines[i]
         d = (psi1 - psi0) / omega
         if event < 2:
             w0 = 1.0 - 2.0 * event

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from contvines_ground.near_names import did_you_mean
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import ParameterError
 
 

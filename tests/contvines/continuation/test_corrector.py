@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.continuation.corrector import improve
-from contvines.continuation.engine import Engine
-from contvines.continuation.lengths import (
+from contvines.continuation.arrays import (
     Metric,
     compare,
     correction_size,
@@ -19,11 +17,14 @@ from contvines.continuation.lengths import (
     plane,
     remainder,
 )
+from contvines.continuation.corrector import improve
+from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from contvines.events.segment import Segment
 
 ONES = np.ones(2)
 FLAT = Metric(ONES, ONES, 1.0, 1.0)
+UNEVEN = Metric(np.array([0.5, 0.5, 0.25]), np.ones(3), 0.5, 0.25)
 
 
 def judged(sizes, residual=1.0, tolerance=1e-8, noise=0.0):
@@ -124,20 +125,18 @@ def test_a_segment_guesses_its_inside_in_arc_length():
 
 def test_sums_over_the_unknowns():
     u, step = np.array([1.0, -3.0]), np.array([0.1, 0.4, -0.3])
-    assert correction_size(step, u, 0.5, FLAT) == pytest.approx(max(0.1 / 2.0, 0.4 / 4.0, 0.3 / 1.5))
-    assert correction_size(np.array([0.1, np.nan, 0.0]), u, 0.5, FLAT) == math.inf
+    assert correction_size(step, u, 0.5, UNEVEN) == pytest.approx(max(0.1 / 2.0, 0.4 / 4.0, 0.3 / 1.5))
+    assert correction_size(np.array([0.1, np.nan, 0.0]), u, 0.5, UNEVEN) == math.inf
     border = np.array([0.2, -0.5, 2.0])
     assert remainder(border, u, 0.7, 4.0) == pytest.approx(4.0 - (0.2 + 1.5 + 1.4))
     fix_parameter(border)
     assert border.tolist() == [0.0, 0.0, 1.0]
     tangent = np.array([0.3, 0.4, 0.5])
-    target = plane(tangent, u, 0.7, Metric(ONES, ONES, 0.5, 0.25), border)
+    target = plane(tangent, u, 0.7, UNEVEN, border)
     assert border.tolist() == pytest.approx([0.15, 0.2, 0.125])
     assert target == pytest.approx(0.15 - 0.6 + 0.125 * 0.7)
     other = np.array([0.6, -0.1, 0.2])
-    norm, cosine, error = compare(
-        tangent, other, u, np.array([0.9, -2.8]), 0.7, 0.4, Metric(ONES, ONES, 0.5, 0.25)
-    )
+    norm, cosine, error = compare(tangent, other, u, np.array([0.9, -2.8]), 0.7, 0.4, UNEVEN)
     assert norm == pytest.approx(math.sqrt(0.5 * 0.25 + 0.25 * 0.25))
     assert cosine == pytest.approx((0.5 * (0.18 - 0.04) + 0.25 * 0.1) / norm)
     assert error == pytest.approx(math.sqrt(0.5 * (0.01 + 0.04) + 0.25 * 0.09))

@@ -2,25 +2,25 @@
 
 import numpy as np
 import pytest
-from numba import njit
 
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from contvines.continuation.starts import solve_start
 from contvines.continuation.trace import chunks
+from contvines.core.library import native
 from contvines.problems.protocol import Kernels, ProblemDefaults
+from tests.contvines.compiled import Made, in_memory
 
 
-def linearise(data, u, p, work):
-    """u - p = 0, with a slope that is wrong by the share data[0]."""
-    work[0][0] = u[0] - p
-    work[1][0] = 1.0 + data[0]
-    return abs(work[0][0])
+def linearise(wrong, u, p, work):
+    """u - p = 0, with a slope that is wrong by a share."""
+    work[0], work[1] = u[0] - p, 1.0 + wrong[0]
+    return abs(work[0])
 
 
-def bordered(data, work, border, n, step, tangent):
-    F, slope = work[0][0], work[1][0]
+def bordered(wrong, work, border, n, step, tangent):
+    F, slope = work
     det = slope * border[1] + border[0]
     step[0] = (-F * border[1] + n) / det
     step[1] = (slope * n + F * border[0]) / det
@@ -28,7 +28,7 @@ def bordered(data, work, border, n, step, tangent):
     return 1.0 if det > 0.0 else -1.0
 
 
-def inspect(data, u, p, work, row):
+def inspect(wrong, u, p, work, row):
     row[0], row[1] = 0.0, 0.0
 
 
@@ -36,14 +36,18 @@ class Line(ProblemDefaults):
     dimension, n_multipliers, spectrum, parameter = 1, 1, "map", "p"
 
     def __init__(self, kernels, wrong=0.0):
-        self.kernels, self.data = kernels, np.array([wrong])
+        self.kernels = kernels
+        self.data = in_memory(wrong) if kernels.compiled else [wrong]
 
     def workspace(self):
-        return np.zeros(1), np.zeros(1)
+        return in_memory(0.0, 0.0) if self.kernels.compiled else np.zeros(2)
 
 
-INTERPRETED = Kernels(linearise, bordered, inspect, compiled=False)
-COMPILED = Kernels(njit(linearise), njit(bordered), njit(inspect), compiled=True)
+INTERPRETED = Kernels(linearise, bordered, inspect)
+KERNELS = {"interpreted": INTERPRETED}
+if native():
+    KERNELS["compiled"] = Made(linearise, bordered, inspect, (1, 1, 2, 2))
+each = pytest.mark.parametrize("kernels", KERNELS.values(), ids=KERNELS)
 
 
 def constant(turn, error, sweeps, length, angle, roundoff):
@@ -60,11 +64,20 @@ def points(kernels, rule, **settings):
     return np.concatenate([c.values[:-1] for c in chunks(engine, solve_start(engine, [0.0], 0.0))])
 
 
-@pytest.mark.parametrize("kernels", [INTERPRETED, COMPILED], ids=["interpreted", "compiled"])
+@each
 def test_a_rule_of_ones_own_is_asked(kernels):
     steps = np.diff(points(kernels, cv.StepRule(constant, "constant"), first_step=0.02, max_step=0.5))
     assert steps == pytest.approx(steps[0], rel=1e-9)  # the line is straight: equal lengths, equal steps
     assert steps[0] == pytest.approx(0.02 / np.sqrt(2.0), rel=1e-9)  # <(1, 1), (1, 1)> = 2
+
+
+@each
+def test_an_error_in_a_rule_is_raised(kernels):
+    def broken(*numbers):
+        raise ZeroDivisionError("of the rule")
+
+    with pytest.raises(ZeroDivisionError, match="of the rule"):
+        points(kernels, cv.StepRule(broken, "broken"))
 
 
 def test_a_negative_factor_rejects_the_step_and_shortens_it():

@@ -3,17 +3,19 @@
 import numpy as np
 import pytest
 
-from contvines.continuation.lengths import Metric
-from contvines.events import scan
+from contvines.continuation import aims
+from contvines.continuation.arrays import Metric
+from contvines.core.library import native
+from contvines.events import bits, scan, scan_arrays
 from contvines.events.bits import Scanned, Symmetries
 from contvines.events.multipliers import counts
 
-WAYS = {"fold": scan.FOLD, "border": scan.BORDER, "multiplier": scan.MULTIPLIER, "shallow": scan.SHALLOW,
-        "damped": scan.DAMPED, "hump": scan.HUMP, "singular": scan.SINGULAR}  # fmt: skip
+WAYS = {"fold": bits.FOLD, "border": bits.BORDER, "multiplier": bits.MULTIPLIER, "shallow": bits.SHALLOW,
+        "damped": bits.DAMPED, "hump": bits.HUMP, "singular": bits.SINGULAR}  # fmt: skip
 
 
 def marked(
-    values, slopes=None, margins=None, multipliers=None, signs=None, kind=scan.MAP, real=True, curve=None
+    values, slopes=None, margins=None, multipliers=None, signs=None, kind=aims.MAP, real=True, curve=None
 ):
     """Names of what is marked, segment by segment, of points of a curve u(p)."""
     n = len(values)
@@ -38,7 +40,12 @@ def marked(
     )
     symmetries = Symmetries(np.zeros((0, 1), np.int64), none, none, np.zeros(1), np.zeros((2, 0, 1)))
     metric = Metric(np.ones(2), np.ones(2), 1.0, 1.0)
-    scan.mark_segments(chunk, first, kind, real, 1e-9, metric, symmetries, flags, smallest)
+    scan_arrays.mark_segments(chunk, first, kind, real, 1e-9, metric, symmetries, flags, smallest)
+    if native():
+        again, least = np.zeros_like(flags), np.zeros(n)
+        scan.in_native(chunk, first, kind, real, 1e-9, metric, symmetries, again, least)
+        np.testing.assert_array_equal(again, flags)
+        np.testing.assert_array_equal(least, smallest)
     return [{name for name, bit in WAYS.items() if flag & bit} for flag in flags], smallest
 
 
@@ -97,7 +104,7 @@ def test_multipliers_just_past_the_circle(past, counted):
         spectrum = np.array([[-0.1, -0.2], [outside, np.conj(outside) if np.imag(outside) else -0.2]])
         if np.imag(outside):
             spectrum[0] = [-0.1 + 1j, -0.1 - 1j]
-        assert ("multiplier" in marked([0.0, 1.0], multipliers=spectrum, kind=scan.FLOW)[0][0]) is counted
+        assert ("multiplier" in marked([0.0, 1.0], multipliers=spectrum, kind=aims.FLOW)[0][0]) is counted
         assert bool(counts(spectrum, "flow")[1].sum()) is counted
 
 

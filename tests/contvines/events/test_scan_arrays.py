@@ -1,11 +1,14 @@
-"""The scan by arrays marks what the scan by loops marks."""
+"""The native scan marks what the scan by arrays marks."""
 
 import numpy as np
 import pytest
 
 from contvines.continuation import aims
-from contvines.continuation.lengths import Metric
+from contvines.continuation.arrays import Metric
+from contvines.core.library import native
 from contvines.events import bits, scan, scan_arrays
+
+pytestmark = pytest.mark.skipif(not native(), reason="no native core")
 
 
 @pytest.mark.parametrize("kind", [aims.NONE, aims.MAP, aims.FLOW, aims.REAL])
@@ -42,9 +45,9 @@ def test_arrays_and_loops_mark_the_same(kind, real):
         repeated = bits.Symmetries(orders, images, constants, shift, np.zeros((2, symmetries, size)))
         given = (chunk, 2 * pairs, kind, real, 1e-9, metric, repeated)
         marks = []
-        for module in (scan, scan_arrays):
+        for mark in (scan.in_native, scan_arrays.mark_segments):
             flags, smallest = np.zeros(max(n - 1, 0), np.int64), np.zeros(n)
-            module.mark_segments(*given, flags, smallest)
+            mark(*given, flags, smallest)
             marks.append((flags.tolist(), smallest.tolist()))
         assert marks[0] == marks[1], seed
         for flag in marks[0][0]:

@@ -8,7 +8,7 @@ import pytest
 
 from contvines.plots import plot_diagram, plot_multipliers, plot_portrait, save_figure
 from contvines.plots.figures import check_picture
-from contvines_ground.figures import HOUSE as STYLE
+from contvines.shared.figures import HOUSE as STYLE
 from tests.contvines import fakes
 
 

@@ -1,12 +1,35 @@
-"""The data of a system without a word, for what asks for its closure alone."""
+"""The data of a system without a word, for what asks for its closure alone; and what is tested in both cores."""
 
 import numpy as np
+import pytest
 
-from orbits.compiling.arguments import CycleData
+from contvines.core.library import native
+from contvines.core.table import TableKernels, native_table
+from orbits.arguments import cycle_data
+from orbits.elimination import block_cyclic, rearranged
 
 
 def closed_by(twist):
     """Data of a system whose last node is its first times `twist`."""
     none = np.zeros(0)
-    codes = np.zeros(0, np.int8)
-    return CycleData(codes, codes, none, np.zeros((2, 0)), twist, 0.0, 0, 0, none, np.zeros((0, 0)))
+    return cycle_data([], [], none, np.zeros((2, 0)), twist, 0.0, 0, 0, none, np.zeros((0, 0)))
+
+
+class Reference:
+    """The reference in numpy."""
+
+    bordered = staticmethod(block_cyclic.bordered)
+    transpose = staticmethod(rearranged.transpose)
+    flip = staticmethod(rearranged.flip)
+
+
+def kernels_of(core):
+    """Elimination and other readings of a system: "reference", or "native" (those of any machine)."""
+    if core == "reference":
+        return Reference
+    if not native():
+        pytest.skip("no native core")
+    return TableKernels(native_table(0))
+
+
+both_cores = pytest.mark.parametrize("core", ["reference", "native"])

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from orbits.arguments import workspace
 from orbits.elimination import rearranged
-from orbits.elimination.block_cyclic import cyclic_kernels, workspace
-from tests.orbits.elimination.closures import closed_by
+from tests.orbits.elimination.closures import both_cores, closed_by, kernels_of
 
 
 def drawn(length, node, seed):
@@ -32,35 +32,36 @@ def written_out(work, twist):
     return matrix
 
 
+@both_cores
 @pytest.mark.parametrize("node", [2, 4])
 @pytest.mark.parametrize("twist", [1.0, -1.0])
 @pytest.mark.parametrize("length", [1, 2, 5])
-def test_transposed_systems(node, twist, length):
+def test_transposed_systems(core, node, twist, length):
     work, draw = drawn(length, node, 10 * node + length)
     data, size = closed_by(twist), node * length
     matrix = written_out(work, twist)
     np.testing.assert_allclose(rearranged.matrix(data, work), matrix, atol=1e-15)
     other = workspace(length, node, 6)
     b, c = draw.normal(size=(2, size))
-    rearranged.transpose(data, work, c, other)
+    kernels_of(core).transpose(data, work, c, other)
     other[0][...] = 0.0
     step, tangent = np.zeros(size + 1), np.zeros(size + 1)
-    cyclic_kernels(node).bordered(data, other, np.append(b, 0.0), 0.0, step, tangent)
+    kernels_of(core).bordered(data, other, np.append(b, 0.0), 0.0, step, tangent)
     whole = np.block([[matrix.T, c[:, None]], [b, np.zeros((1, 1))]])
     exact = np.linalg.solve(whole, np.append(np.zeros(size), 1.0))
     np.testing.assert_allclose(tangent, exact, atol=1e-12 * np.linalg.cond(whole) * np.abs(exact).max())
 
 
+@both_cores
 @pytest.mark.parametrize("twist", [1.0, -1.0])
 @pytest.mark.parametrize("length", [1, 3])
-def test_the_closure_turned_round(monkeypatch, twist, length):
+def test_the_closure_turned_round(core, twist, length):
     """Perturbations that come back with the opposite sign, in all entries: x_L = -T x_0."""
-    monkeypatch.setattr(rearranged, "unpin", lambda data, work: None)
     work, _ = drawn(length, 2, length)
     before = written_out(work, twist)
     last = np.zeros_like(before)
     last[-2:, :2] = work[2][-1] * np.array([1.0, twist])
-    rearranged.flip(closed_by(twist), work, -1.0)
+    kernels_of(core).flip(closed_by(twist), work, -1.0)
     np.testing.assert_allclose(written_out(work, twist), before - 2.0 * last, atol=1e-15)
-    rearranged.flip(closed_by(twist), work, 1.0)
+    kernels_of(core).flip(closed_by(twist), work, 1.0)
     np.testing.assert_allclose(written_out(work, twist), before, atol=1e-15)

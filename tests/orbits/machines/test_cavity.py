@@ -246,9 +246,9 @@ def test_derivatives_with_respect_to_every_parameter_are_those_of_differences():
         u, p, work = problem.reduce(orbit.nodes) + 0.01, problem.value(orbit.params), problem.workspace()
         values = []
         for step in (1e-6, -1e-6):
-            problem.kernels.linearise.py_func(problem.data, u, p + step, work)
+            problem.kernels.linearise(problem.data, u, p + step, work)
             values.append(work[0].copy())
-        problem.kernels.linearise.py_func(problem.data, u, p, work)
+        problem.kernels.linearise(problem.data, u, p, work)
         assert np.abs(work[3] - (values[0] - values[1]) / 2e-6).max() < 1e-8, name
 
 

@@ -5,14 +5,16 @@ import numpy as np
 import pytest
 
 from orbits import Coupled
-from orbits.compiling.arguments import CycleData
-from orbits.elimination.block_cyclic import workspace
+from orbits.arguments import cycle_data, workspace
+from orbits.cycles.kernels import ReferenceKernels
+from orbits.machines.coupled import maps
 from orbits.machines.coupled.flow import first_zero, wave
-from orbits.machines.coupled.maps import linearise, margins
+from orbits.machines.coupled.maps import margins
 from orbits.machines.path import single
 from tests.orbits.machines.coupled.motion import path
 
 L, R, T, S, U = range(5)
+linearise = ReferenceKernels(maps).linearise
 # arriving event and the modes: every kind of segment
 SEGMENTS = [
     (L, -1, R, 1),
@@ -73,7 +75,7 @@ def residual(params, start, mode, arrival, after, x0, x1):
 def closed(events, modes, params, path, twist=1.0):
     """Data of a cycle that closes after one period, or after half of one where it is turned round."""
     shift = 2 * np.pi if twist > 0.0 else np.pi
-    return CycleData(events, modes, params, path, twist, shift, 0, 0, params, np.zeros((0, 8)))
+    return cycle_data(events, modes, params, path, twist, shift, 0, 0, params, np.zeros((0, 8)))
 
 
 @pytest.mark.parametrize("segment", SEGMENTS)

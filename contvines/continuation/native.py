@@ -1,0 +1,170 @@
+"""The continuation loop of compiled problems, in the native core (native/march.hpp)."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from ..core.library import NUMBER, POINTER, WHOLE, address, function
+from ..core.records import pack, place
+from ..interrupts import wanted
+from .aims import Aim
+from .arrays import Metric
+from .corrector import Found, Scratch
+from .loop import RUNNING, Points
+from .step_rule import BY_ANGLE, StepRule
+
+AT_ONCE = 50_000  # unknowns times points of one call: between calls an interrupt is seen
+FEWEST = 8  # points of one call
+
+JUDGE: Any = ctypes.CFUNCTYPE(NUMBER, NUMBER, NUMBER, WHOLE, NUMBER, NUMBER, NUMBER)
+ABORT = -np.inf
+
+
+class Judge:
+    """A step rule of the user's own as a C function; what it raises is raised again where the march returns.
+
+    Parameters
+    ----------
+    rule : StepRule
+    """
+
+    def __init__(self, rule: StepRule) -> None:
+        self.rule = rule
+        self.error: BaseException | None = None
+        self.callback = JUDGE(self._asked)
+        self.address = ctypes.cast(self.callback, ctypes.c_void_p).value
+
+    def _asked(self, *numbers: float) -> float:
+        try:
+            return float(self.rule.judge(*numbers))
+        except BaseException as error:
+            self.error = error
+            return ABORT
+
+    def raise_again(self) -> None:
+        """Raise what the rule raised, if anything."""
+        error, self.error = self.error, None
+        if error is not None:
+            raise error
+
+
+class NativeLoop:
+    """March and single points of one problem.
+
+    Parameters
+    ----------
+    table : int
+        Address of the problem's kernels; see `contvines.core.table`.
+    data, work
+        Of the problem, with ``memory``.
+    sizes : (int, int)
+        Numbers of unknowns and of entries of a row.
+    metric : Metric
+        Of unknowns with scale 1.
+    noise : float
+    known : ndarray
+        Bracket of a search; see :mod:`contvines.continuation.bracketing`.
+    scratch : Scratch
+    rule : StepRule
+    """
+
+    def __init__(
+        self,
+        table: int,
+        data: Any,
+        work: Any,
+        sizes: tuple[int, int],
+        metric: Metric,
+        noise: float,
+        known: np.ndarray,
+        scratch: Scratch,
+        rule: StepRule,
+    ) -> None:
+        self.kept = data, work, known, scratch
+        self.n, self.row_size = sizes
+        self.frame = pack(
+            table,
+            address(data.memory),
+            address(work.memory),
+            *sizes,
+            float(metric.of_unknowns),
+            float(metric.of_parameter),
+            float(noise),
+            *scratch,
+            known,
+        )
+        self.at = address(self.frame)
+        self.judge = None if rule is BY_ANGLE else Judge(rule)
+
+    def march(self, chunk: Points, first: int, h: float, control: np.ndarray) -> tuple[int, float, int]:
+        """See :func:`contvines.continuation.loop.march`."""
+        step, filled, status = NUMBER(h), WHOLE(first), RUNNING
+        arrays, size = [place(array) for array in chunk], len(chunk.points)
+        slice_ = max(FEWEST, AT_ONCE // self.n)
+        judge = None if self.judge is None else self.judge.address
+        while status == RUNNING and filled.value < size and not wanted():
+            status = _march()(
+                self.at,
+                *arrays,
+                filled.value,
+                min(filled.value + slice_, size),
+                ctypes.addressof(step),
+                address(control),
+                judge,
+                ctypes.addressof(filled),
+            )
+            if self.judge is not None:
+                self.judge.raise_again()
+        return filled.value, step.value, status
+
+    def points(
+        self,
+        what: int,
+        chord: np.ndarray,
+        stretch: tuple[float, float],
+        places: np.ndarray,
+        border: np.ndarray,
+        along: np.ndarray,
+        max_sweeps: int,
+        found: Found,
+        aim: Aim,
+    ) -> int:
+        """See :func:`contvines.continuation.corrector.points`."""
+        columns = np.ascontiguousarray(aim.columns, dtype=np.int64)
+        aimed = pack(aim.what, len(columns), columns, *aim[2:])
+        return _points()(
+            self.at,
+            what,
+            place(chord),
+            *stretch,
+            place(places),
+            len(places),
+            place(border),
+            place(along),
+            max_sweeps,
+            address(found.u),
+            address(found.tangents),
+            address(found.rows),
+            address(found.numbers),
+            address(aimed),
+        )
+
+
+@cache
+def _march() -> Callable[..., int]:
+    return function(
+        "core_march", WHOLE, POINTER, *[POINTER] * 6, WHOLE, WHOLE, POINTER, POINTER, POINTER, POINTER
+    )
+
+
+@cache
+def _points() -> Callable[..., int]:
+    arrays = [POINTER] * 4
+    return function(
+        "core_points", WHOLE, POINTER, WHOLE, POINTER, NUMBER, NUMBER, POINTER, WHOLE, POINTER, POINTER, WHOLE, *arrays, POINTER
+    )  # fmt: skip

@@ -1,1 +1,0 @@
-"""How functions are compiled, and compiled arithmetic that all kernels share."""
