@@ -22,10 +22,10 @@ struct AbsorberLaw {
 };
 struct GeneralLaw {  // amplitude, restitution_left, _right, friction_left, _right, gravity, mass_ratio, frequency, slope, distance_left, _right
     static CavityLaw law(const double* par) {
-        double g = (1.0 + par[6]) * par[5], s, c;
+        double all = 1.0 + par[6], g = par[5], s, c;
         sine_cosine(par[8], s, c);
-        double b = g * s;
-        return {par[0], par[7], {g * par[3] * c + b, b - g * par[4] * c}, b, {par[1], par[2]}, {par[9], -par[10]}};
+        double b = all * g * s;
+        return {par[0], par[7], {all * par[3] * g * c + b, b - all * par[4] * g * c}, b, {par[1], par[2]}, {par[9], -par[10]}};
     }
     static CavityLaw rate(const double* par, const double* d) {
         double g = (1.0 + par[6]) * par[5], dg = (1.0 + par[6]) * d[5] + par[5] * d[6], s, c;
