@@ -140,4 +140,4 @@ def workspace(length: int, node: int, parameters: int) -> Workspace:
         (node,),
     )
     memory, arrays = block((length, node), shapes)
-    return Workspace(*arrays[:8], memory)
+    return Workspace._make([*arrays[:8], memory])

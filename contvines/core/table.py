@@ -41,15 +41,17 @@ class TableKernels:
     def __init__(self, table: int) -> None:
         self.table = table
         addresses = (ctypes.c_void_p * len(_PROTOTYPES)).from_address(table)
-        calls = [make(at) if at else None for make, at in zip(_PROTOTYPES, addresses)]
+        calls: list[Any] = [make(at) if at else None for make, at in zip(_PROTOTYPES, addresses)]
         self._linearise: Any = calls[0]
         self._bordered: Any = calls[1]
         self._inspect: Any = calls[2]
         self._assign: Any = calls[3]
         self._flip: Any = calls[4]
         self._transpose: Any = calls[5]
-        if self._transpose is None:
-            self.assign = self.flip = self.transpose = None
+        loci = self._transpose is not None
+        self.assign: Any = self._assigned if loci else None
+        self.flip: Any = self._flipped if loci else None
+        self.transpose: Any = self._transposed if loci else None
 
     def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
         """Residual and derivatives into `work`; returns the largest residual."""
@@ -76,15 +78,15 @@ class TableKernels:
         u = np.ascontiguousarray(u, dtype=float)
         self._inspect(address(data.memory), address(u), p, address(work.memory), place(row))
 
-    def assign(self, data: Any, other: Any, value: float) -> None:
+    def _assigned(self, data: Any, other: Any, value: float) -> None:
         """Give the parameter that varies in `other` a value in `data`."""
         self._assign(address(data.memory), address(other.memory), value)
 
-    def flip(self, data: Any, work: Any, sign: float) -> None:
+    def _flipped(self, data: Any, work: Any, sign: float) -> None:
         """Turn the linearisation's closure round."""
         self._flip(address(data.memory), address(work.memory), sign)
 
-    def transpose(self, data: Any, work: Any, column: np.ndarray, other: Any) -> None:
+    def _transposed(self, data: Any, work: Any, column: np.ndarray, other: Any) -> None:
         """Write the transposed system, with another last column, into another workspace."""
         column = np.ascontiguousarray(column, dtype=float)
         self._transpose(address(data.memory), address(work.memory), address(column), address(other.memory))
