@@ -339,8 +339,8 @@ struct Cavity : Shaken {
     static Law law_of(const double *p) {
         double sin_slope, cos_slope;
         sine_cosine(p[8], sin_slope, cos_slope);
-        double weight = (1.0 + p[6]) * p[5], b = weight * sin_slope, normal = weight * cos_slope;
-        return {p[0], p[7], normal * p[3] + b, b - normal * p[4], b, p[1], p[2], p[9], -p[10]};
+        double all = 1.0 + p[6], g = p[5], b = all * g * sin_slope;
+        return {p[0], p[7], all * p[3] * g * cos_slope + b, b - all * p[4] * g * cos_slope, b, p[1], p[2], p[9], -p[10]};
     }
 };
 
