@@ -15,6 +15,7 @@ from contvines.events.kinds import BORDERS
 
 VALUE = 1e-10
 ENDS = 1e-8  # of branches and of stable stretches: borders of both kinds are located from either side
+LOCI = 1e-6  # ends of loci where they run into a point of codimension two: the equations of a locus are singular there
 NEAR = 1e-8
 MULTIPLIERS = 1e-5  # at a fold they move with the square root of the location error
 
@@ -102,11 +103,11 @@ def _branches(golden: dict[str, Any], today: dict[str, Any]) -> Iterator[str]:
         yield f"branch {label} ({today[label]['word']} k={today[label]['periods']}) is new"
 
 
-def _same_intervals(one: Any, other: Any) -> bool:
+def _same_intervals(one: Any, other: Any, ends: float = ENDS) -> bool:
     if one is None or other is None:
         return one is other
     a, b = np.array(sorted(one), dtype=float), np.array(sorted(other), dtype=float)
-    return a.shape == b.shape and bool(np.allclose(a, b, rtol=ENDS, atol=ENDS))
+    return a.shape == b.shape and bool(np.allclose(a, b, rtol=ends, atol=ends))
 
 
 def _loci(golden: dict[str, Any], today: dict[str, Any]) -> Iterator[str]:
@@ -118,7 +119,7 @@ def _loci(golden: dict[str, Any], today: dict[str, Any]) -> Iterator[str]:
         for name in ("kind", "seed", "closed"):
             if locus[name] != now[name]:
                 yield f"{label}: {name} was {locus[name]} and is {now[name]}"
-        if not _same_intervals(locus["ends"], now["ends"]):
+        if not _same_intervals(locus["ends"], now["ends"], LOCI):
             yield f"{label}: its ends were {locus['ends']} and are {now['ends']}"
     for label in set(today) - set(golden):
         yield f"locus {label} ({today[label]['kind']} from {today[label]['seed']}) is new"
