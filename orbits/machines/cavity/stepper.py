@@ -30,7 +30,7 @@ class ShakenStepper:
     """
 
     def __init__(self, law: Callable[[np.ndarray], Law]) -> None:
-        self.law = getattr(law, "py_func", law)
+        self.law = law
 
     @np.errstate(all="ignore")
     def launch(self, state: np.ndarray, params: np.ndarray) -> None:
