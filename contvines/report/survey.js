@@ -76,14 +76,14 @@ table("outcomes", ["outcome", "smallest", "median", "largest", "unit", "at the s
     least < 0 ? "" : names.map((n) => `${n} ${number(data.parameters[n][least], 5)}`).join(", ")]);
   return clickable(row, () => { $("outcome").value = name; choose(Math.max(least, 0)); $("diagram").scrollIntoView({ block: "start" }); });
 });
-const failed = [...Array(count).keys()].filter((i) => data.notes[i]);
-$("failures").hidden = !failed.length;
-table("failed", ["", ...names, "why"], failed.slice(0, 500), (i) => clickable(cells(element("tr"), [String(i + 1), ...names.map((n) => number(data.parameters[n][i], 7)), data.notes[i]]), () => choose(i)));
+const noted = [...Array(count).keys()].filter((i) => data.notes[i]), partly = noted.length - data.failed;
+$("failures").hidden = !noted.length;
+table("failed", ["", ...names, "why"], noted.slice(0, 500), (i) => clickable(cells(element("tr"), [String(i + 1), ...names.map((n) => number(data.parameters[n][i], 7)), data.notes[i]]), () => choose(i)));
 made(settled(data.about, "survey"));
 
 // ------------------------------------------------------------------ the page
 $("title").textContent = `survey over ${names.join(", ")}`;
-$("about").textContent = `${count} machines` + (failed.length ? `, ${failed.length} of them failed` : "") + (data.samples.length ? `; uncertain: ${data.samples.join(", ")}` : "") + ".";
+$("about").textContent = `${count} machines` + (data.failed ? `, ${data.failed} of them failed` : "") + (partly ? `, ${partly} known in part` : "") + (data.samples.length ? `; uncertain: ${data.samples.join(", ")}` : "") + ".";
 for (const name of outcomes) $("outcome").append(element("option", label(name), { value: name }));
 const choices = axes.length === 2 ? [axes.join(MAP), ...names] : names;
 for (const name of choices) $("over").append(element("option", name.includes(MAP) ? `${name} (map)` : label(name), { value: name }));

@@ -39,6 +39,7 @@ def survey_contents(survey: Survey, source: str) -> dict[str, Any]:
             name: shortened([system[name] for system in systems], 12) for name in survey.plan.names
         },
         "columns": {name: shortened(np.ravel(values), 12) for name, values in survey.columns.items()},
+        "failed": survey.failed,
         "notes": [str(note) for note in survey.notes.ravel()],
         "units": dict(survey.units),
         "names": {

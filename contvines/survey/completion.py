@@ -71,21 +71,19 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
         _add(run, population.closed(float(p)), float(p))
     met: list[Counted] = []
 
-    def look(p: float, starts: int) -> None:
-        found = census(population, p, starts, 0, run.journal)
-        join(run, found)
+    def keep(found: list[Counted], depth: int) -> None:
+        join(run, found, depth)
         met.extend(found)
 
     count, starts = population.brief
     for t in (np.arange(count) + 0.5) / count:
-        look(float(low + (high - low) * t), starts)
+        keep(census(population, float(low + (high - low) * t), starts, 0, run.journal), 0)
+    # the branches of motions that are met from here on are short: what leaves them is met as well
     handover = Handover(run, population)
     for end in handover.left():
-        found = handover.follow(end)
-        join(run, found, run.depth)  # what leaves these branches is met at their ends
-        met += found
+        keep(handover.follow(end), run.depth)
     for p in spread(gaps(graph), graph.within, values):
-        look(p, FEW)
+        keep(census(population, p, FEW, 0, run.journal), run.depth)
     left = [counted for counted in met if counted.attractor.branch is None]
     return [_observed(population, one) for one in left if one.attractor.kind not in ON_ITS_WAY]
 

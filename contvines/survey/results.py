@@ -200,7 +200,7 @@ class Survey:
         if self.failed:
             about += f"; {self.failed} of them failed, the column note says why"
         if self.partly:
-            about += f"; {self.partly} of them are known in part, the column note says why"
+            about += f"; {self.partly} known in part, the column note says why"
         return about
 
     def _table(self) -> Table:

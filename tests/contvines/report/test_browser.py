@@ -92,7 +92,7 @@ def survey_file(tmp_path_factory):
     notes = np.array(["", *[""] * (len(systems) - 2), "it did not settle"], dtype=object)
     columns = {
         "peak": np.where(notes == "", peak, np.nan).reshape(plan.shape),
-        "covered": np.ones(plan.shape),
+        "covered": np.where(notes == "", 1.0, np.nan).reshape(plan.shape),
     }
     survey = Survey(plan, columns, notes.reshape(plan.shape), {"peak": "mm"}, {"over": "frequency"})
     return write_report(survey, tmp_path_factory.mktemp("report") / "survey.html", "x-survey.nc")
