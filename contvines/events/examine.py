@@ -10,6 +10,7 @@ import numpy as np
 
 from ..continuation.aims import NO_COLUMNS, SLOPE, Aim, aim_at_multiplier
 from ..continuation.engine import Engine, Solved
+from ..problems.abilities import Adaptive
 from .blur import blurred
 from .borders import find_border, rounding
 from .certain import passes_for_certain
@@ -37,6 +38,7 @@ BESIDE = 1e-3  # part of a segment, either side of such a place, by which they a
 ROUNDING = 1e-12  # of the parameter, where it is the same all along a segment
 CLEAR = 1e-4  # distance from a meeting (in the metric) within which tangents and multipliers are those of its singular equations
 DEEPEST = 16  # parts of parts of a segment that are looked at
+FAR = 3.0  # decades between a multiplier and the circle
 SAME = 1e-4  # events of a segment closer than this (in its length) are one and the same
 
 
@@ -66,6 +68,9 @@ class Examiner:
         self.exchanges = self.scaled and self.kind != "none"
         # of problems with many unknowns the rows tell eigenvalues only where they are asked for
         self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
+        # multipliers of smooth flows jump by rounding alone, as beside homoclinic orbits: parts of parts tell no more
+        self.adaptive = isinstance(problem, Adaptive)
+        self.deepest = 1 if self.adaptive else DEEPEST
         self.signed = bool(getattr(problem, "signed", True))
         scale = None if engine.plain else engine.scale[:-1]
         self.symmetries = [SymmetryTest(s, engine.n, engine.shift, scale) for s in problem.symmetries]
@@ -96,6 +101,8 @@ class Examiner:
         counted, discarded = 0, False
         crossings: list[Located] = []
         before, after = self._counts(a), self._counts(b)
+        if self.adaptive and self._far_from_circle(a, b):
+            after = before
         # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
         odd, side = (after[0] - before[0]) % 2, turned(a, b)
         rounded = self.scaled and self.signed and odd != side
@@ -131,7 +138,7 @@ class Examiner:
         # real multipliers come from one side of the axis to the other as pairs: of an odd number one has passed the circle
         plus, minus, pairs = (other - one for one, other in zip(before, after))
         passed = plus + minus + 2 * pairs != 0 or plus % 2 == 1
-        if (infinite or (discarded and passed)) and depth < DEEPEST:
+        if (infinite or (discarded and passed)) and depth < self.deepest:
             middle = segment.at(0.5)
             if middle is not None:
                 return self.both(segment, 0.5, middle, real, depth + 1)
@@ -150,6 +157,15 @@ class Examiner:
                     events = [e for e in events if e not in turning]
                     events.append(self._located(root, self._where_singular(segment, root, "branch-point"), 0))
         return events + borders
+
+    def _far_from_circle(self, a: Solved, b: Solved) -> bool:
+        """Whether as many multipliers are outside the circle at both ends, and all so far from it that none has passed it: they turn beside a
+        homoclinic orbit."""
+        sizes = np.abs(self.engine.spectrum(np.array([a.row, b.row])))
+        with np.errstate(all="ignore"):
+            logs = np.abs(np.log10(sizes))
+        counts = (sizes > 1.0).sum(axis=1)
+        return bool((logs > FAR).all() and counts[0] == counts[1])
 
     def _exchange(self, segment: Segment) -> Located | None:
         """A branch point where one multiplier leaves the circle while another enters; see :func:`balance`."""
