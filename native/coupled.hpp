@@ -20,7 +20,7 @@ namespace simulation {
 
 // Response of a damped oscillator to the moving base, X sin Psi + Y cos Psi, and its own decay rate and frequency.
 struct Response {
-    double X = 0.0, Y = 0.0, alpha, beta, kappa;
+    double X = 0.0, Y = 0.0, alpha, beta, kappa, by_beta, by_kappa;  // kappa = alpha^2 + beta^2; reciprocals
 
     Response(double mass, double force, double excitation, double damping, double omega) {
         double drag = damping * omega, stiffness = 1.0 - mass * omega * omega, size = stiffness * stiffness + drag * drag;
@@ -33,13 +33,15 @@ struct Response {
         double square = 1.0 / mass - alpha * alpha;
         beta = square <= 0.0 ? __builtin_nan("") : sqrt(square);
         kappa = alpha * alpha + beta * beta;
+        by_beta = 1.0 / beta;
+        by_kappa = 1.0 / kappa;
     }
 };
 
 // Motion of the oscillator from a state on: q1 = constant + harmonic h + damped oscillation z; q2' and q2'' of the absorber.
 struct Oscillation {
-    double omega, square, alpha, beta, kappa, h0, h1, z0, z1, q2_rate, q2_pull;
-    double h_sine = h1 / omega, z_sine = (z1 + alpha * z0) / beta, z1_sine = (alpha * z1 + kappa * z0) / beta;  // amplitudes of sines
+    double omega, square, alpha, beta, kappa, h0, h1, z0, z1, q2_rate, q2_pull, by_omega, by_beta, by_kappa;
+    double h_sine = h1 * by_omega, z_sine = (z1 + alpha * z0) * by_beta, z1_sine = (alpha * z1 + kappa * z0) * by_beta;  // of sines
 
     struct Point { double way, speed, h2, z2, h3, z3; };  // q1 and q1' less those at the start; second and third derivatives
 
@@ -92,11 +94,12 @@ struct Coupled {
     static constexpr double HORIZON = 2.5;  // M is renewed after this time
 
     double G, omega, lambda, eps, r, mu, g, chi;  // forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation
-    double full, pull, a, drag, square, force;
+    double full, by_full, by_omega, pull, a, drag, square, force;
     Response slide, stuck;
 
     explicit Coupled(const double *p)
-        : G(p[0]), omega(p[1]), lambda(p[2]), eps(p[3]), r(p[4]), mu(p[5]), g(p[6]), chi(p[7]), full(1.0 + eps), pull(mu * g),
+        : G(p[0]), omega(p[1]), lambda(p[2]), eps(p[3]), r(p[4]), mu(p[5]), g(p[6]), chi(p[7]), full(1.0 + eps),
+          by_full(1.0 / full), by_omega(1.0 / omega), pull(mu * g),
           a(full * pull), drag(eps * lambda), square(omega * omega),
           force(eps * fabs(G) * sqrt(1.0 + chi * chi * drag * drag * square)), slide(1.0, eps * G, chi, drag, omega),
           stuck(full, eps * G, chi, drag, omega) {}
@@ -104,11 +107,11 @@ struct Coupled {
     // The closed form of a leg that begins with a state.
     Oscillation oscillation(double psi, double w, double rate, double s, double v, double v_rate) const {
         const Response& response = s != 0.0 ? slide : stuck;
-        double sin_psi, cos_psi, sp = s * pull, q2_rate = (v_rate - rate) / full, q1 = (v + eps * w) / full;
+        double sin_psi, cos_psi, sp = s * pull, q2_rate = (v_rate - rate) * by_full, q1 = (v + eps * w) * by_full;
         sine_cosine(psi, sin_psi, cos_psi);
         double h0 = response.X * sin_psi + response.Y * cos_psi, h1 = omega * (response.X * cos_psi - response.Y * sin_psi);
         return {omega, square, response.alpha, response.beta, response.kappa,
-                h0, h1, q1 - h0 + eps * sp, v_rate - eps * q2_rate - h1, q2_rate, sp};
+                h0, h1, q1 - h0 + eps * sp, v_rate - eps * q2_rate - h1, q2_rate, sp, by_omega, response.by_beta, response.by_kappa};
     }
     Oscillation oscillation(const double *x) const {
         return oscillation(x[PSI], x[W], x[MODE] != 0.0 ? x[RATE] : 0.0, x[MODE], x[V], x[V_RATE]);
@@ -146,7 +149,7 @@ struct Coupled {
                     return NEVER;
                 }
                 double u4 = q.fourth(p), u5 = q.fifth(p);
-                M = full * (sqrt(u4 * u4 + u5 * u5 / q.kappa) + square * square * force * HORIZON);
+                M = full * (sqrt(u4 * u4 + u5 * u5 * q.by_kappa) + square * square * force * HORIZON);
                 renew = tau + HORIZON;
             }
             double value = full * (p.h2 + p.z2), slope = full * (p.h3 + p.z3), step = renew - tau;
@@ -174,7 +177,7 @@ struct Coupled {
     // While it slides: the time until it hits the wall ahead or comes to a halt; y = s w' and its rate there, the way slid.
     Outcome slip(const Oscillation& q, double s, double Y0, double Y1, double target, double left, double& tau, Oscillation::Point& p,
                  double& y, double& y_rate, double& gain) const {
-        const double third = square * omega * force * HORIZON / sqrt(q.kappa), tiny = 1e-300;
+        const double third = square * omega * force * HORIZON * sqrt(q.by_kappa), tiny = 1e-300;
         double renew = -1.0, M = 0.0;
         tau = gain = 0.0;
         y = Y0;
@@ -189,7 +192,7 @@ struct Coupled {
         for (;;) {
             if (tau >= renew) {
                 double u3 = p.h3 + p.z3, u4 = q.fourth(p);
-                M = sqrt(u3 * u3 + u4 * u4 / q.kappa) + third;
+                M = sqrt(u3 * u3 + u4 * u4 * q.by_kappa) + third;
                 renew = tau + HORIZON;
             }
             double step;
@@ -197,7 +200,7 @@ struct Coupled {
                 if (tau > 0.0) return HALT;
                 // from rest: y' or, after a slip, y'' opens the flight
                 double jerk = s * (p.h3 + p.z3), u4 = q.fourth(p), u5 = q.fifth(p);
-                double M4 = sqrt(u4 * u4 + u5 * u5 / q.kappa) + omega * third;
+                double M4 = sqrt(u4 * u4 + u5 * u5 * q.by_kappa) + omega * third;
                 step = most(M > 0.0 ? y_rate / M : 0.0, M4 > 0.0 ? 1.5 * jerk / M4 : 0.0);
                 if (M == 0.0 && M4 == 0.0) return NEVER;  // neither friction nor forcing: nothing moves
                 if (!(step > 1e-13)) step = 1e-13;  // hardly any acceleration in this direction

@@ -49,12 +49,14 @@ inline double cosine(double x) {
     return c;
 }
 
-// e^r - 1 - r for |r| <= ln 2 / 2: a rational approximation, after fdlibm.
+// e^r - 1 - r for |r| <= ln 2 / 2: Taylor's polynomial of degree 13, in pairs, which do not wait for each other.
 inline double beyond_linear(double r) {
-    constexpr double P1 = 1.66666666666666019037e-01, P2 = -2.77777777770155933842e-03, P3 = 6.61375632143793436117e-05,
-                     P4 = -1.65339022054652515390e-06, P5 = 4.13813679705723846039e-08;
-    double z = r * r, zz = z * z, c = r - z * ((P1 + z * P2) + zz * ((P3 + z * P4) + zz * P5));
-    return r * c / (2.0 - c);
+    constexpr double F2 = 1.0 / 2, F3 = 1.0 / 6, F4 = 1.0 / 24, F5 = 1.0 / 120, F6 = 1.0 / 720, F7 = 1.0 / 5040, F8 = 1.0 / 40320,
+                     F9 = 1.0 / 362880, F10 = 1.0 / 3628800, F11 = 1.0 / 39916800, F12 = 1.0 / 479001600, F13 = 1.0 / 6227020800.0;
+    double z = r * r, zz = z * z;
+    double low = (F2 + r * F3) + z * (F4 + r * F5), middle = (F6 + r * F7) + z * (F8 + r * F9);
+    double high = (F10 + r * F11) + z * (F12 + r * F13);
+    return z * (low + zz * (middle + zz * high));
 }
 
 // e^x: x = k ln 2 + r.
