@@ -30,9 +30,7 @@ SETTLED, AT_REST, LOST, WANDERING = 1, 2, 3, 0
 
 BLOCK = 512  # motions that one thread takes at a time
 BUFFER = 1024  # events kept between two looks
-WORK = (
-    2e5  # events and forcing periods of one call of the native core: between two calls an interrupt is seen
-)
+WORK = 3e4  # events and periods of one native call: an interrupt is seen between two calls
 RESULTS = ("periods", "impacts", "holds", "gaps", "outcome")
 
 
