@@ -62,9 +62,12 @@ def test_a_stick_that_ends_where_it_begins_waits_no_time(shift, length):
     assert abs(hold.value) < 1e-12
 
 
-def test_no_limit_is_told_where_a_multiplier_grows_without_bound():
+def test_the_limit_of_a_multiplier_that_grows_without_bound_is_infinite():
     """1e15 stands for it, times a direction of length one: in one of five directions the modulus is rounded to less."""
-    for growing in -np.geomspace(1e-5, 1e8, 500):
-        listed = np.array([1e15 * complex(growing) / abs(growing), 0.5])
-        assert np.isnan(limits_of(listed)).all()
+    for growing in np.geomspace(1e-5, 1e8, 500):
+        for sign in (-1.0, 1.0):
+            listed = np.array([sign * 1e15 * complex(growing) / abs(growing), 0.5])
+            assert np.array_equal(limits_of(listed), [sign * np.inf, 0.5])
+    pair = limits_of(1e15 * np.exp(np.array([1j, -1j])))
+    assert np.isinf(pair.real).all() and np.array_equal(np.sign(pair.imag), [1.0, -1.0])
     assert np.array_equal(limits_of(np.array([1e13, 0.5])), [1e13, 0.5])
