@@ -62,6 +62,18 @@ def test_a_stick_that_ends_where_it_begins_waits_no_time(shift, length):
     assert abs(hold.value) < 1e-12
 
 
+@pytest.mark.parametrize("frequency", [0.7, 1.7])
+def test_a_slip_s_margin_is_the_rate_at_which_friction_gives_way(frequency):
+    """The cavity's acceleration is C Omega^2 sin Psi; it reaches (1 + eps) mu g at the slip, and grows there by C Omega^3 |cos Psi| per time."""
+    eps, limit = 0.006, 1.006 * 0.5 * 0.4
+    amplitude = 1.2 * limit / frequency**2
+    machine = Absorber(restitution=0.7, friction=0.5, gravity=0.4, mass_ratio=eps, frequency=frequency)
+    orbit = machine.orbit("ss", amplitude=amplitude)
+    found = [margin.value for margin in orbit.margins if margin.kind == "slip"]
+    cosine = np.sqrt(1.0 - (limit / (amplitude * frequency**2)) ** 2)
+    assert found == pytest.approx([amplitude * frequency**3 * cosine] * len(found), rel=1e-10) and found
+
+
 def test_the_limit_of_a_multiplier_that_grows_without_bound_is_infinite():
     """1e15 stands for it, times a direction of length one: in one of five directions the modulus is rounded to less."""
     for growing in np.geomspace(1e-5, 1e8, 500):

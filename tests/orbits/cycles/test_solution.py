@@ -35,12 +35,12 @@ def test_unlike_walls_leave_unlike_room():
     orbit = machine.orbit("tt", 1, guess=MACHINE.orbit("tt", 1, amplitude=0.5).nodes, amplitude=0.5)
     reach = np.sqrt(0.25 - H**2)
     about_the_origin = type(orbit)(machine, orbit.word, 1, orbit.nodes - [0.0, 0.4], orbit.params)
-    for moved, exact in (
+    for moved, rooms in (
         (orbit, [1.0 - reach, 1.0 - reach]),  # found in the middle between the walls, at 0.4
         (about_the_origin, [0.6 - reach, min(1.4 - reach, 0.6 + reach)]),
     ):
         found = sorted(margin.value for margin in moved.margins if margin.kind == "wall")
-        assert found == pytest.approx(exact, abs=1e-12)
+        assert found == pytest.approx(rooms, abs=1e-12)
 
 
 @pytest.mark.parametrize(("text", "amplitude"), [("LR", 0.6), ("tt", 0.5)])
