@@ -75,6 +75,6 @@ def hold(
         ):  # it comes to rest the sooner the slower it is
             u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10 or abs(q_new - p) > 0.02 * scale:
+    if not residual < 1e-10:
         return None
     return Held(u, float(q_new), tangent, wanted)
