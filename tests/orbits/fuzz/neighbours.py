@@ -210,6 +210,10 @@ def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
     sides = [next((orbit for _, orbit in between.beside(i, way, (ASIDE,))), None) for way in (-1, 1)]
     if None in sides or point.met_from is not None:
         return
+    values = [orbit.parameters[point.parameter] - point.value for orbit in sides]
+    if point.kind == "branch-point" and values[0] * values[1] > 0.0:
+        tally.count("branch points at which the parameter turns")  # a pitchfork on the branch that bends: 1 is touched
+        return
     tally.count("bifurcations with both sides")
     before, after = (_past(orbit.multipliers) for orbit in sides)
     if before == after:
