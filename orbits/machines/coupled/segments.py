@@ -37,10 +37,10 @@ def sample(states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.nd
 def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
     """Instants and weights of an integral over a span of time, in which the forcing turns by `phase`.
 
-    The integrands are sums of exponentials; the 16-point Gauss rule on pieces of at most a quarter turn is exact to
-    roundoff for frequencies of order one.
+    The integrands are sums of exponentials; the 16-point Gauss rule in pieces of at most a turn misses less than 1e-19 of a product of
+    two waves, cos 2 x there.
     """
-    pieces = int(max(phase, span) / 1.6) + 1
+    pieces = int(max(phase, span) / (2.0 * math.pi)) + 1
     half = 0.5 * span / pieces
     middles = (2.0 * np.arange(pieces) + 1.0) * half
     return (middles[:, None] + half * NODES).ravel(), np.tile(half * WEIGHTS, pieces)

@@ -212,7 +212,9 @@ def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
         return
     values = [orbit.parameters[point.parameter] - point.value for orbit in sides]
     if point.kind == "branch-point" and values[0] * values[1] > 0.0:
-        tally.count("branch points at which the parameter turns")  # a pitchfork on the branch that bends: 1 is touched
+        tally.count(
+            "branch points at which the parameter turns"
+        )  # a pitchfork on the branch that bends: 1 is touched
         return
     tally.count("bifurcations with both sides")
     before, after = (_past(orbit.multipliers) for orbit in sides)

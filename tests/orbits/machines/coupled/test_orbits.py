@@ -2,14 +2,16 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, romb
 
 from orbits import Coupled
 from orbits.attractors import find_attractor
 from orbits.machines.absorber.closed_forms import symmetric_square
 from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response, symmetric_nodes
+from orbits.machines.coupled.segments import shapes
 from orbits.machines.parameters import ParameterError
 from orbits.multiple_scales import SlowFlow, equilibria
+from tests.orbits.machines.coupled.motion import path
 
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 
@@ -125,6 +127,49 @@ def test_measures_against_quadrature_and_the_balance_of_energy(word):
     assert found["C2"] == pytest.approx(sine**2 + cosine**2, abs=1e-6)
     assert found["amplitude"] ** 2 == pytest.approx(found["C2"], rel=1e-13)
     assert np.tan(found["v_phase"]) == pytest.approx(cosine / sine, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("word", "frequency", "damping"),
+    [("LR", 0.985, 1.0), ("tt", 0.975, 1.0), ("susu", 0.95, 1.0), ("tt", 0.9, 30.0), ("LR", 1.02, 30.0)],
+)
+def test_the_first_harmonic_is_that_of_the_motion_by_matrix_exponentials(word, frequency, damping):
+    """C sin(Psi + phase) of v = q1 + eps q2, integrated by Romberg's method; an orbit written twice over, as well."""
+    machine = MACHINE.changed(frequency=frequency, damping=damping, forcing=2.47 if damping == 1.0 else 40.0)
+    orbit = machine.orbit(word)
+    parts = np.zeros(2)
+    for i, duration in enumerate(orbit.durations / frequency):
+        events, node = orbit.events, orbit.nodes[i]
+        mode = orbit.word.modes[i]
+        rate = events.rate_post[i] if mode else 0.0
+        states, _, _ = path(
+            orbit.params, mode, node[0], events.w[i], rate, events.v[i], events.v_rate[i], duration, 256
+        )
+        v = states[:, 0] + orbit.params[3] * states[:, 2]
+        step = duration * frequency / 256
+        parts += [romb(v * states[:, 4], step), romb(v * states[:, 5], step)]
+    sine, cosine = parts / np.pi
+    for found in (orbit.measures(), orbit.repeat(2).measures("amplitude", "v_phase")):
+        assert found["amplitude"] == pytest.approx(np.hypot(sine, cosine), rel=1e-12)
+        assert found["v_phase"] == pytest.approx(np.arctan2(cosine, sine), abs=1e-12)
+
+
+@pytest.mark.parametrize("frequency", [0.3, 1.0, 3.0])
+def test_integrals_over_a_whole_turn_are_exact(frequency):
+    """Sixteen points of Gauss: of every flight that lasts a turn, of the forcing or of the oscillator, cut anywhere into two."""
+    machine = MACHINE.changed(frequency=frequency)
+    params = machine.vector({})
+    state = np.array([[0.3, 0.1, 0.0, 0.0, 0.0, 0.0, 0.7, -0.4]])
+    length = 2.0 * np.pi * max(1.0, frequency) * 0.999
+    whole, first, second = (np.empty((1, 4)) for _ in range(3))
+    shapes(state, params, np.array([length]), whole)
+    shapes(state, params, np.array([0.37 * length]), first)
+    states, _, _ = path(params, 0, 0.3, 0.1, 0.0, 0.7, -0.4, 0.37 * length / frequency, 1)
+    q1, p1, q2, p2 = states[-1, :4]
+    eps = params[3]
+    later = np.array([[0.3 + 0.37 * length, q1 - q2, 0.0, 0.0, 0.0, 0.0, q1 + eps * q2, p1 + eps * p2]])
+    shapes(later, params, np.array([0.63 * length]), second)
+    assert whole[0, 1:] == pytest.approx(first[0, 1:] + second[0, 1:], abs=1e-13)
 
 
 def test_a_flight_s_margin_is_its_slowest_moment():
