@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .files import read_ode
 from .problem import FlowProblem
 
-__all__ = ["FlowProblem"]
+__all__ = ["FlowProblem", "read_ode"]

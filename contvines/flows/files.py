@@ -14,6 +14,7 @@ import numpy as np
 
 from ..problems.registry import find_callables
 from .cycles import CycleProblem
+from .expressions import read_text
 from .problem import FlowProblem
 
 _known: dict[str, FlowProblem] = {}  # branches of one graph share their flow
@@ -43,6 +44,29 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Any
         *flow.sizes,
         cycle["unit"],
     )
+
+
+def read_ode(path: str | Path, x0: Any = None, **options: Any) -> FlowProblem:
+    """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities; see :mod:`contvines.flows.expressions`.
+
+    Nothing of the file is run but arithmetic.
+
+    Parameters
+    ----------
+    path : str or Path
+    x0 : array_like, optional
+        Instead of the file's initial values.
+    **options
+        Of :class:`contvines.FlowProblem`; names are in small letters.
+
+    Raises
+    ------
+    ValueError
+        For what cannot be read; the sentence has the line.
+    """
+    f, _, starts, parameters = read_text(path)
+    options.setdefault("name", Path(path).stem)
+    return FlowProblem(f, starts if x0 is None else x0, parameters, **options)
 
 
 def _names(description: Mapping[str, Any]) -> list[str]:

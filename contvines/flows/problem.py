@@ -17,6 +17,7 @@ from .attractors import recurrence
 from .collocation import rule
 from .cycles import CycleProblem
 from .equilibria import Equilibria
+from .expressions import compiled_expressions
 from .field import Field
 from .newton import settled
 from .orbit import CycleOrbit
@@ -115,6 +116,40 @@ class FlowProblem:
                 name=name,
                 scale=scale,
             )
+
+    @classmethod
+    def from_sympy(
+        cls,
+        expressions: Sequence[Any],
+        states: Sequence[Any],
+        x0: Sequence[float],
+        params: Mapping[str, float],
+        *,
+        time: Any = None,
+        **options: Any,
+    ) -> FlowProblem:
+        """A flow from SymPy expressions; its Jacobian is differentiated.
+
+        Parameters
+        ----------
+        expressions : sequence of sympy expressions
+            The rates of the states.
+        states : sequence of sympy symbols
+        x0 : array_like
+        params : mapping of str to float
+            Values of all other symbols, by name.
+        time : sympy symbol, optional
+            Of forced flows.
+        **options
+            Of :class:`FlowProblem`.
+
+        Raises
+        ------
+        ValueError
+            If a symbol has no value.
+        """
+        f, jacobian = compiled_expressions(expressions, states, list(params), time)
+        return cls(f, x0, params, jacobian=jacobian, **options)
 
     def _find_mirror(self) -> None:
         """Whether the mirror image of a forced motion is one at the same time, or half a period later.

@@ -1,0 +1,57 @@
+"""Flows from SymPy expressions and from XPP's files."""
+
+import numpy as np
+import pytest
+import sympy
+
+import contvines as cv
+from contvines.flows import read_ode
+
+ODE = """# van der Pol with a function and a fixed quantity
+par mu=1, k=1.0
+init x=1, y=0
+damping(u)=mu*(1-u^2)
+pull=k*x
+dx/dt=y
+y'=damping(x)*y - pull
+aux energy=x^2+y^2
+@ total=100
+done
+"""
+
+
+def test_sympy_gives_what_python_gives():
+    x, y, mu = sympy.symbols("x y mu")
+    flow = cv.FlowProblem.from_sympy([y, mu * (1 - x**2) * y - x], [x, y], [1.0, 0.0], {"mu": 1.0})
+    period = flow.attractor().period
+    assert period == pytest.approx(
+        6.6632868593231301, abs=1e-8
+    )  # Urabe and others; many digits in the literature
+    with pytest.raises(ValueError, match="mu"):
+        cv.FlowProblem.from_sympy([y, mu * y - x], [x, y], [1.0, 0.0], {"nu": 1.0})
+
+
+def test_a_file_of_xpp(tmp_path):
+    (tmp_path / "vdp.ode").write_text(ODE)
+    flow = read_ode(tmp_path / "vdp.ode")
+    assert flow.values.values == {"mu": 1.0, "k": 1.0}
+    assert np.array_equal(flow.x0, [1.0, 0.0])
+    assert flow.attractor().period == pytest.approx(6.6632868593231301, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("x'=a*x", "'a'"),
+        ("x'=__import__('os')", "can be read"),
+        ("x'=x.real", "can be read"),
+        ("par a", "name=value"),
+        ("table f % 10", "can be read"),
+        ("par a=one\nx'=a*x", "no number"),
+        ("par a=1", "no equation"),
+    ],
+)
+def test_what_cannot_be_read_is_told_with_its_line(tmp_path, line, words):
+    (tmp_path / "bad.ode").write_text(line + "\n")
+    with pytest.raises(ValueError, match=words):
+        read_ode(tmp_path / "bad.ode")
