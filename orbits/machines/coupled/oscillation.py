@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,6 +28,11 @@ class Numbers(NamedTuple):
     friction: float
     gravity: float
     excitation: float
+
+    @classmethod
+    def of(cls, params: Any) -> Numbers:
+        """From a parameter vector; that of a machine with units has its scales behind them."""
+        return cls(*params[: len(cls._fields)])
 
     @property
     def whole(self) -> float:

@@ -19,7 +19,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 @np.errstate(all="ignore")
 def sample(states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
     """w, w', v, v' at given phases after given states; contract, item 4."""
-    numbers = Numbers(*params)
+    numbers = Numbers.of(params)
     eps = numbers.mass_ratio
     for state, phase, row in zip(states, ahead, out):
         q, tau = oscillation(state, numbers), phase / numbers.frequency
@@ -53,7 +53,7 @@ def works(states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.nda
     Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way
     slid.
     """
-    numbers = Numbers(*params)
+    numbers = Numbers.of(params)
     eps, omega = numbers.mass_ratio, numbers.frequency
     base = numbers.excitation * numbers.drag * omega
     for state, phase, row in zip(states, ahead, out):
@@ -80,7 +80,7 @@ def energies(states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
 @np.errstate(all="ignore")
 def shapes(states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
     """Per segment: largest |q1|, and the integrals of v sin Psi, v cos Psi and q1 sin Psi over the phase, into `out` (m, 4)."""
-    numbers = Numbers(*params)
+    numbers = Numbers.of(params)
     eps, omega = numbers.mass_ratio, numbers.frequency
     for state, length, row in zip(states, lengths, out):
         q, span = oscillation(state, numbers), length / omega

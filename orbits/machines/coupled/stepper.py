@@ -58,7 +58,7 @@ _HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
 @np.errstate(all="ignore")
 def launch(state: np.ndarray, params: np.ndarray) -> None:
     """Reduce the phase and set the mode of a start; contract, item 2."""
-    numbers = Numbers(*params)
+    numbers = Numbers.of(params)
     eps, drag, a = numbers.mass_ratio, numbers.drag, numbers.whole * numbers.pull
     state[PSI], more = wrap(state[PSI])
     state[TURNS] += more
@@ -89,7 +89,7 @@ def advance(
 ) -> tuple[int, int]:
     """Run from event to event; contract, item 3."""
     try:
-        return _Run(state, Numbers(*params)).advance(until, codes, modes, rows)
+        return _Run(state, Numbers.of(params)).advance(until, codes, modes, rows)
     except (OverflowError, ValueError):  # of a number that is no longer finite
         return 0, FAILED
 
