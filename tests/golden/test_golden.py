@@ -2,6 +2,10 @@
 
 import copy
 import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -9,12 +13,37 @@ from .compare import differences
 from .studies import file_of, studies
 
 STUDIES = studies()
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_golden(name):
     golden = json.loads(file_of(name).read_text())
     assert not differences(golden, json.loads(json.dumps(STUDIES[name]())))
+
+
+REFERENCE = """
+import json
+from contvines.core.library import variant
+from tests.golden.studies import studies
+print(json.dumps([variant(), studies()["friction"]()]))
+"""
+
+
+def test_the_reference_core_gives_the_same_graph():
+    """In a process of its own, as the core is chosen once; some four seconds, as every flight is computed in Python."""
+    found = subprocess.run(
+        [sys.executable, "-c", REFERENCE],
+        cwd=ROOT,
+        env=os.environ | {"CONTVINES_CORE": "reference"},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+    )
+    core, graph = json.loads(found.stdout)
+    assert core == "reference"
+    assert not differences(json.loads(file_of("friction").read_text()), graph)
 
 
 def test_there_is_one_file_for_each_study():
