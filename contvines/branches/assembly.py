@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -50,7 +50,9 @@ def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
     return any(a != b and {a, b} <= LOST for a in one for b in other)
 
 
-def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.ndarray | None:
+def stability(
+    engine: Engine, spectrum: np.ndarray, special: list[int], twins: Sequence[int] = ()
+) -> np.ndarray | None:
     """Which points count as stable; None where the problem has no spectrum that tells.
 
     A special point is stable when one of its neighbours is. A point with a multiplier on the circle to roundoff, as at the
@@ -64,6 +66,8 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
         Multipliers as (re, im) pairs.
     special : list of int
         Indices of the special points.
+    twins : sequence of int
+        Indices of points that are a special point once more, as where a branch turns at a branch point: they do not tell.
     """
     if not engine.tells_stability:
         return None
@@ -73,7 +77,9 @@ def stability(engine: Engine, spectrum: np.ndarray, special: list[int]) -> np.nd
         return stable
     ordinary = np.ones(len(stable), dtype=bool)
     ordinary[special] = False
-    doubtful = ordinary & (np.abs(outermost) <= MARGINAL)
+    doubtful = np.abs(outermost) <= MARGINAL
+    doubtful[list(twins)] = True
+    doubtful &= ordinary
     if doubtful.any():
         _carry_over(stable, ordinary, doubtful)
     ahead = stable & ordinary

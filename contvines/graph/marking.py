@@ -95,7 +95,8 @@ def mark(
     branch.marks = tuple(sorted(marks))
     # a fold that is a branch point, or a second one that is the first, is no place at which stability changes
     places = {i for i, _ in marks} | ({origin} - {None})
-    branch.stable = stability(engine, half.joined().spectrum, sorted(places))
+    twins = {i for i, _ in half.events} - places
+    branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
     _unresolved(run, branch)
     branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
     return fresh

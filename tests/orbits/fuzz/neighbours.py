@@ -27,6 +27,8 @@ ROUNDED = 0.05  # difference of characteristic polynomials that rounding may mak
 UNRESOLVED = 1e-12  # differences of the parameter, relative, that are rounding
 ASIDE = 0.1  # of the distance, where crossings are looked for
 
+TURNING = 1e-3  # change of the parameter, along a tangent of length one, of a branch that turns
+
 
 def judge(graph: Any, tally: Tally) -> None:
     """Each mark of each branch."""
@@ -210,8 +212,7 @@ def _crosses(between: Between, i: int, point: Any, tally: Tally) -> None:
     sides = [next((orbit for _, orbit in between.beside(i, way, (ASIDE,))), None) for way in (-1, 1)]
     if None in sides or point.met_from is not None:
         return
-    values = [orbit.parameters[point.parameter] - point.value for orbit in sides]
-    if point.kind == "branch-point" and values[0] * values[1] > 0.0:
+    if point.kind == "branch-point" and abs(point.tangent[-1]) < TURNING:
         tally.count(
             "branch points at which the parameter turns"
         )  # a pitchfork on the branch that bends: 1 is touched
