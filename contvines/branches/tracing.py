@@ -69,7 +69,12 @@ def trace_half(
     for number in count_from(0):
         chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"
-        if adaptive is not None and chunk.status in UNFINISHED and adaptive.too_coarse(chunk.points[-1]):
+        stuck = chunk.status == Status.STEP_TOO_SMALL
+        if (
+            adaptive is not None
+            and chunk.status in UNFINISHED
+            and adaptive.too_coarse(chunk.points[-1], stuck)
+        ):
             spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
             half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
             half.status = Status.COARSE

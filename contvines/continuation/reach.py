@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..problems.abilities import Adaptive
 from .chunk import Chunk
 from .engine import Engine, Solved
 
@@ -35,6 +36,8 @@ class Reach:
     def __init__(self, engine: Engine, start: Solved) -> None:
         self.engine, self.start = engine, start
         self.learned = engine.problem.scales_learned
+        # cycles explode within next to no change of the parameter (canards) and stay bounded; their periods have a margin
+        self.bounded = isinstance(engine.problem, Adaptive)
         # largest distances so far, each twice the one before, and the extremes of the parameter since
         self.doubled = engine.settings.escape
         self.slow = 0  # points in a row that came next to nowhere
@@ -79,7 +82,9 @@ class Reach:
             # where the parameter stands still its turns are those of rounding
             turned = self.turned and moved > max(ROUNDING, 10.0 * self.engine.noise) * self.engine.scale[-1]
             comparable = self.moved < np.inf and not turned
-            bound = comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
+            bound = (
+                not self.bounded and comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
+            )
             if bound or distances[i] > FAR * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value

@@ -27,6 +27,7 @@ CLOSE = 1e-6  # distance from an equilibrium, relative to the size of the cycle,
 LONGEST = 1e3  # times the first period: a branch whose period has grown so much ends as a homoclinic orbit
 MOST = 1280  # intervals
 SENSIBLE = 1e-3  # errors of the trivial multiplier
+ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
@@ -326,8 +327,10 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
         return image
 
-    def too_coarse(self, u: np.ndarray) -> bool:
-        """Whether a cycle asks for more intervals."""
+    def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
+        """Whether a cycle asks for more intervals: its error is too large, or Newton's method fails beside it, as at canards on a coarse mesh."""
+        if stuck:
+            return self.intervals < ENOUGH * self.copies
         return self.intervals < MOST and self.estimated_error(u) > self.flow.error
 
     def refined(self) -> CycleProblem:

@@ -215,3 +215,22 @@ def test_a_closed_branch_of_cycles():
     assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([-1.0, 1.0], abs=1e-10)
     radius = graph["B1"].measure("norm") ** 2
     assert np.abs((radius - 2.0) ** 2 + graph["B1"].values ** 2 - 1.0).max() < 1e-6
+
+
+def test_cycles_from_one_hopf_point_through_a_canard_to_the_other():
+    flow = cv.FlowProblem(
+        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, 0.08 * (x[0] + 0.7 - 0.8 * x[1])],
+        [1.0, 1.0],
+        {"I": 1.5},
+    )
+    graph = cv.diagram(flow, over="I", within=(1.415, 1.6), settings={"max_branches": 2})
+    # trace zero: 1 - x^2 = 0.064 at x = 0.96747..., I from the equilibrium
+    x = np.sqrt(1.0 - 0.064)
+    value = x**3 / 3 - x + (x + 0.7) / 0.8
+    assert graph["HB1"].value == pytest.approx(value, abs=1e-11)
+    assert graph["HB1"].criticality == "subcritical"
+    cycles = graph["B2"]
+    assert (
+        cycles.values[-1] == 1.415 or cycles.values[0] == 1.415
+    )  # the relaxation oscillation, behind the canards
+    assert cycles.measure("max x0").max() > 1.9
