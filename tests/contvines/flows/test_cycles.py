@@ -217,7 +217,7 @@ def test_a_closed_branch_of_cycles():
     assert np.abs((radius - 2.0) ** 2 + graph["B1"].values ** 2 - 1.0).max() < 1e-6
 
 
-def test_cycles_from_one_hopf_point_through_a_canard_to_the_other():
+def test_cycles_explode_through_canards_on_one_branch():
     flow = cv.FlowProblem(
         lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, 0.08 * (x[0] + 0.7 - 0.8 * x[1])],
         [1.0, 1.0],
