@@ -101,8 +101,8 @@ UNBOUNDED = 0.999e15  # multipliers of 1e15, but for rounding, grow without boun
 
 def limits_of(multipliers: np.ndarray) -> np.ndarray:
     """One-sided limits of multipliers at a border: infinite, of their sign, where they grow without bound, as at a graze."""
-    limits = np.array(multipliers, dtype=complex)
+    limits = np.array(multipliers, dtype=np.complex128)
     grown = np.abs(limits) >= UNBOUNDED
-    for part in (limits.real, limits.imag):
+    for part in limits.view(np.float64).reshape(-1, 2).T:
         part[grown & (np.abs(part) > 1.0)] *= np.inf
     return limits
