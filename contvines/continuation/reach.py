@@ -19,6 +19,7 @@ DOUBLINGS = 26
 # a doubling that takes so much less than the one before, and so little of the interval, is one of the last
 SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
+OFF = 2.0  # times `escape`, of cycles: as of families of a linear oscillator, which have all amplitudes
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
 ROUNDING = 1e-12  # changes of the parameter, in its unit, that are none
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
@@ -85,7 +86,7 @@ class Reach:
             bound = (
                 not self.bounded and comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
             )
-            if bound or distances[i] > FAR * escape:
+            if bound or distances[i] > (OFF if self.bounded else FAR) * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
             self.moved, self.turned = np.inf if turned else moved, False

@@ -234,3 +234,17 @@ def test_cycles_explode_through_canards_on_one_branch():
         cycles.values[-1] == 1.415 or cycles.values[0] == 1.415
     )  # the relaxation oscillation, behind the canards
     assert cycles.measure("max x0").max() > 1.9
+
+
+def test_a_linear_centre_has_cycles_of_all_sizes():
+    """At mu = 0 van der Pol's equation is a linear oscillator; of its cycles the one of amplitude 2 goes on (Lindstedt)."""
+    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [0.0, 0.0], {"mu": -0.5})
+    graph = cv.diagram(flow, over="mu", within=(-1.0, 2.0))
+    assert np.abs(graph["B2"].values).max() < 1e-9
+    point = graph.of_kind("branch-point")[0]
+    assert point.orbit(np.array([0.0, 1.0, 2.0])).shape == (3, 2)
+    assert point.problem.measures(["max x0"], point.u, [point.value])["max x0"][0] == pytest.approx(
+        2.0, abs=1e-6
+    )
+    going = graph["B3"]
+    assert going.range == (-1.0, 2.0)
