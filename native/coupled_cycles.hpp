@@ -39,6 +39,9 @@ struct CoupledCycles {
     }
 
     // A quantity at the end of a flight: its value and its derivatives by Psi_0, y_0, v_0, v_0', Psi_1 and the parameter.
+    // Duration below which a difference quotient loses more to rounding than its first two terms leave out: the root of the rounding.
+    static constexpr double SHORT = 0x1p-26;
+
     struct Row {
         double value, psi0, y, v, vr, psi1, p;
         friend Row operator+(Row a, Row b) { return {a.value + b.value, a.psi0 + b.psi0, a.y + b.y, a.v + b.v, a.vr + b.vr, a.psi1 + b.psi1, a.p + b.p}; }
@@ -143,6 +146,14 @@ struct CoupledCycles {
                         -d_rate * Q1r.value + d_force * base + force * d_lever * c1 - after * (d_eps * friction + all * d_friction));
                 } else if (event < TURN || mode == 0.0) {
                     put(work, i, 0, Q1r - Q2r, 0.0, 0.0);
+                } else if (fabs(d) < SHORT) {  // from rest to rest, hardly apart: the second derivative of w and half of the third times d
+                    const double base = s0 + chi * rate * omega * c0, base_psi = c0 - chi * rate * omega * s0;
+                    const double jerk = force * omega * base_psi - q1_rate - rate * q1_acceleration, half = 0.5 * jerk * by_omega;
+                    const double dq1_acceleration = d_force * base + force * d_lever * c0 + d_offset - dq1 - d_rate * q1_rate - rate * dq1r;
+                    put(work, i, 0,
+                        {q1_acceleration - mode * friction + 0.5 * jerk * d, force * base_psi - half, -q1_y - rate * q1r_y, -part,
+                         -rate * q1r_vr, half, dq1_acceleration - mode * d_friction + 0.5 * jerk * dd},
+                        0.0, 0.0);
                 } else {  // from rest to rest: the mean of w'' over the flight, w'/d, so that no flight of no duration solves it
                     double sm, cm;
                     sine_cosine(0.5 * (psi1 + psi0), sm, cm);

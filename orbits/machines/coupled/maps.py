@@ -34,6 +34,9 @@ from orbits.machines.coupled.margins import margins as margins
 from orbits.machines.path import place
 from orbits.machines.pinning import last_flight
 
+# duration below which a difference quotient loses more to rounding than its first two terms leave out: the root of the rounding
+SHORT = 2.0**-26
+
 
 def _response(par, slope, mass, d_mass):
     """X, Y, alpha, beta of the oscillator with the given mass, and their derivatives along `slope`."""
@@ -275,6 +278,20 @@ def linearise(data, u, p, work):
                 A[i, 0, 3] = Q1r_vr - Q2r_vr
                 D[i, 0, 0] = Q1r_psi1 - Q2r_psi1
                 Q[i, 0] = dQ1r - dQ2r
+            elif abs(d) < SHORT:
+                # from rest to rest, hardly apart: the second derivative of w and half of the third times d
+                base, base_psi = s0 + chi * rate * omega * c0, c0 - chi * rate * omega * s0
+                jerk = force * omega * base_psi - q1_rate - rate * q1_acceleration
+                F[i, 0] = q1_acceleration - mode * pull + 0.5 * jerk * d
+                A[i, 0, 0] = force * base_psi - 0.5 * jerk * by_omega
+                A[i, 0, 1] = -q1_y - rate * q1r_y
+                A[i, 0, 2] = -part
+                A[i, 0, 3] = -rate * q1r_vr
+                D[i, 0, 0] = 0.5 * jerk * by_omega
+                Q[i, 0] = (
+                    d_force * base + force * d_lever * c0 + d_offset - dq1 - d_rate * q1_rate - rate * dq1r
+                    - mode * d_pull + 0.5 * jerk * dd
+                )  # fmt: skip
             else:
                 # from rest to rest: the mean of w'' over the flight, w'/d, so that no flight of no duration solves it
                 half = 0.5 * (psi1 - psi0)
