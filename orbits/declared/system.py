@@ -29,7 +29,6 @@ class Kernels(NamedTuple):
     bordered: Any
     inspect: Any
     compiled: bool = False
-    digest: str = "declared"
     assign: Any = loci.assign
     flip: Any = loci.flip
     transpose: Any = loci.transpose
