@@ -94,7 +94,7 @@ def mark(
             ends[0 if index == 0 else 1] = ending
     branch.marks = tuple(sorted(marks))
     # a fold that is a branch point, or a second one that is the first, is no place at which stability changes
-    places = {i for i, _ in marks} | ({origin} - {None})
+    places = {i for i, _ in marks} | ({origin} if origin is not None else set())
     twins = {i for i, _ in half.events} - places
     branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
     _unresolved(run, branch)
