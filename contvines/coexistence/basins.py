@@ -11,6 +11,7 @@ import numpy as np
 from ..doors import above
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
+from ..graph.shortening import short_word
 from ..hints import hinted, hinting
 from ..problems.abilities import Gauged, notation_of
 from .manifolds import Manifold, check_plane, stable_manifolds
@@ -85,7 +86,7 @@ class Basins:
 
     def __repr__(self) -> str:
         rows, columns = self.index.shape
-        found = ", ".join(f"{a.name} {a.share:.1%}" for a in self.attractors)
+        found = ", ".join(f"{short_word(a.name)} {a.share:.1%}" for a in self.attractors)
         return f"Basins({self.axes[0]} x {self.axes[1]}, {columns} x {rows} starts at {self.parameter} = {self.value:.10g}: {found})"
 
     def interval(self, k: int) -> tuple[float, float]:
@@ -234,6 +235,12 @@ def basins(
     starts[:, names.index(up)] = np.repeat(y, columns)
     curves: list[Manifold] = []
     if saddles is not None:
+        low, high = saddles.within
+        if not low <= at <= high:
+            raise ValueError(
+                f"at = {at:.10g} lies outside the interval of saddles, {low:.10g} to {high:.10g}; give a value inside it, "
+                f"or a graph over a wider interval"
+            )
         others = {name: given.get(name, 0.0) for name in names if name not in (across, up)}
         check_plane(saddles, population.parameter, (across, up), others)
         most = PER_START * max(population.across**2, columns * rows)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..doors import above
+from ..graph.shortening import short_word
 from ..graph.table import with_unit
 from ..hints import hinted, hinting
 from ..problems.abilities import notation_of
@@ -75,13 +76,13 @@ class Erosion:
                 f"{one.value:.8g}",
                 f"{one.share:.2%}",
                 f"{one.distance:.4g}" if np.isfinite(one.distance) else "none",
-                one.reaches,
+                short_word(one.reaches),
             )
             for one in self.entries
         ]
         numbers = (with_unit(self.parameter, self.unit), "share", "smallest kick")
         table = Table((*numbers, "to"), rows, right=numbers)
-        return "\n".join([f"{self.label}  {self.word}", "", *table.lines(terminal_width())])
+        return "\n".join([f"{self.label}  {short_word(self.word)}", "", *table.lines(terminal_width())])
 
     def plot(self, **options: Any) -> Figure:
         """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""

@@ -11,6 +11,7 @@ from ..graph.attractor import Attractor
 from ..graph.builder import adopt
 from ..graph.graph import Graph
 from ..graph.run import Run
+from ..graph.shortening import short_word
 from ..journal import NullJournal
 from .census import census, locate
 from .population import Population
@@ -51,7 +52,7 @@ def told(graph: Graph, command: str) -> str:
             best[key] = about
     names = []
     for about in sorted(best.values(), key=lambda a: -a.share)[:3]:
-        word = about.name
+        word = short_word(about.name)
         names.append(f"{word} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})")
     more = f" and {len(best) - 3} more" if len(best) > 3 else ""
     return f"simulation also finds {', '.join(names)}{more}, on no branch here: {command}"

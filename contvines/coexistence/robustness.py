@@ -10,6 +10,7 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..circles.section import section_of
+from ..graph.shortening import short_word
 from ..hints import hinting
 from ..problems.abilities import Gauged
 from ..text_table import fitted
@@ -45,6 +46,9 @@ class Robustness:
         Share of the starts in the machine's box that reach the motion itself (not its mirror image), with a 95 % interval.
     parameters : dict
         By name the interval of a parameter in which the motion stays stable and real, the others as they are.
+    lost : dict
+        By name of such a parameter, for either end of its interval, whether the motion is lost there; False: the search
+        ended there, half the parameter's size from its value or where the machine allows no further value.
     units : dict
         Units of parameters by name, empty where they are plain numbers.
     gauges : dict
@@ -63,6 +67,7 @@ class Robustness:
     share: float
     share_interval: tuple[float, float]
     parameters: dict[str, tuple[float, float]] = field(default_factory=dict)
+    lost: dict[str, tuple[bool, bool]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
 
@@ -95,6 +100,7 @@ class Robustness:
             "share": self.share,
             "share_interval": list(self.share_interval),
             "parameters": {name: list(ends) for name, ends in self.parameters.items()},
+            "lost": {name: list(ends) for name, ends in self.lost.items()},
         }
 
     def __str__(self) -> str:
@@ -104,18 +110,28 @@ class Robustness:
         def told(number: str, name: str) -> str:
             return f"{number} {units.get(name, '')}".rstrip()
 
-        text = f"{self.word}  k={self.periods}  {self.parameter} = {told(f'{self.value:.10g}', self.parameter)}\n"
-        text += f"  share of starts: {self.share:.2%} ({low:.2%} to {high:.2%})\n"
+        text = f"{short_word(self.word)}  k={self.periods}  {self.parameter} = {told(f'{self.value:.10g}', self.parameter)}\n"
+        if np.isfinite(self.share):
+            text += f"  share of starts: {self.share:.2%} ({low:.2%} to {high:.2%})\n"
         if np.isfinite(self.distance):
             changes, at = self.shown(self.kick), self.shown(self.place)
             kick = ", ".join(f"{name} {told(f'{x:+.4g}', name)}" for name, x in zip(self.names, changes))
             place = ", ".join(f"{name} = {told(f'{x:.4g}', name)}" for name, x in zip(self.names, at))
-            text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {self.reaches}"
+            text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {short_word(self.reaches)}"
         else:
             text += "  no kick within the box of starts leads elsewhere"
         for name, (first, last) in self.parameters.items():
-            text += f"\n  stable and real for {name} from {first:.8g} to {told(f'{last:.8g}', name)}"
+            text += f"\n  stable and real for {name} {_range_text(first, last, self.lost[name], units.get(name, ''))}"
         return fitted(text)
+
+
+def _range_text(first: float, last: float, lost: tuple[bool, bool], unit: str) -> str:
+    """An interval for people; an end at which the search ended is a bound of the motion's true limit."""
+    low, high = (f"{x:.8g} {unit}".rstrip() for x in (first, last))
+    text = f"from {'' if lost[0] else 'at most '}{first:.8g} to {'' if lost[1] else 'at least '}{high}"
+    beyond = ((False, "down to", low), (True, "up to", high))
+    unlost = " and ".join(f"{way} {end}" for above, way, end in beyond if not lost[above])
+    return f"{text}; not lost {unlost}, where the search ended" if unlost else text
 
 
 @hinting
@@ -170,6 +186,7 @@ def robustness(
     kicked = _Kicked(population, float(at), section.names, section.rounds(u), sizes)
     place, kick, reaches = kicked.smallest(_directions(len(sizes), int(directions), seed))
     share, interval = kicked.share(starts, seed) if starts else (float("nan"), (float("nan"), float("nan")))
+    ranges = {name: stable_range(problem, u, float(at), name) for name in vary}
     return Robustness(
         branch.parameter,
         float(at),
@@ -182,7 +199,8 @@ def robustness(
         reaches,
         share,
         interval,
-        {name: stable_range(problem, u, float(at), name) for name in vary},
+        {name: found.ends for name, found in ranges.items()},
+        {name: found.lost for name, found in ranges.items()},
         dict(branch.description.get("units") or {}),
         problem.gauges(section.names, float(at)) if isinstance(problem, Gauged) else {},
     )

@@ -44,6 +44,37 @@ def amount(option: str, text: str, name: str, units: Mapping[str, str]) -> float
     return value
 
 
+def inside(
+    option: str, text: str, name: str, within: tuple[float, float], units: Mapping[str, str], owner: str
+) -> float:
+    """A value of a parameter inside the interval of a study or a file.
+
+    Parameters
+    ----------
+    option, text, name, units
+        As for `amount`.
+    within : (float, float)
+        The interval.
+    owner : str
+        The name of the interval, for refusals, as ``"[continue] within"``.
+
+    Raises
+    ------
+    ValueError
+        As `amount`, or if the value lies outside the interval.
+    """
+    value = amount(option, text, name, units)
+    low, high = within
+    if not low <= value <= high:
+        unit = units.get(name, "")
+        lies = (
+            f"{name} = {value:.10g} {unit}".rstrip()
+            + f" lies outside {owner} = [{low:.10g}, {high:.10g}] {unit}".rstrip()
+        )
+        raise ValueError(f"{option} {text}: {lies}; give a value inside the interval, or widen it.")
+    return value
+
+
 def interval(option: str, ends: tuple[str, str], name: str, units: Mapping[str, str]) -> tuple[float, float]:
     """Both ends of an interval, the lower one first.
 

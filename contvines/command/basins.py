@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.amounts import amount
+from contvines.command.amounts import inside
 from contvines.command.options import SizeOption
 from contvines.command.run import StudyArgument
 
@@ -53,7 +53,8 @@ def basins(
         check_size(size)
     asked = checked_study(study)
     own = machine(asked)
-    value = amount("--at", at, asked.parameter, getattr(own, "units", {}))
+    units = getattr(own, "units", {})
+    value = inside("--at", at, asked.parameter, asked.within, units, f"{study}: [continue] within")
     fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
     population = population_of(own, asked.parameter, **fixed)
     graph: Any = None if saddles is None else contvines.load(saddles)

@@ -139,6 +139,7 @@ def first_orbit(study: "Study") -> Any:
 
 def _settled(study: "Study") -> Any:
     """The motion that settles from rest, where the study begins or elsewhere in its interval; told on stderr."""
+    from contvines.graph.shortening import short_word
     from orbits.design import Family
 
     model = machine(study)
@@ -148,7 +149,7 @@ def _settled(study: "Study") -> Any:
     print(
         f"contvines: {study.path}: [start] has no word; begun with the motion that settles from rest at {study.parameter} = "
         + f"{amount:g} {unit}".rstrip()
-        + f": {orbit.word.text if len(orbit.word) else 'the absorber does not move in its cavity'}.",
+        + f": {short_word(orbit.word.text) if len(orbit.word) else 'the absorber does not move in its cavity'}.",
         file=sys.stderr,
     )
     return orbit

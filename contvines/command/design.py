@@ -3,6 +3,7 @@ a picture."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +17,14 @@ if TYPE_CHECKING:
     from .study import Study
 
 DAMPING = 0.9  # the reduced model has none; the coupled model's default
+HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale
 
 
 def machine(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
     """The study's dimensionless machine on a physical scale.
 
     ``gravity`` = g/(b omega_0^2) ties the cavity's half-width b to the natural frequency: one of the two
-    is enough (b = 0.02 m if none is given). Without gravity both are needed.
+    is enough (`HALF_WIDTH` if none is given, see `assumptions`). Without gravity both are needed.
 
     Raises
     ------
@@ -43,7 +45,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     values = study.parameters
     fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
     fields["damping"] = values.get("damping", DAMPING)
-    asked = (("cavity", cavity, "m", 0.02), ("natural-frequency", natural_frequency, "Hz", 7.666))
+    asked = (("cavity", cavity, "m", HALF_WIDTH), ("natural-frequency", natural_frequency, "Hz", 7.666))
     for name, value, unit, usual in asked:
         if value is not None and not SCALE[0] <= value <= SCALE[1]:
             raise StudyError(
@@ -62,7 +64,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
             "already ties one to the other; give one of them."
         )
     if cavity is None and natural_frequency is None:
-        cavity = 0.02
+        cavity = HALF_WIDTH
     try:
         return Design.from_dimensionless(
             gravity=values["gravity"], cavity=cavity, natural_frequency=natural_frequency, **fields
@@ -98,15 +100,46 @@ def _physical(study: Study, cavity: float | None, natural_frequency: float | Non
     )
 
 
-def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
-    """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres."""
+def assumptions(study: Study, cavity: float | None, natural_frequency: float | None) -> dict[str, str]:
+    """What `machine` assumes beyond the study, a sentence by name of the quantity; empty if nothing."""
+    from orbits.design.figures import Design
+
+    from .schema import PARAMETERS
+
+    found = {}
+    if not study.quantities and study.parameters["gravity"] != 0:
+        found["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
+        if cavity is None and natural_frequency is None:
+            found["half_width"] = (
+                f"the half-width of the cavity is {1e3 * HALF_WIDTH:g} mm, because the study is dimensionless; all lengths "
+                "are proportional to it; --half-width METRES or --natural-frequency HERTZ gives the machine's own"
+            )
+    if "damping" not in (PARAMETERS[study.name] if study.quantities else study.parameters):
+        found["damping"] = f"the oscillator's damping is lambda = {DAMPING:g}, because the study gives none"
+    return found
+
+
+def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, str, str, str]]:
+    """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres; `assumed` are names of `assumptions`."""
     given = [
-        ("half-width of cavity", "b", 1e3 * design.cavity, "mm", "wall to wall is 2 b"),
-        ("natural frequency", "f_0", design.natural_frequency, "Hz", "oscillator alone"),
+        (
+            "half-width of cavity",
+            "b",
+            1e3 * design.cavity,
+            "mm",
+            "assumed; wall to wall is 2 b" if "half_width" in assumed else "wall to wall is 2 b",
+        ),
+        (
+            "natural frequency",
+            "f_0",
+            design.natural_frequency,
+            "Hz",
+            "oscillator alone; follows from b" if "half_width" in assumed else "oscillator alone",
+        ),
         ("restitution", "r", design.restitution, "", "study"),
         ("friction", "mu", design.friction, "", "study"),
         ("mass ratio", "eps", design.mass_ratio, "", "study"),
-        ("damping", "lambda", design.damping, "", "study, else 0.9"),
+        ("damping", "lambda", design.damping, "", "assumed" if "damping" in assumed else "study"),
     ]
     for line in design.figures():
         length = line.unit == "m"
@@ -117,17 +150,19 @@ def rows(design: Design) -> list[tuple[str, str, str, str, str]]:
     return [(name, symbol, f"{value:.5g}", unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
-def table(title: str, lines: list[tuple[str, str, str, str, str]]) -> str:
-    """The lines as text, as wide as they are: nothing is cut in a pipe."""
-    from contvines.text_table import Table, terminal_width
+def table(title: str, lines: list[tuple[str, str, str, str, str]], assumed: Iterable[str] = ()) -> str:
+    """The lines as text, as wide as they are: nothing is cut in a pipe; below the title the assumptions, a line each."""
+    from contvines.text_table import Table, fitted, terminal_width
 
     found = Table(("quantity", "symbol", "value", "unit", "meaning"), list(lines), ("meaning",), ("value",))
-    return "\n".join([title, "", *found.lines(terminal_width())])
+    told = [fitted(f"assumed: {sentence}") for sentence in assumed]
+    return "\n".join([title, *told, "", *found.lines(terminal_width())])
 
 
-def as_json(design: Design) -> dict[str, Any]:
-    """Figures in SI units at full precision."""
+def as_json(design: Design, assumed: Mapping[str, str] | None = None) -> dict[str, Any]:
+    """Figures in SI units at full precision, and the assumptions."""
     found: dict[str, Any] = {
+        "assumed": dict(assumed or {}),
         "cavity": {"value": float(design.cavity), "unit": "m"},
         "natural_frequency": {"value": float(design.natural_frequency), "unit": "Hz"},
     }
@@ -136,7 +171,7 @@ def as_json(design: Design) -> dict[str, Any]:
     return found
 
 
-def draw(design: Design, size: tuple[float, float] | None = None) -> Figure:
+def draw(design: Design, size: tuple[float, float] | None = None, assumed: Collection[str] = ()) -> Figure:
     """Amplitude bounds and operating ratio over friction and over the cavity's half-width; a map of both.
 
     Parameters
@@ -144,6 +179,8 @@ def draw(design: Design, size: tuple[float, float] | None = None) -> Figure:
     design : Design
     size : (float, float), optional
         Inches; a small figure has the bounds over friction alone.
+    assumed : names of `assumptions`
+        An assumed half-width is named above the figure.
     """
     import numpy as np
 
@@ -159,6 +196,8 @@ def draw(design: Design, size: tuple[float, float] | None = None) -> Figure:
     with styled():
         size = size or (10.5, 6.6)
         figure = new_figure(figsize=size)
+        if "half_width" in assumed:
+            figure.suptitle(f"lengths for an assumed half-width $b$ = {1e3 * b0:g} mm", fontsize="small")
         if min(size[0] / 6.0, size[1] / 4.0) < 1.0:
             axes = figure.add_subplot()
             _bounds(axes, design, columns[0], 1.9)
@@ -227,7 +266,10 @@ def _map(panel: Any, mu: Any, b: Any, values: Any, here: tuple[float, float], ti
 def design(
     study: Path = typer.Argument(..., metavar="STUDY.toml", help="The study whose machine is meant."),
     cavity: float | None = typer.Option(
-        None, "--half-width", "--cavity", help="Half-width b of the cavity [m]; 0.02 if no scale is given."
+        None,
+        "--half-width",
+        "--cavity",
+        help="Half-width b of the cavity [m]; 0.02 is assumed if no scale is given.",
     ),
     natural_frequency: float | None = typer.Option(
         None, help="f_0 of the oscillator [Hz], instead of the cavity."
@@ -256,15 +298,17 @@ def design(
     if plot is not None:
         check_picture(plot)
     check_size(size)
-    figures = machine(read_study(study), cavity, natural_frequency)
+    asked = read_study(study)
+    figures = machine(asked, cavity, natural_frequency)
+    assumed = assumptions(asked, cavity, natural_frequency)
     if json_:
         from contvines.export import json_text
 
-        typer.echo(json_text(as_json(figures)))
+        typer.echo(json_text(as_json(figures, assumed)))
     else:
-        typer.echo(table(f"Design figures of {study.name}", rows(figures)))
+        typer.echo(table(f"Design figures of {study.name}", rows(figures, assumed), assumed.values()))
     if plot is not None:
         from contvines.command.compose import say
 
-        save_figure(draw(figures, size), plot)
+        save_figure(draw(figures, size, assumed), plot)
         say(f"drawn in {plot}")

@@ -102,6 +102,7 @@ EVENTS = {
 
 def _describe(found: Any) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
+    from contvines.graph.shortening import short_word
     from contvines.graph.table import with_unit
     from contvines.text_table import Table, terminal_width
 
@@ -109,7 +110,8 @@ def _describe(found: Any) -> str:
     lines = []
     if "word" in about:
         nature = "real" if about["real"] else "virtual: no machine follows it"
-        lines.append(f"{about['word'] or about.get('rest', 'stuck')}  k = {about['periods']}  ({nature})")
+        word = short_word(about["word"]) or about.get("rest", "stuck")
+        lines.append(f"{word}  k = {about['periods']}  ({nature})")
     if "states" in about:  # a cycle of a flow
         lines.append(
             f"cycle of period {_number(about['period'])}  ({'stable' if about['stable'] else 'unstable'})"

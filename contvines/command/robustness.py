@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.amounts import amount
+from contvines.command.amounts import inside
 from contvines.command.options import FileArgument, SizeOption, TrustOption
 
 
@@ -60,7 +60,9 @@ def robustness(
     branch = branches[name]
     if branch.problem is None:
         raise ValueError(without_problem(name, branch.description))
-    value = None if at is None else amount("--at", at, graph.parameter, graph.units)
+    value: float | None = None
+    if at is not None:
+        value = inside("--at", at, graph.parameter, graph.within, graph.units, f"the interval of {file}")
     if place:
         if not place.isdigit() or int(place) >= len(branch):
             raise ValueError(f"{label}: the points of {name} are numbered from 0 to {len(branch) - 1}.")

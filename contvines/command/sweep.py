@@ -154,13 +154,17 @@ class _counter:
 
 def _summary(rows: "list[Kept]", parameter: str) -> str:
     """Runs of equal attractors, one line each."""
+    from contvines.graph.shortening import short_word
+
     runs = []
     first = 0
     for i in range(1, len(rows) + 1):
         if i == len(rows) or _kind(rows[i]) != _kind(rows[first]):
             row, last = rows[first], rows[i - 1]
             periods = f"k={row.periods}" if row.word else ""
-            runs.append((f"{row.value:.6g} to {last.value:.6g}", row.attractor, periods, row.word))
+            runs.append(
+                (f"{row.value:.6g} to {last.value:.6g}", row.attractor, periods, short_word(row.word))
+            )
             first = i
     head = (parameter, "settles on", "periods", "word")
     return "\n".join(Table(head, runs, spare=("periods",)).lines(terminal_width()))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..graph.shortening import short_word
 from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, grouped, place_labels
@@ -226,7 +227,7 @@ def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
         if region.share < LEAST_SHARE or not region.words:
             continue
         for count in (4, 2, 1):  # fewer words where there is little room
-            names = [word if len(word) <= 16 else f"{word[:13]}..." for word in region.words[:count]]
+            names = [short_word(word, 16) for word in region.words[:count]]
             more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
             more += ["(not all over)"] if region.others else []
             look = {"ha": "center", "va": "center", "fontsize": "x-small", "color": "0.25", "zorder": 4}

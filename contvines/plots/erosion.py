@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..graph.shortening import short_word
 from ..hints import hinting
 from .figures import new_axes, settle, styled, thin_ticks
 from .legends import place_legend
@@ -62,7 +63,7 @@ def plot_erosion(
         axes.patch.set_visible(False)
         axes.set_xlabel(axis_label(erosion.parameter, unit=erosion.unit, notation=erosion.notation))
         axes.set_ylabel("smallest kick")
-        axes.set_title(f"{erosion.label}: {erosion.word}" if erosion.word else erosion.label)
+        axes.set_title(f"{erosion.label}: {short_word(erosion.word)}" if erosion.word else erosion.label)
         place_legend(axes, [kicks, shares], legend, own, usual="below")
         settle(figure)
         if own:

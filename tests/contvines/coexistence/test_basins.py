@@ -108,3 +108,33 @@ def test_a_machine_with_units_is_drawn_and_told_in_them():
     told = found.to_dict()
     assert told["fixed"]["v"] == pytest.approx(7.0) and told["units"]["v"] == "mm"
     assert told["units"]["frequency"] == "Hz"
+
+
+def test_a_long_word_is_short_for_people_and_whole_in_json():
+    word = "".join("LR" + "t" * k for k in range(1, 20))  # 2 * 19 + 190 events, no power of a shorter word
+    found = plane(np.zeros((20, 20), int), np.zeros((20, 20), bool))
+    found.attractors.append(Attractor(0.5, word, 19, "periodic", None, 1.0))
+    for text in (str(found), found._repr_html_(), repr(found)):
+        assert word not in text and word[:12] in text and "228 events" in text
+    assert found.to_dict()["attractors"][0]["word"] == word
+    assert word == found.attractors[0].name
+
+
+def test_a_value_outside_the_interval_is_refused_before_the_starts(tmp_path):
+    from typer.testing import CliRunner
+
+    from contvines.command.cli import app
+    from tests.contvines.studies import PAPER_MACHINE
+
+    study = tmp_path / "study.toml"
+    start = '[start]\nword = "LR"\nperiods = 1\namplitude = 0.55\n'
+    study.write_text(PAPER_MACHINE + start + '[continue]\nparameter = "amplitude"\nwithin = [0.2, 1.3]\n')
+    refused = str(CliRunner().invoke(app, ["basins", str(study), "--at", "55"]).exception)
+    assert "--at 55" in refused and "[continue] within = [0.2, 1.3]" in refused
+
+
+def test_saddles_of_another_interval_are_refused():
+    problem = cv.MapProblem(lambda u, p: np.array([p * u[0], 0.5 * u[1]]), [0.0, 0.0], 0.5)
+    graph = cv.diagram(problem, within=(0.2, 0.8), depth=0)
+    with pytest.raises(ValueError, match=r"at = 0\.9 lies outside the interval of saddles, 0\.2 to 0\.8"):
+        cv.basins(problem, at=0.9, points=2, saddles=graph)

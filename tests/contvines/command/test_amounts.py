@@ -2,7 +2,7 @@
 
 import pytest
 
-from contvines.command.amounts import amount, interval
+from contvines.command.amounts import amount, inside, interval
 
 UNITS = {"base_amplitude": "mm", "frequency": "Hz"}
 
@@ -32,3 +32,15 @@ def test_what_is_no_value_is_refused(text, name, sentence):
 def test_an_interval_must_have_an_inside():
     with pytest.raises(ValueError, match=r"^--within '0.6 mm' '100 um': give the lower value first"):
         interval("--within", ("0.6 mm", "100 um"), "base_amplitude", UNITS)
+
+
+@pytest.mark.parametrize("text", ["7.7", "0.0077 kHz", "8.2 Hz", "492.1 rpm"])
+def test_a_value_outside_the_interval_is_refused(text):
+    """An interval from 7.8 to 8.2 Hz: 468 to 492 rpm; its ends belong to it."""
+    if text == "8.2 Hz":
+        assert inside("--at", text, "frequency", (7.8, 8.2), UNITS, "[continue] within") == 8.2
+        return
+    with pytest.raises(
+        ValueError, match=rf"--at {text}: .* outside \[continue\] within = \[7.8, 8.2\] Hz; give"
+    ):
+        inside("--at", text, "frequency", (7.8, 8.2), UNITS, "[continue] within")

@@ -36,7 +36,7 @@ def study(tmp_path):
 
 
 def run(*arguments):
-    app = typer.Typer()
+    app = typer.Typer(rich_markup_mode=None)  # as the command line has it
     app.command()(design)
     return CliRunner().invoke(app, [str(a) for a in arguments])
 
@@ -57,6 +57,19 @@ def test_json_in_si_units(study):
     assert found["q1_min"]["value"] == pytest.approx(threshold, rel=1e-12)
     assert found["q1_min"]["unit"] == "m"
     assert found["xi"]["value"] == pytest.approx(np.sqrt(0.5282903 / 0.0637942), rel=1e-6)
+
+
+def test_an_assumed_scale_is_named(study):
+    """Lengths are proportional to the half-width; a study with its own scale and damping assumes gravity alone."""
+    free = json.loads(run(study, "--no-plot", "--json").output)
+    own = json.loads(run(study, "--no-plot", "--json", "--half-width", "0.03").output)
+    assert free["q1_max"]["value"] / own["q1_max"]["value"] == pytest.approx(2.0 / 3.0, rel=1e-12)
+    assert set(free["assumed"]) == {"half_width", "acceleration", "damping"}
+    assert set(own["assumed"]) == {"acceleration", "damping"}
+    assert "20 mm" in free["assumed"]["half_width"] and "--half-width" in free["assumed"]["half_width"]
+    table = run(study, "--no-plot").output
+    assert "assumed: the half-width of the cavity is 20 mm" in " ".join(table.split())
+    assert "half-width of the cavity" not in run(study, "--no-plot", "--natural-frequency", "8").output
 
 
 def test_picture(study, tmp_path):
