@@ -15,7 +15,7 @@ from ..graph.table import with_unit
 from ..hints import hinted, hinting
 from ..problems.abilities import notation_of
 from ..text_table import Table, terminal_width
-from .robustness import Robustness, refuse_uncomputed, robustness
+from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -117,6 +117,8 @@ def erosion(
     where = _spread(branch, values) if isinstance(values, int) else sorted(float(v) for v in values)
     if not where:
         raise ValueError(f"values = {values!r}: give how many, 1 or more, or a list of values")
+    for value in where:  # all are refused before any is simulated
+        stable_at(branch, value)
     word = str(branch.description.get("word", ""))
     found = Erosion(branch.parameter, branch.label, word, notation=notation_of(branch.problem))
     for value in where:

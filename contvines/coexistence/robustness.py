@@ -183,10 +183,10 @@ def robustness(
         )
     if not directions >= 4:
         raise ValueError(f"directions = {directions}: give at least 4")
+    ranges = {name: stable_range(problem, u, float(at), name) for name in vary}
     kicked = _Kicked(population, float(at), section.names, section.rounds(u), sizes)
     place, kick, reaches = kicked.smallest(_directions(len(sizes), int(directions), seed))
     share, interval = kicked.share(starts, seed) if starts else (float("nan"), (float("nan"), float("nan")))
-    ranges = {name: stable_range(problem, u, float(at), name) for name in vary}
     return Robustness(
         branch.parameter,
         float(at),

@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 import contvines as cv
+from contvines.coexistence.maps import MapPopulation
 from orbits import Absorber
 from orbits.machines.physical import physical
 
@@ -121,6 +122,31 @@ def test_where_nothing_is_stable(graph):
         match=r"B1 has no stable real motion at amplitude = 1\.2; its stable intervals are 0\.252575 to 0\.726836",
     ):
         cv.robustness(graph["B1"], 1.2)
+
+
+def test_refusals_come_before_the_simulation(well, monkeypatch):
+    """Neither a value without a stable motion nor an unknown parameter costs a start."""
+
+    def settle(*_):
+        raise AssertionError("simulated before the refusal")
+
+    monkeypatch.setattr(MapPopulation, "settle", settle)
+    with pytest.raises(ValueError, match="no stable real motion at p = 55"):
+        cv.erosion(well, [1.0, 55.0], starts=8)
+    with pytest.raises(ValueError, match="mass"):
+        cv.robustness(well, 1.0, starts=0, vary=("mass",))
+
+
+def population(self, *given, **more):
+            raise AssertionError("simulated before the refusal")
+
+    branch = copy.copy(well)
+    branch.problem = copy.copy(well.problem)
+    branch.problem.__class__ = Untouched
+    with pytest.raises(ValueError, match="no stable real motion at p = 55"):
+        cv.erosion(branch, [1.0, 55.0], starts=8)
+    with pytest.raises(ValueError, match="mass"):
+        cv.robustness(well, 1.0, starts=0, vary=("mass",))
 
 
 def test_on_the_command_line(tmp_path, graph):
