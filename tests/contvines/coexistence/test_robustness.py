@@ -137,18 +137,6 @@ def test_refusals_come_before_the_simulation(well, monkeypatch):
         cv.robustness(well, 1.0, starts=0, vary=("mass",))
 
 
-def population(self, *given, **more):
-            raise AssertionError("simulated before the refusal")
-
-    branch = copy.copy(well)
-    branch.problem = copy.copy(well.problem)
-    branch.problem.__class__ = Untouched
-    with pytest.raises(ValueError, match="no stable real motion at p = 55"):
-        cv.erosion(branch, [1.0, 55.0], starts=8)
-    with pytest.raises(ValueError, match="mass"):
-        cv.robustness(well, 1.0, starts=0, vary=("mass",))
-
-
 def test_on_the_command_line(tmp_path, graph):
     from contvines.command.cli import app
 
