@@ -231,15 +231,17 @@ def test_export_has_the_measures_of_every_point(folder, monkeypatch):
         assert float(row["friction_loss"]) == pytest.approx(0.5 * 0.211 * 4, rel=1e-14)
 
 
-def test_a_graze_has_no_multipliers(folder, capsys):
-    """At the orbit LR that touches the walls at rest, impacts come with the square root of the distance."""
+def test_multipliers_at_a_graze_are_their_limits(folder, capsys):
+    """At the orbit LR that touches the walls at rest, impacts come with the square root of the distance: one multiplier grows
+    without bound, and as the determinant, the product of both, stays r^4, the other one vanishes."""
     call("orbit", folder / "s.vines", "WG1")
     out = capsys.readouterr().out
-    assert "  multipliers: not defined at a graze\n" in out
+    assert "  multipliers: inf, 0\n" in out
     assert "nan" not in out
     call("orbit", folder / "s.vines", "WG1", "--json")
-    pairs = json.loads(capsys.readouterr().out)["multipliers"]
-    assert pairs == [[None, None], [None, None]]
+    grown, vanished = json.loads(capsys.readouterr().out)["multipliers"]
+    assert grown == [None, 0.0]  # JSON has no infinity
+    assert abs(complex(*vanished)) < 1e-9
 
 
 def test_python_refusals_are_sentences(folder):

@@ -123,6 +123,9 @@ def test_a_journal_that_names_a_function_does_not_call_it(folder):
     class Run:
         serial, journal = 1, Kept()
 
+        def attempt(self, label, what, work, otherwise):
+            return work()
+
     class Point:
         label, problem = "ST1", Far()
 
