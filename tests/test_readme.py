@@ -62,7 +62,7 @@ word = "LR"
 amplitude = 0.72
 [continue]
 parameter = "amplitude"
-within = [0.7, 0.75]
+within = [0.7, 1.12]
 depth = 1
 [atlas]
 values = 2
