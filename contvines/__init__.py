@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from .doors import lead
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
     "AlgebraicProblem": ".problems.algebraic",
