@@ -8,7 +8,6 @@ from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact, rounds_apart
 from tests.orbits.fuzz.test_found import diagram
 
-
 STEPPED_OVER = (
     "the first step of the doubled branch passes 1e-8 of it that are stable, and its next period doubling"
 )
