@@ -11,6 +11,8 @@ from contvines.command.options import TrustOption
 from contvines.command.place import held
 from contvines.text_table import fitted
 
+MANY = 2000  # boxes: checking more of them is announced
+
 
 def prove(
     file: Annotated[
@@ -175,6 +177,8 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
         if certificate is None:
             verdicts[label] = {"verified": None, "why": "nothing was proved"}
             continue
+        if (boxes := _boxes(certificate)) > MANY:
+            typer.echo(f"{label}: {boxes} boxes to check, each takes milliseconds; Ctrl-C stops", err=True)
         try:
             verify(certificate)
             verdicts[label] = {"verified": True, "claims": _claims(certificate)}
@@ -189,6 +193,14 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
             )
     if any(verdict["verified"] is False for verdict in verdicts.values()):
         raise typer.Exit(1)
+
+
+def _boxes(certificate: Any) -> int:
+    """How many boxes a certificate, or those of a branch's stretches, have; none if it is no certificate."""
+    if isinstance(certificate, list):
+        return sum(_boxes(one) for one in certificate if isinstance(one, dict))
+    boxes = certificate.get("boxes") if isinstance(certificate, dict) else None
+    return len(boxes) if isinstance(boxes, list) else 0
 
 
 def _claims(certificate: Any) -> Any:

@@ -60,6 +60,12 @@ def test_a_file_its_labels_and_its_certificates(kept, capsys, tmp_path):
     (tmp_path / "c.json").write_text(json.dumps(made))
     status, out, _ = run(capsys, "prove", tmp_path / "c.json", "--check")
     assert status == 1 and "NOT verified" in out
+    made["B1:5"]["boxes"] = [
+        {}
+    ] * 5001  # so long that checking is announced; the first box is none, so it ends at once
+    (tmp_path / "c.json").write_text(json.dumps(made))
+    status, out, err = run(capsys, "prove", tmp_path / "c.json", "--check")
+    assert status == 1 and "NOT verified" in out and "5001 boxes" in err
 
 
 @pytest.mark.parametrize(
