@@ -1,5 +1,5 @@
 // Eigenvalues of a long product of small matrices, without trusting the product: multipliers of a cycle are those of
-// S M_{L-1} .. M_0 with M_i = -D_i^-1 A_i and the closure S = diag(1, twist, ..). orbits/multipliers/periodic_schur.py, the reference,
+// S M_{L-1} .. M_0 with M_i = -D_i^-1 A_i and the closure S = diag(1, twist, ..). contvines/core/multipliers/periodic_schur.py, the reference,
 // says how: the scaled product with a bound on its rounding; where that is too large the periodic QR algorithm on the factors
 // (Bojanczyk, Golub and Van Dooren, Proc. SPIE 1770 (1992) 31). O(L) time and memory.
 #pragma once

@@ -12,10 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-FAR = 1e6  # condition of a product of transfer matrices from which on its factors are kept apart
-SWEEPS = 40  # of the periodic QR iteration
-PARTED = 1e-13  # coupling of two blocks of multipliers, relative to the larger one, that is rounding
-ALIKE = 4.0  # multipliers whose moduli differ by less stay in one block
+from ..core.multipliers.periodic_schur import multipliers
+
 LEAST = 1e-18  # singular values of a singular system, relative to the largest
 
 
@@ -149,56 +147,22 @@ def _solve(matrix: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
     return right.T @ ((left.T @ sides) / values[:, None]), 0.0
 
 
-def product_eigenvalues(factors: np.ndarray) -> np.ndarray:
-    """Eigenvalues of ``factors[-1] @ ... @ factors[0]``, each with its own relative accuracy, however small or large they are.
-
-    Factors are multiplied while their product stays well conditioned; of the others a periodic QR iteration finds the blocks.
+def multipliers_of(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Eigenvalues of the product of the factors ``-right[i]^-1 left[i]``, the last one in front, each with its own relative accuracy.
 
     Parameters
     ----------
-    factors : ndarray, shape (N, k, k)
+    left, right : ndarray, shape (N, k, k)
+
+    Raises
+    ------
+    LinAlgError
+        If a factor is not finite, or the periodic QR algorithm does not converge.
     """
-    k = factors.shape[1]
+    k = left.shape[1]
     if k == 0:
         return np.zeros(0, dtype=complex)
-    if k == 1:
-        values = factors[:, 0, 0]
-        if not values.all():
-            return np.zeros(1, dtype=complex)
-        size = np.exp(np.log(np.abs(values)).sum())
-        return np.array([size * (-1.0 if np.count_nonzero(values < 0.0) % 2 else 1.0)], dtype=complex)
-    factors = _gathered(factors)
-    if len(factors) == 1:
-        return np.linalg.eigvals(factors[0]).astype(complex)
-    basis = np.eye(k)
-    for _ in range(SWEEPS):
-        start, triangles = basis, []
-        for factor in factors:
-            basis, triangle = np.linalg.qr(factor @ basis)
-            triangles.append(triangle)
-        sizes = sum(np.log(np.maximum(np.abs(np.diagonal(t)), 1e-300)) for t in triangles)
-        turn = start.T @ basis
-        cuts = [j for j in range(1, k) if np.abs(turn[j:, :j]).max() <= PARTED]
-        close = np.flatnonzero(np.abs(np.diff(sizes)) > np.log(ALIKE)) + 1
-        if all(j in cuts for j in close):
-            break
-    found = []
-    for a, b in zip([0, *cuts], [*cuts, k]):
-        product, exponent = turn[a:b, a:b], 0.0
-        for triangle in reversed(triangles):
-            product = product @ triangle[a:b, a:b]
-            size = np.abs(product).max() or 1.0
-            product, exponent = product / size, exponent + np.log(size)
-        found.append(np.linalg.eigvals(product) * np.exp(min(exponent, 700.0)))
-    return np.concatenate(found).astype(complex)
-
-
-def _gathered(factors: np.ndarray) -> np.ndarray:
-    """Products of neighbouring factors, as long as these are well conditioned."""
-    while len(factors) > 1:
-        pairs = len(factors) // 2
-        products = np.matmul(factors[1 : 2 * pairs : 2], factors[0 : 2 * pairs : 2])
-        if not (np.linalg.cond(products) < FAR).all():
-            break
-        factors = np.concatenate([products, factors[2 * pairs :]])
-    return factors
+    re, im = np.empty(k), np.empty(k)
+    if not multipliers(left, right, 1.0, re, im):
+        raise np.linalg.LinAlgError("the multipliers do not converge")
+    return re + 1j * im

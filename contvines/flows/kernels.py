@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problems.functions import NotEvaluable
 from ..problems.kernels import Kernels
-from .elimination import condense, product_eigenvalues, solve_cyclic
+from .elimination import condense, multipliers_of, solve_cyclic
 from .mesh import closed
 
 
@@ -136,25 +136,27 @@ def _solve_full(
     return np.linalg.lstsq(whole, sides, rcond=1e-18)[0], 0.0
 
 
-def transfers(data: Any, work: CycleWork) -> np.ndarray:
-    """From each mesh point to the next one, shape (N, d, d), in units of the scales."""
+def condensed(data: Any, work: CycleWork) -> tuple[np.ndarray, np.ndarray]:
+    """What is left of the equations between neighbouring mesh points, L x_i + R x_(i + 1): L and R, shape (N, d, d), in units of the scales."""
     if work.mesh is None:
         nothing = np.zeros((data.intervals, data.rule.degree * data.node, 0))
         cond = condense(work.blocks, nothing, data.node)
         work.mesh = cond.left, cond.right
-    left, right = work.mesh
-    return -np.linalg.solve(right, left)
+    return work.mesh
 
 
 def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     """Multipliers, of autonomous flows without the trivial one, and by how much that one, as computed, misses 1."""
-    steps = transfers(data, work)
+    left, right = condensed(data, work)
     if not data.free_period:
-        return product_eigenvalues(steps), 0.0
+        return multipliers_of(left, right), 0.0
+    steps = -np.linalg.solve(right, left)
     speeds = work.speeds
     sizes = np.linalg.norm(speeds, axis=1)
     if not sizes.min() > 1e-12 * (1.0 + sizes.max()):
-        values = product_eigenvalues(steps)  # a cycle that is an equilibrium: all motions are as slow as none
+        values = multipliers_of(
+            left, right
+        )  # a cycle that is an equilibrium: all motions are as slow as none
         return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
     units = speeds / sizes[:, None]
     across = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]
@@ -162,7 +164,8 @@ def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     along = np.einsum("ij,ijk,ik->i", np.roll(units, -1, axis=0), steps, units)
     growth = along * sizes / np.roll(sizes, -1)
     missed = float(np.abs(np.prod(growth) - 1.0))
-    return product_eigenvalues(np.matmul(after.transpose(0, 2, 1), np.matmul(steps, across))), missed
+    factors = np.matmul(after.transpose(0, 2, 1), np.matmul(steps, across))
+    return multipliers_of(factors, np.broadcast_to(-np.eye(factors.shape[1]), factors.shape)), missed
 
 
 def inspect(data: Any, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray) -> None:

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from contvines.core.library import native
+from contvines.core.multipliers.periodic_schur import reference as multipliers
 from contvines.core.table import TableKernels, native_table
 from orbits.elimination import rearranged
 from orbits.elimination.block_cyclic import bordered
 from orbits.machines import path
 from orbits.machines.base import Model
-from orbits.multipliers.periodic_schur import reference as multipliers
 from orbits.words.alphabet import CODES
 
 STICK, SLIP = CODES["s"], CODES["u"]

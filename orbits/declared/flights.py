@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from contvines.core.multipliers.periodic_schur import periodic_multipliers
 from orbits.declared.engine import LANES
-from orbits.multipliers.periodic_schur import periodic_multipliers
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from orbits.multipliers.factors import (
+from .factors import (
     LARGE,
     SMALL,
     UNIT_ROUNDOFF,

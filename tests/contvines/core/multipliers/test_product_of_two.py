@@ -4,9 +4,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from orbits.multipliers.periodic_schur import multipliers, reference
-from orbits.multipliers.product_of_any import product_of_any
-from orbits.multipliers.product_of_two import CERTAIN, _bound, _simple_bound, dominant_of_two, product_of_two
+from contvines.core.multipliers.periodic_schur import multipliers, reference
+from contvines.core.multipliers.product_of_any import product_of_any
+from contvines.core.multipliers.product_of_two import (
+    CERTAIN,
+    _bound,
+    _simple_bound,
+    dominant_of_two,
+    product_of_two,
+)
 
 
 def exact(A, D, twist):

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contvines.core.library import native
-from orbits.multipliers import periodic_qr
-from orbits.multipliers.eigenvectors import eigenvector
-from orbits.multipliers.periodic_schur import multipliers, periodic_multipliers, reference
+from contvines.core.multipliers import periodic_qr
+from contvines.core.multipliers.eigenvectors import eigenvector
+from contvines.core.multipliers.periodic_schur import multipliers, periodic_multipliers, reference
 
 NATIVE = [multipliers, periodic_multipliers] if native() else []
 REFERENCE = [reference, periodic_qr.periodic_multipliers]

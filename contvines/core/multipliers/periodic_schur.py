@@ -8,7 +8,7 @@ sum_j |M_{L-1} .. M_{j+1}| |M_j| |M_{j-1} .. M_0| (entry by entry, so that badly
 that is small, or hardly more than what rounding the factors alone does, sum_j |M_j| |M_{j-1} .. M_0 M_{L-1} ..
 M_{j+1}|, the product is the answer; for 2 x 2 factors the smaller multiplier comes from the product of the
 determinants, so it keeps its relative accuracy however small it is. Otherwise the periodic QR algorithm
-(`orbits.multipliers.periodic_qr`) works on the factors. Both cost O(L) time and memory.
+(`contvines.core.multipliers.periodic_qr`) works on the factors. Both cost O(L) time and memory.
 
 The native core (native/multipliers.hpp) does the same; `reference` here defines what is right.
 """
@@ -19,10 +19,10 @@ import math
 
 import numpy as np
 
-from contvines.core.library import NUMBER, POINTER, WHOLE, address, function, native
-from orbits.multipliers import periodic_qr
-from orbits.multipliers.product_of_any import product_of_any
-from orbits.multipliers.product_of_two import CERTAIN, UNCERTAIN, UNDEFINED, dominant_of_two, product_of_two
+from ..library import NUMBER, POINTER, WHOLE, address, function, native
+from . import periodic_qr
+from .product_of_any import product_of_any
+from .product_of_two import CERTAIN, UNCERTAIN, UNDEFINED, dominant_of_two, product_of_two
 
 
 def multipliers(A: np.ndarray, D: np.ndarray, twist: float, re: np.ndarray, im: np.ndarray) -> bool:

@@ -1,4 +1,4 @@
-"""Multipliers from the scaled product of factors of any order: see `orbits.multipliers.periodic_schur`."""
+"""Multipliers from the scaled product of factors of any order: see `contvines.core.multipliers.periodic_schur`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from orbits.multipliers.factors import (
+from .factors import (
     LARGE,
     SMALL,
     UNIT_ROUNDOFF,
@@ -15,7 +15,7 @@ from orbits.multipliers.factors import (
     scaled,
     sort_eigenvalues,
 )
-from orbits.multipliers.product_of_two import CERTAIN, CERTIFIED, UNCERTAIN, UNDEFINED
+from .product_of_two import CERTAIN, CERTIFIED, UNCERTAIN, UNDEFINED
 
 
 def _in_range(matrix):

@@ -1,8 +1,8 @@
-"""Multipliers from the scaled product of 2 x 2 factors, with a bound on its error: see `orbits.multipliers.periodic_schur`."""
+"""Multipliers from the scaled product of 2 x 2 factors, with a bound on its error: see `contvines.core.multipliers.periodic_schur`."""
 
 import math
 
-from orbits.multipliers.factors import LARGE, SMALL, UNIT_ROUNDOFF, scaled
+from .factors import LARGE, SMALL, UNIT_ROUNDOFF, scaled
 
 CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted
 EXCESS = (
