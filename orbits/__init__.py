@@ -12,7 +12,7 @@ _PLACES = {
     "Cavity": "orbits.machines.cavity.machine",
     "Coupled": "orbits.machines.coupled.machine",
     "DryFriction": "orbits.contacts.dry_friction",
-    "Machine": "orbits.declared.machine",
+    "Machine": "orbits.machines.page.machine",
     "Scales": "orbits.design.scales",
     "Orbit": "orbits.orbit",
     "OrbitProblem": "orbits.problem",

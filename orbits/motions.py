@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.cycles.equations import unit_nodes
+from orbits.flows.native.cycle_equations import unit_nodes
 from orbits.machines.base import Model
 from orbits.machines.catalogue import stepper
 from orbits.simulation.section import Section

@@ -15,10 +15,9 @@ from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import INSTANTS, SAME, distance
 from orbits.cycles import measures as measuring
-from orbits.cycles.equations import PLAIN, equations
 from orbits.cycles.identity import canonical, is_symmetric, root_orbit
-from orbits.cycles.margins import DURATION, FLIGHT, border_kind, margin_name
 from orbits.doors import above
+from orbits.flows.native.cycle_equations import PLAIN, equations
 from orbits.machines.base import Model
 from orbits.machines.building import build
 from orbits.machines.path import along
@@ -27,6 +26,7 @@ from orbits.orbit import Orbit
 from orbits.protocol import Answers
 from orbits.relatives import Relatives
 from orbits.words import Word
+from orbits.words.margins import DURATION, FLIGHT, border_kind, margin_name
 
 
 class OrbitProblem(Simulated, Relatives, Answers):

@@ -28,7 +28,7 @@ def _of_study(path: Path) -> str:
         return "max x0"
     if study.name in NAMES:
         return model_class(study.name).default_measure
-    from orbits.declared.measures import shown_first
+    from orbits.flows.page.measures import shown_first
 
     return shown_first(study.machine)
 

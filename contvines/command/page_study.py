@@ -72,7 +72,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
     ValueError
         With one sentence per value that cannot be used.
     """
-    from orbits.declared.loading import load_page
+    from orbits.machines.page.loading import load_page
 
     try:
         file = PageStudyFile.model_validate(data)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from orbits import Absorber, Coupled
-from orbits.cycles.margins import PER_NODE
+from orbits.words.margins import PER_NODE
 
 STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
 HERE = Path(__file__).parent

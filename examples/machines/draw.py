@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import contvines as cv
-from orbits.declared.loading import load_page
+from orbits.machines.page.loading import load_page
 
 PAGES = Path(__file__).resolve().parent
 GREY = "#9a9a9a"

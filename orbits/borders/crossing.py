@@ -33,16 +33,16 @@ from orbits.borders.rewriting import edits_at
 from orbits.borders.rounds import derivative, rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
-from orbits.cycles.equations import solved_at
 from orbits.cycles.identity import canonical, is_symmetric
-from orbits.cycles.margins import approaches_of
 from orbits.cycles.rounds import MOST, choices, escape
 from orbits.cycles.solution import Solution
+from orbits.flows.native.cycle_equations import solved_at
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import polish
 from orbits.words.edit import Edit
+from orbits.words.margins import approaches_of
 
 BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
 AWAY = (

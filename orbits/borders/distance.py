@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from orbits.cycles.sampling import PER_PERIOD
 from orbits.cycles.solution import Solution
+from orbits.flows.native.sampling import PER_PERIOD
 
 SAME = (
     1e-7  # motions whose w differs by less are one; two borders whose values agree to 1e-12 may be 5e-6 apart

@@ -15,10 +15,10 @@ from orbits.borders.rewriting import edits_at, rewritten
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, STICK
 from orbits.cycles.claim import REAL
-from orbits.cycles.margins import PER_NODE
 from orbits.cycles.solution import Solution
 from orbits.protocol import CycleProblem
 from orbits.words.edit import Edit
+from orbits.words.margins import PER_NODE
 
 # of what grows beyond the border: ways to try
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))

@@ -14,12 +14,12 @@ import numpy as np
 from orbits.contacts.changes import Change, Site, Spot
 from orbits.contacts.dry_friction import STUCK
 from orbits.contacts.letters import HIT, SLIP
-from orbits.cycles.margins import DURATION, EVENT, FLIGHT, PER_NODE, WALL
-from orbits.cycles.sampling import flight, slowest
 from orbits.cycles.solution import Solution
+from orbits.flows.native.sampling import flight, slowest
 from orbits.words import Word
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT
 from orbits.words.edit import Edit
+from orbits.words.margins import DURATION, EVENT, FLIGHT, PER_NODE, WALL
 from orbits.words.rewriting import Watch, applied, changes_at, spliced
 
 NO_SPEED = 1e-7  # an impact slower than this vanishes

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from orbits.cycles.margins import limits_of
+from orbits.words.margins import limits_of
 
 REAL = (
     -1e-12

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from orbits.cycles.cycle import Cycle
-from orbits.cycles.sampling import sample
+from orbits.flows.native.sampling import sample
 from orbits.machines.states import states_of
 from orbits.machines.stepping import PSI, TURNS, W
 from orbits.simulation.driver import follow, machine, simulate

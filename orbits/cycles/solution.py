@@ -12,9 +12,9 @@ from orbits.cycles import measures as measuring
 from orbits.cycles.claim import Claim
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import replay_error
-from orbits.cycles.equations import equations
-from orbits.cycles.margins import Margin, approaches_of, margin_units, named_margins
-from orbits.cycles.sampling import PER_PERIOD, positions, sample
+from orbits.flows.native.cycle_equations import equations
+from orbits.flows.native.sampling import PER_PERIOD, positions, sample
+from orbits.words.margins import Margin, approaches_of, margin_units, named_margins
 
 TOLERANCE = 1e-12  # of Newton's method, in the unknowns
 
@@ -77,12 +77,12 @@ class Solution(Claim, Cycle):
 
     # ------------------------------------------------------------------ seeing it move
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """Positions and velocities over one period; see `orbits.cycles.sampling.sample`."""
+        """Positions and velocities over one period; see `orbits.flows.native.sampling.sample`."""
         return sample(self, points)
 
     @property
     def track(self) -> np.ndarray:
-        """w at equal phases of the forcing; see `orbits.cycles.sampling.positions`."""
+        """w at equal phases of the forcing; see `orbits.flows.native.sampling.positions`."""
         return self.positions(PER_PERIOD)
 
     def positions(self, instants: int) -> np.ndarray:

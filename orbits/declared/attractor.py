@@ -10,12 +10,12 @@ import numpy as np
 
 from orbits.contacts.letters import HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
-from orbits.declared.machine import Machine
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.simulation import Trajectory, collect, first_state
-from orbits.declared.solving import SOLVED, newton
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
-from orbits.declared.system import DeclaredSystem
+from orbits.flows.page.cycle_equations import DeclaredSystem
+from orbits.flows.page.solving import SOLVED, newton
+from orbits.machines.page.machine import Machine
 from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned

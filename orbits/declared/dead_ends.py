@@ -8,11 +8,11 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, STICK
 from orbits.declared.attractor import attracted
-from orbits.declared.margins import border_kind, per_node
-from orbits.declared.names import described
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.stepper import SimulationError, Stepper
-from orbits.declared.system import DeclaredSystem
+from orbits.flows.page.cycle_equations import DeclaredSystem
+from orbits.flows.page.margins import border_kind, per_node
+from orbits.machines.page.names import described
 
 BESIDE = 1e-6  # of the parameter, from where simulation is asked
 SLOW = 1e-3  # of the fastest impact's speed, or of the longest flight

@@ -71,7 +71,7 @@ def by_events(orbit: Any) -> float:
 
 def by_states(orbit: Any, points: int = 400) -> float:
     """Largest difference of the states at many instants, the simulation started anew at every definite event."""
-    from orbits.declared.sampling import lengths
+    from orbits.flows.page.sampling import lengths
 
     durations = lengths(orbit)
     if np.any(durations < -1e-9):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.sampling import lengths
-from orbits.declared.system import loose_states
+from orbits.flows.page.cycle_equations import loose_states
+from orbits.flows.page.sampling import lengths
 
 SAME = 1e-5  # largest difference of states, at equal clocks, of one and the same motion
 

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.changes import Change, Site, Spot
-from orbits.declared.margins import per_node
-from orbits.declared.sampling import lengths
+from orbits.flows.page.margins import per_node
+from orbits.flows.page.sampling import lengths
 from orbits.words.edit import Edit
 from orbits.words.rewriting import Watch, changes_at
 

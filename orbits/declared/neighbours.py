@@ -10,9 +10,9 @@ from orbits.contacts.changes import Change, Grows, What
 from orbits.cycles.claim import REAL
 from orbits.declared.edits import FIRST
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.sampling import sample
-from orbits.declared.solving import SOLVED, examined, newton
-from orbits.declared.system import DeclaredSystem
+from orbits.flows.page.cycle_equations import DeclaredSystem
+from orbits.flows.page.sampling import sample
+from orbits.flows.page.solving import SOLVED, examined, newton
 from orbits.words.edit import Edit
 from orbits.words.rewriting import applied, spliced
 

@@ -10,16 +10,16 @@ import numpy as np
 
 from orbits.cycles.claim import Claim
 from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
-from orbits.cycles.margins import Margin
 from orbits.declared.deviation import deviation
-from orbits.declared.machine import Machine
-from orbits.declared.margins import margin_name, per_node
-from orbits.declared.measures import measure, names
-from orbits.declared.sampling import sample, strobed
-from orbits.declared.solving import examined
-from orbits.declared.system import DeclaredSystem
 from orbits.doors import above
+from orbits.flows.page.cycle_equations import DeclaredSystem
+from orbits.flows.page.margins import margin_name, per_node
+from orbits.flows.page.measures import measure, names
+from orbits.flows.page.sampling import sample, strobed
+from orbits.flows.page.solving import examined
+from orbits.machines.page.machine import Machine
 from orbits.proofs.obstacles import ProofError
+from orbits.words.margins import Margin
 from orbits.words.of_pages import PageWord
 
 
@@ -200,7 +200,7 @@ class DeclaredOrbit(Claim):
         )
 
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """States over one period; see `orbits.declared.sampling.sample`."""
+        """States over one period; see `orbits.flows.page.sampling.sample`."""
         return sample(self, points)
 
     def replay(self) -> float:

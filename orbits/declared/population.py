@@ -19,13 +19,13 @@ from orbits.contacts.wall import Wall
 from orbits.declared.attractor import RETURNED, look, returning, skip
 from orbits.declared.embedded import embedded_cycles
 from orbits.declared.growth import growth
-from orbits.declared.machine import Machine
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.returning import returning_cycles
 from orbits.declared.simulation import Trajectory, collect, letter_of, outside
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 from orbits.declared.sweep import sweep
 from orbits.machines.notation import STARTS
+from orbits.machines.page.machine import Machine
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
 EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for

@@ -5,20 +5,21 @@ The contract is that of `orbits.problem.OrbitProblem`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from orbits.declared import measures as measuring
+from orbits.cycles.identity import canonical, size_of_one
 from orbits.declared.attractor import witness
 from orbits.declared.crossing import cross
 from orbits.declared.dead_ends import dead_end
 from orbits.declared.distance import SAME, distance
-from orbits.declared.margins import border_kind
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.section import Section
-from orbits.declared.system import DeclaredSystem
+from orbits.flows.page import measures as measuring
+from orbits.flows.page.cycle_equations import DeclaredSystem
+from orbits.flows.page.margins import border_kind
 from orbits.machines.notation import SYMBOLS
 from orbits.protocol import Answers
 from orbits.relatives import Relatives
@@ -76,6 +77,12 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
         return dead_end(self, point)
 
     # ------------------------------------------------------------------ identity
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
+        """Key and vector that are equal for one orbit in all its descriptions."""
+        nodes = self.expand(u)
+        mirror = self.mirrored or self.machine.has_mirror(self.values(p))
+        return canonical(self.word, self.periods, nodes, mirror, forced=self.forced, same=size_of_one(nodes))
+
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image."""
         if not isinstance(other, DeclaredProblem) or other.machine is not self.machine:

@@ -14,12 +14,12 @@ import numpy as np
 
 from orbits.contacts.changes import Grows
 from orbits.cycles.rounds import MOST, Rounds, choices, derived, escape, judged
-from orbits.declared import flights
 from orbits.declared.distance import distance
 from orbits.declared.edits import edits_at
 from orbits.declared.neighbours import SIZES, Found, climb, grown, with_edits
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.system import DeclaredSystem
+from orbits.flows.page import flights
+from orbits.flows.page.cycle_equations import DeclaredSystem
 from orbits.words.edit import Edit
 
 Solved = tuple[DeclaredSystem, np.ndarray, float]

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.contacts.wall import Wall
-from orbits.declared.machine import Machine
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 from orbits.declared.variations import Variations
+from orbits.machines.page.machine import Machine
 from orbits.words.of_pages import PageWord
 
 LONGEST = 1e3  # clock without the event of the section after which a motion does not come back

@@ -12,8 +12,8 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
-from orbits.declared.machine import Machine
 from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.machines.page.machine import Machine
 
 MOST_EVENTS = 1_000_000
 REACHED, FULL, STILL = 0, 1, 2

@@ -9,10 +9,10 @@ import numpy as np
 
 from orbits.contacts.letters import HIT
 from orbits.declared.attractor import find_attractor, random_start
-from orbits.declared.machine import Machine
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.solving import SOLVED, newton
 from orbits.declared.stepper import TWO_PI, SimulationError
+from orbits.flows.page.solving import SOLVED, newton
+from orbits.machines.page.machine import Machine
 from orbits.starts.find import StartError
 from orbits.words.of_pages import PageWord
 

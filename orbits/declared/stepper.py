@@ -10,8 +10,8 @@ import numpy as np
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 from orbits.contacts.wall import FREE, HELD, Wall
-from orbits.declared.machine import Machine
-from orbits.declared.singular import singular_at
+from orbits.machines.page.machine import Machine
+from orbits.machines.page.singular import singular_at
 
 TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from orbits.declared.loading import load_page
-from orbits.declared.machine import Machine
-from orbits.declared.page import digest_of
 from orbits.declared.problem import DeclaredProblem
+from orbits.machines.page.loading import load_page
+from orbits.machines.page.machine import Machine
+from orbits.machines.page.page import digest_of
 from orbits.words.of_pages import PageWord
 
 

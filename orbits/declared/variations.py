@@ -1,6 +1,6 @@
 """How a simulated motion of a declared machine changes with its beginning and with one of its numbers, from event to event.
 
-With node i = (c_i, x_i), the clock and the states just after event i, and y the states at the end of the flight (`orbits.declared.flights`),
+With node i = (c_i, x_i), the clock and the states just after event i, and y the states at the end of the flight (`orbits.flows.page.flights`),
 
     dy = dy/dx (dx_i - F(x_i) dc_i) + F(y) dc + dy/dp dp,    dg = g_y dy + g_c dc + g_p dp = 0,
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.declared.formulas import Named, NoPhase, States
+from orbits.machines.page.formulas import Named, NoPhase, States
 
 if TYPE_CHECKING:
     from orbits.declared.orbit import DeclaredOrbit

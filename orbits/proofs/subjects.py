@@ -10,7 +10,6 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from orbits.cycles.identity import is_symmetric, root_orbit
-from orbits.cycles.margins import PER_NODE, margin_name
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.branches import Pieces
 from orbits.proofs.checks import check_symmetry, motif_of
@@ -23,6 +22,7 @@ from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special
 from orbits.proofs.resting import prove_stuck
 from orbits.proofs.varying import Varying
 from orbits.words import Word
+from orbits.words.margins import PER_NODE, margin_name
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
 NARROW = 1e-12  # half a tile about a special point, from which floats can go on

@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from orbits.attractors.recurrence import find_attractor
-from orbits.cycles.equations import equations, solved_at
 from orbits.cycles.solution import Solution
+from orbits.flows.native.cycle_equations import equations, solved_at
 from orbits.machines.base import Model
 from orbits.starts.reading import DirectionError, directed, readings
 from orbits.words import Word

@@ -9,7 +9,7 @@ from typing import Any
 
 from examples.machines.draw import RUNS
 from orbits import Absorber, Cavity, Coupled
-from orbits.declared.loading import load_page
+from orbits.machines.page.loading import load_page
 from tests.orbits.fuzz.drawing import draw
 
 from .studies import HERE

@@ -10,7 +10,7 @@ from typing import Any
 
 import contvines as cv
 import orbits
-from orbits.declared.loading import load_page
+from orbits.machines.page.loading import load_page
 from tests.contvines.problems.demos import listed, maps
 from tests.contvines.problems.demos.make_table import graph_of
 

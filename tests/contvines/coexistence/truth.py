@@ -32,7 +32,7 @@ from contvines.coexistence.solutions import solutions_at
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
-from orbits.declared.loading import load_page
+from orbits.machines.page.loading import load_page
 from tests.contvines.coexistence.drawn import OPTIONS, STARTS, drawn
 from tests.contvines.coexistence.impacts import impacts_of, kind_of, same
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from contvines.core.library import native
 from contvines.core.table import native_table
 from orbits import arguments
-from orbits.cycles.equations import Equations
-from orbits.cycles.kernels import TABLES, NativeKernels, ReferenceKernels
+from orbits.flows.native.cycle_equations import Equations
+from orbits.flows.native.kernels import TABLES, NativeKernels, ReferenceKernels
 from orbits.machines.catalogue import usual
 from orbits.words import Word
 

@@ -14,7 +14,7 @@ from orbits.cycles.round_maps import (
     sides_of_cycles,
     through_flights,
 )
-from orbits.cycles.sampling import positions_of, reference_positions
+from orbits.flows.native.sampling import positions_of, reference_positions
 from orbits.machines.catalogue import reference_stepper, stepper
 from orbits.machines.coupled import measures, segments
 from orbits.simulation.driver import simulate

@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from orbits.declared.loading import load_page
+from orbits.machines.page.loading import load_page
 
 PAGES = Path(__file__).resolve().parents[3] / "examples" / "machines"
 

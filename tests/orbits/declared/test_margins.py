@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orbits import Machine, Wall
-from orbits.declared.margins import fill_margins
+from orbits.flows.page.margins import fill_margins
 from orbits.symbols import cos
 
 pytest.importorskip("heyoka")

@@ -6,8 +6,8 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import Machine, Switch, Wall
-from orbits.declared.singular import singular_at
 from orbits.declared.stepper import SimulationError
+from orbits.machines.page.singular import singular_at
 from orbits.symbols import cos, sqrt
 
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from orbits import Absorber
-from orbits.cycles.kernels import assemble
+from orbits.flows.native.kernels import assemble
 from orbits.machines.absorber import maps
 from orbits.problem import OrbitProblem
 from orbits.words import Word

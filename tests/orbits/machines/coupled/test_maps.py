@@ -6,7 +6,7 @@ import pytest
 
 from orbits import Coupled
 from orbits.arguments import cycle_data, workspace
-from orbits.cycles.kernels import ReferenceKernels
+from orbits.flows.native.kernels import ReferenceKernels
 from orbits.machines.coupled import maps
 from orbits.machines.coupled.flow import first_zero, wave
 from orbits.machines.coupled.maps import margins

@@ -18,8 +18,8 @@ from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import HELD, Wall
-from orbits.declared import engine
-from orbits.declared.formulas import Named, NoPhase, PageError, States, called
+from orbits.integrators import heyoka as engine
+from orbits.machines.page.formulas import Named, NoPhase, PageError, States, called
 from orbits.symbols import Symbol
 
 CLOCK = "phase"

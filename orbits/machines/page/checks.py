@@ -9,10 +9,10 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.declared import engine
-from orbits.declared.equations import Equations
-from orbits.declared.formulas import PageError
-from orbits.declared.names import described
+from orbits.integrators import heyoka as engine
+from orbits.machines.page.formulas import PageError
+from orbits.machines.page.names import described
+from orbits.machines.page.patterns import Equations
 
 DRAWS = 8  # random states at which formulas are compared
 SAME = 1e-9  # relative

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
-from orbits.cycles.cycle import Cycle
+from orbits.flows.protocol import Motion
 from orbits.machines.catalogue import stepper
 from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.states import state_of, states_of
@@ -15,12 +15,12 @@ PER_PERIOD = 200  # instants of a forcing period at which motions are compared
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
 
-def flight(orbit: Cycle, segment: int, ahead: np.ndarray) -> np.ndarray:
+def flight(orbit: Motion, segment: int, ahead: np.ndarray) -> np.ndarray:
     """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
     return _ahead(orbit, _begins(orbit, segment), np.ascontiguousarray(ahead, dtype=float))
 
 
-def _begins(orbit: Cycle, segment: int) -> np.ndarray:
+def _begins(orbit: Motion, segment: int) -> np.ndarray:
     word = orbit.word
     engine = stepper(orbit.model.name)
     return state_of(
@@ -28,19 +28,19 @@ def _begins(orbit: Cycle, segment: int) -> np.ndarray:
     )
 
 
-def _ahead(orbit: Cycle, state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+def _ahead(orbit: Motion, state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
     states, out = np.empty((len(ahead), len(state))), np.empty((len(ahead), 4))
     states[...] = state
     stepper(orbit.model.name).sample(states, orbit.params, ahead, out)
     return out
 
 
-def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
+def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
     """Positions and velocities over one period, events included with both their velocities.
 
     Parameters
     ----------
-    orbit : Cycle
+    orbit : Motion
     points : int
         About how many points; at least two per segment.
 
@@ -78,7 +78,7 @@ def sample(orbit: Cycle, points: int = 400) -> dict[str, np.ndarray]:
     }
 
 
-def positions(orbit: Cycle, instants: int = PER_PERIOD) -> np.ndarray:
+def positions(orbit: Motion, instants: int = PER_PERIOD) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
     count = instants * orbit.periods
     if not len(orbit.nodes):
@@ -137,7 +137,7 @@ def reference_positions(
     return out[:, 0]
 
 
-def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:
+def _at_rest(orbit: Motion, points: int) -> dict[str, np.ndarray]:
     """The same of the absorber that rides with its cavity."""
     phase = np.linspace(0.0, 2.0 * np.pi, points)
     omega, rest = orbit.parameters["frequency"], orbit.model.rest
@@ -150,7 +150,7 @@ def _at_rest(orbit: Cycle, points: int) -> dict[str, np.ndarray]:
     }  # fmt: skip
 
 
-def slowest(orbit: Cycle, segment: int) -> tuple[float, np.ndarray]:
+def slowest(orbit: Motion, segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
     length, mode, state = float(orbit.durations[segment]), orbit.word.modes[segment], _begins(orbit, segment)
     ahead = np.linspace(0.0, length, 402)[1:-1]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
-from orbits.declared import engine
-from orbits.declared.equations import Equations, PatternKey
+from orbits.integrators import heyoka as engine
+from orbits.machines.page.patterns import Equations, PatternKey
 
 
 class Compiled:

@@ -12,11 +12,11 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.declared import engine
-from orbits.declared.equations import Equations
-from orbits.declared.formulas import Named, States
+from orbits.integrators import heyoka as engine
+from orbits.machines.page.formulas import Named, States
+from orbits.machines.page.patterns import Equations
 
-HERE = os.path.dirname(os.path.dirname(__file__))
+HERE = os.path.dirname(os.path.dirname(os.path.dirname(__file__)))
 FAILS = {"divide": "a division by zero", "invalid": "no number"}
 RUNAWAY = 1e8  # states beyond this are no place of a formula's own
 

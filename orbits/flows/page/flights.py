@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from contvines.core.multipliers.periodic_schur import periodic_multipliers
-from orbits.declared.engine import LANES
+from orbits.integrators.heyoka import LANES
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster

@@ -13,13 +13,13 @@ from contvines.shared.near_names import no_parameter
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
-from orbits.declared import checks, names
-from orbits.declared.compiled import Compiled
-from orbits.declared.equations import Equations
-from orbits.declared.formulas import PageError
-from orbits.declared.mirror import MirrorImage
-from orbits.declared.page import Page, page_of
 from orbits.doors import above
+from orbits.machines.page import checks, names
+from orbits.machines.page.compiled import Compiled
+from orbits.machines.page.formulas import PageError
+from orbits.machines.page.mirror import MirrorImage
+from orbits.machines.page.page import Page, page_of
+from orbits.machines.page.patterns import Equations
 from orbits.machines.parameters import ParameterError
 from orbits.words.alphabet import Alphabet
 from orbits.words.of_pages import PageWord, parse

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.letters import BORDERS, HIT, SLIP, STICK, STRENGTH, STROBE, SWITCH, TURN
-from orbits.declared.flights import Work
+from orbits.flows.page.flights import Work
 from orbits.words.of_pages import PageWord
 
 DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes

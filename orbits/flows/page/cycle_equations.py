@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, Self
 
@@ -11,11 +11,10 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
-from orbits.cycles.identity import canonical, size_of_one
-from orbits.declared import flights, loci
-from orbits.declared.engine import variables_of
-from orbits.declared.machine import Machine
-from orbits.declared.margins import fill_margins, owned, per_node
+from orbits.flows.page import flights, loci
+from orbits.flows.page.margins import fill_margins, owned, per_node
+from orbits.integrators.heyoka import variables_of
+from orbits.machines.page.machine import Machine
 from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi
@@ -286,9 +285,3 @@ class DeclaredSystem:
         """The same for another word of the machine, against the same parameter; on half the word only where the machine has a mirror image."""
         given, half = self.params if params is None else params, symmetric and self.mirrored
         return type(self)(self.machine, word, periods, self.parameter, given, half)
-
-    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
-        """Key and vector that are equal for one orbit in all its descriptions."""
-        nodes = self.expand(u)
-        mirror = self.mirrored or self.machine.has_mirror(self.values(p))
-        return canonical(self.word, self.periods, nodes, mirror, forced=self.forced, same=size_of_one(nodes))

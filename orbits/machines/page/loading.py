@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orbits.declared.machine import Machine
-from orbits.declared.page import digest_of
+from orbits.machines.page.machine import Machine
+from orbits.machines.page.page import digest_of
 
 
 def load_page(path: str | Path, name: str) -> Any:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.declared.flights import Work, fill
+from orbits.flows.page.flights import Work, fill
 
 
 def assign(data: Any, other: Any, value: float) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.declared import flights
+from orbits.flows.page import flights
 
 SOLVED = 1e-10  # residual of a solution
 

@@ -1,7 +1,7 @@
 """The equations of the cycles with one word: what the compiled kernels need, and how unknowns and nodes go together.
 
 A symmetric cycle is solved for on half its word, closed by the mirror. The empty word has linear equations of its own
-(`orbits.cycles.rest_equations`), with the same members.
+(`orbits.flows.native.rest_equations`), with the same members.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.arguments import Workspace, cycle_data, workspace
-from orbits.cycles.kernels import assemble
-from orbits.cycles.margins import PER_NODE
-from orbits.cycles.rest_equations import RestEquations
+from orbits.flows.native.kernels import assemble
+from orbits.flows.native.rest_equations import RestEquations
 from orbits.machines.base import Model
 from orbits.machines.path import along
 from orbits.words import Word
+from orbits.words.margins import PER_NODE
 
 PLAIN = (1.0, 1.0)
 

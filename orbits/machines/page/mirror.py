@@ -13,11 +13,11 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.declared import engine
-from orbits.declared.checks import DRAWS, SAME, Draws
-from orbits.declared.equations import Equations
-from orbits.declared.formulas import PageError
-from orbits.declared.names import described
+from orbits.integrators import heyoka as engine
+from orbits.machines.page.checks import DRAWS, SAME, Draws
+from orbits.machines.page.formulas import PageError
+from orbits.machines.page.names import described
+from orbits.machines.page.patterns import Equations
 
 VARIED = 0.5  # parts of its own value (of 1, where it is 0) by which a parameter is varied
 

@@ -12,7 +12,7 @@ import numpy as np
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
-from orbits.declared.formulas import PageError
+from orbits.machines.page.formulas import PageError
 
 
 def check_names(

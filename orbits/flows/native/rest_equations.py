@@ -27,7 +27,7 @@ class RestKernels(NamedTuple):
 
 
 class RestEquations:
-    """What `orbits.cycles.equations.Equations` is for the other words; the unknowns are those of the machine's `rest`."""
+    """What `orbits.flows.native.cycle_equations.Equations` is for the other words; the unknowns are those of the machine's `rest`."""
 
     length, n_margins = 0, 1
     twist, shift = 1.0, 2.0 * np.pi

@@ -1,0 +1,1 @@
+"""What happens between two events: one protocol, fulfilled by closed forms (`native`) and by pages (`page`)."""

@@ -1,0 +1,1 @@
+"""Integrators of machines on a page."""

@@ -1,0 +1,1 @@
+"""A machine on a page of Python: equations of motion and contacts."""
