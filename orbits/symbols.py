@@ -6,9 +6,10 @@ recorded; what cannot be recorded (a comparison, ``abs``, ``math.cos``) is refus
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from numbers import Real
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -29,54 +30,71 @@ def _refuse(what: str) -> Any:
 class Symbol:
     """An expression in the states, the phase and the parameters of a machine.
 
-    Parameters
+    Expressions that are written alike are one object, so that what occurs twice is worked out once.
+
+    Attributes
     ----------
-    expression
-        The engine's own object.
-    functions : mapping of name to callable
-        The engine's elementary functions, on its own objects.
+    operation : str
+        "variable", "number", an operator, or the name of an elementary function.
+    operands : tuple
+        The name, the number, or the Symbols that it is made of.
     """
 
-    __slots__ = ("expression", "functions")
+    __slots__ = ("__weakref__", "operands", "operation")
     __hash__ = object.__hash__
     __array_priority__ = 1000.0
+    operation: str
+    operands: tuple[Any, ...]
 
-    def __init__(self, expression: Any, functions: Mapping[str, Callable]) -> None:
-        self.expression, self.functions = expression, functions
+    def __new__(cls, operation: str, *operands: Any) -> Symbol:
+        key = (operation, *(id(x) if isinstance(x, Symbol) else repr(x) for x in operands))
+        made = _MADE.get(key)
+        if made is None:
+            made = object.__new__(cls)
+            made.operation, made.operands = operation, operands
+            _MADE[key] = made
+        return made
 
-    def _with(self, operate: Callable, other: Any, turned: bool = False) -> Any:
+    def __reduce__(self) -> Any:
+        return Symbol, (self.operation, *self.operands)
+
+    @property
+    def number(self) -> float | None:
+        """Its value, where it is a number."""
+        return self.operands[0] if self.operation == "number" else None
+
+    def _with(self, combine: Callable, other: Any, turned: bool = False) -> Any:
         if isinstance(other, Symbol):
-            right = other.expression
+            right = other
         elif isinstance(other, Real) or (isinstance(other, np.ndarray) and other.ndim == 0):
-            right = float(other)  # type: ignore[arg-type]
+            right = Symbol("number", float(other))  # type: ignore[arg-type]
         else:
             return NotImplemented
-        left = self.expression
-        return Symbol(operate(right, left) if turned else operate(left, right), self.functions)
+        return combine(right, self) if turned else combine(self, right)
 
     def __add__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a + b, other)
+        return self._with(_sum, other)
 
     def __radd__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a + b, other, turned=True)
+        return self._with(_sum, other, turned=True)
 
     def __sub__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a - b, other)
+        return self._with(_difference, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a - b, other, turned=True)
+        return self._with(_difference, other, turned=True)
 
     def __mul__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a * b, other)
+        return self._with(_product, other)
 
     def __rmul__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a * b, other, turned=True)
+        return self._with(_product, other, turned=True)
 
     def __truediv__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a / b, other)
+        return self._with(_quotient, other)
 
     def __rtruediv__(self, other: Any) -> Any:
-        return self._with(lambda a, b: a / b, other, turned=True)
+        return self._with(_quotient, other, turned=True)
 
     def __pow__(self, other: Any) -> Any:
         # products: the Taylor recursion of a general power divides by its base, which may be zero
@@ -85,13 +103,13 @@ class Symbol:
             root = self**half if half else None
             square = self if root is None else root * root
             return square * self if odd and root is not None else square
-        return self._with(lambda a, b: a**b, other)
+        return self._with(_power, other)
 
     def __rpow__(self, other: Any) -> Any:
-        return self._with(lambda base, power: self.functions["exp"](power * float(np.log(base))), other, True)
+        return exp(self * float(np.log(other)))
 
     def __neg__(self) -> Symbol:
-        return Symbol(-self.expression, self.functions)
+        return _product(Symbol("number", -1.0), self)
 
     def __pos__(self) -> Symbol:
         return self
@@ -132,11 +150,56 @@ class Symbol:
         return _refuse("a whole quotient (//)")
 
     def __repr__(self) -> str:
-        return str(self.expression)
+        if self.operation in ("variable", "number"):
+            return str(self.operands[0])
+        if len(self.operands) == 1:
+            return f"{self.operation}({self.operands[0]})"
+        return f"({self.operands[0]} {self.operation} {self.operands[1]})"
+
+
+_MADE: WeakValueDictionary[tuple, Symbol] = WeakValueDictionary()
+
+
+def _number(value: float) -> Symbol:
+    return Symbol("number", float(value))
+
+
+def _sum(a: Symbol, b: Symbol) -> Symbol:
+    if a.number is not None and b.number is not None:
+        return _number(a.number + b.number)
+    return b if a.number == 0.0 else a if b.number == 0.0 else Symbol("+", a, b)
+
+
+def _difference(a: Symbol, b: Symbol) -> Symbol:
+    if a.number is not None and b.number is not None:
+        return _number(a.number - b.number)
+    if a is b:
+        return _number(0.0)
+    return -b if a.number == 0.0 else a if b.number == 0.0 else Symbol("-", a, b)
+
+
+def _product(a: Symbol, b: Symbol) -> Symbol:
+    if a.number is not None and b.number is not None:
+        return _number(a.number * b.number)
+    if a.number == 0.0 or b.number == 0.0:
+        return _number(0.0)
+    return b if a.number == 1.0 else a if b.number == 1.0 else Symbol("*", a, b)
+
+
+def _quotient(a: Symbol, b: Symbol) -> Symbol:
+    if b.number == 0.0:
+        return Symbol("/", a, b)
+    if a.number is not None and b.number is not None:
+        return _number(a.number / b.number)
+    return _number(0.0) if a.number == 0.0 else a if b.number == 1.0 else Symbol("/", a, b)
+
+
+def _power(a: Symbol, b: Symbol) -> Symbol:
+    return _number(1.0) if b.number == 0.0 else a if b.number == 1.0 else Symbol("**", a, b)
 
 
 def _method(name: str) -> Callable:
-    return lambda self: Symbol(self.functions[name](self.expression), self.functions)
+    return lambda self: Symbol(name, self)
 
 
 for _name in ("cos", "sin", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh"):
@@ -148,7 +211,7 @@ for _name in ("sin", "cos", "tan"):
 def _elementary(name: str, numeric: Callable, says: str) -> Callable:
     def function(x: Any) -> Any:
         if isinstance(x, Symbol):
-            return Symbol(x.functions[name](x.expression), x.functions)
+            return Symbol(name, x)
         return numeric(x)
 
     function.__name__ = function.__qualname__ = name

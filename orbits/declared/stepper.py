@@ -54,6 +54,8 @@ class Stepper:
             for w, contact in enumerate(machine.contacts)
             if isinstance(contact, Wall)
         }
+        self._values = self.compiled.contact_values()
+        self._impacts = {w: self.compiled.impact_map(w) for w in self._touched}
         self._fresh = False  # something starts from rest: leave the surface before looking for events
         self._hop = 0.0  # time to the top of a short hop from a wall
 
@@ -98,8 +100,7 @@ class Stepper:
         """Gaps, velocities and surfaces at the state: one value per contact."""
         if not self.machine.contacts:
             return np.zeros(0)
-        numbers = self.compiled.numbers(self.params, self.modes)
-        return self.compiled.contact_values().one(self.state, self.clock, numbers)
+        return self._values.one(self.state, self.clock, self._tools(self.modes)[3])
 
     def _impacts_at_start(self, values: np.ndarray) -> None:
         for j, contact in enumerate(self.machine.contacts):
@@ -141,14 +142,12 @@ class Stepper:
         return STUCK
 
     def _gap_rate(self, wall: int) -> float:
-        numbers = self.compiled.numbers(self.params, self.modes)
-        row = self.compiled.impact_map(wall).one(self.state, self.clock, numbers)
-        return float(row[-1])
+        return float(self._impacts[wall].one(self.state, self.clock, self._tools(self.modes)[3])[-1])
 
     def _impact(self, wall: int) -> int:
         """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
         numbers = self._tools(self.modes)[3]
-        row = self.compiled.impact_map(wall).one(self.state, self.clock, numbers)
+        row = self._impacts[wall].one(self.state, self.clock, numbers)
         before = float(row[-1])
         self.state[:] = row[:-1]
         if self._touched[wall]:
@@ -168,7 +167,7 @@ class Stepper:
     def _push_back(self, wall: int) -> float:
         """Acceleration of a free wall's gap."""
         key = self.equations.pattern_key(self.modes)
-        numbers = self.compiled.numbers(self.params, self.modes)
+        numbers = self._tools(self.modes)[3]
         values = self.compiled.gap_acceleration(wall, key)
         return float(values.one(self.state, self.clock, numbers)[0])
 

@@ -1,124 +1,75 @@
-"""The seam to heyoka: symbols in, compiled Taylor integrators out. The only file that imports it.
+"""Pages flown by heyoka: compiled Taylor integrators. The only file that imports it.
 
-Whatever stands behind this seam has to offer: symbols with derivatives (`variable`, `derivative`), functions compiled for many
-points at once (`Values`), flights with their sensitivities, one by one (`Flight`) or several at once (`Flights`), flights that report
-every root of given functions (`Watch`), and flights that end at the first root (`Run`). heyoka finds all roots inside a step from the Taylor polynomials of
-the functions (Biscani, Izzo, MNRAS 504 (2021) 2614), so that a double crossing is not missed.
+heyoka finds all roots inside a step from the Taylor polynomials of the functions (Biscani, Izzo, MNRAS 504 (2021) 2614), so that a double
+crossing is not missed. Between two events a page takes one to three steps: its batch integrators gain nothing there, and are used for flights
+with sensitivities only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from orbits.symbols import ELEMENTARY, Symbol
+from orbits.integrators import expressions
+from orbits.integrators.expressions import Layout, in_order, rebuilt, variables_of
+from orbits.symbols import Symbol
 
-
-class EngineMissing(ImportError):
-    """The integrator behind declared machines is not installed."""
+LANES = 4  # flights that are integrated side by side
+FEW = 2  # points up to which plain Python works formulas out faster than a call of compiled code
 
 
 @cache
 def _heyoka() -> Any:
-    try:
-        import heyoka
-    except ImportError as error:
-        raise EngineMissing(
-            "declared machines need heyoka, which is not installed: pip install 'contvines[machines]' (Linux), "
-            "or conda install heyoka.py -c conda-forge (macOS, Windows)"
-        ) from error
+    heyoka: Any = import_module("heyoka")
     heyoka.set_logger_level_error()  # a flow that runs away is reported by what it returns
     return heyoka
 
 
-@cache
-def _functions() -> dict[str, Callable]:
+def lowered(layout: Layout, values: Sequence[Symbol]) -> list[Any]:
+    """heyoka's expressions, with time and runtime parameters in place of the clock and the numbers."""
     heyoka = _heyoka()
-    return {name: getattr(heyoka, name) for name in ELEMENTARY}
+    names = {name: heyoka.par[i] for i, name in enumerate(layout.numbers)} | {layout.clock: heyoka.time}
+    made: dict[int, Any] = {}
+    for node in in_order(values):
+        if node.operation == "variable":
+            made[id(node)] = names.get(node.operands[0]) or heyoka.expression(node.operands[0])
+        elif node.operation == "number":
+            made[id(node)] = heyoka.expression(node.operands[0])
+        else:
+            parts = [made[id(x)] for x in node.operands]
+            made[id(node)] = (
+                rebuilt(node, parts) if len(parts) == 2 else getattr(heyoka, node.operation)(*parts)
+            )
+    return [made[id(value)] for value in values]
 
 
-def variable(name: str) -> Symbol:
-    """A symbol with a name."""
-    return Symbol(_heyoka().expression(name), _functions())
+def _variables(layout: Layout) -> list[Any]:
+    return [_heyoka().expression(name) for name in layout.states]
 
 
-def constant(value: float) -> Symbol:
-    """A number as a symbol."""
-    return Symbol(_heyoka().expression(float(value)), _functions())
-
-
-def derivatives(values: Sequence[Symbol], by: Sequence[Symbol]) -> list[list[Symbol]]:
-    """Partial derivatives, ``[i][j]`` of value i by variable j."""
-    diff = _heyoka().diff
-    functions = _functions()
-    return [[Symbol(diff(v.expression, w.expression), functions) for w in by] for v in values]
-
-
-def replaced(value: Symbol, numbers: dict[str, float]) -> Symbol:
-    """The expression with numbers in place of some variables."""
-    heyoka = _heyoka()
-    places = {name: heyoka.expression(number) for name, number in numbers.items()}
-    return Symbol(heyoka.subs(value.expression, places), _functions())
-
-
-def variables_of(value: Symbol) -> set[str]:
-    """Names of the variables that an expression contains."""
-    return set(_heyoka().get_variables(value.expression))
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Which variables are states, which is the independent one, and which are numbers handed in at run time.
-
-    Attributes
-    ----------
-    states : tuple of str
-    clock : str
-        The independent variable: the forcing phase, or time.
-    numbers : tuple of str
-        In the order of the vectors handed in: parameters, then signs.
-    """
-
-    states: tuple[str, ...]
-    clock: str
-    numbers: tuple[str, ...]
-
-    def lowered(self, values: Sequence[Symbol]) -> list[Any]:
-        """heyoka's expressions with time and runtime parameters in place of the clock and the numbers."""
-        heyoka = _heyoka()
-        places: dict[Any, Any] = {name: heyoka.par[i] for i, name in enumerate(self.numbers)}
-        places[self.clock] = heyoka.time
-        return [heyoka.subs(value.expression, places) for value in values]
-
-
-class Values:
+class Values(expressions.Values):
     """Functions of states, clock and numbers, compiled for many points at once."""
 
-    def __init__(self, layout: Layout, values: Sequence[Symbol]) -> None:
-        heyoka = _heyoka()
-        self.count = len(values)
-        variables = [heyoka.expression(name) for name in layout.states]
-        self._function = heyoka.cfunc(layout.lowered(values), vars=variables)
-        self._numbers = int(self._function.nparams)
+    _compiled: Any = None
 
     def __call__(self, states: np.ndarray, clock: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """Values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
+        if len(states) <= FEW:
+            return np.array([self.one(*row) for row in zip(states, clock, numbers)])
+        if self._compiled is None:
+            self._compiled = _heyoka().cfunc(lowered(self.layout, self.values), vars=_variables(self.layout))
         out = np.empty((self.count, len(states)))
-        self._function(
+        self._compiled(
             np.ascontiguousarray(states.T),
-            pars=np.ascontiguousarray(numbers.T[: self._numbers]),
+            pars=np.ascontiguousarray(numbers.T[: int(self._compiled.nparams)]),
             time=np.ascontiguousarray(clock),
             outputs=out,
         )
         return out.T
-
-    def one(self, state: np.ndarray, clock: float, numbers: np.ndarray) -> np.ndarray:
-        """Values, shape (count,), at one point; a third of the time of a call for many."""
-        return self._function(state, pars=numbers[: self._numbers], time=clock)
 
 
 class Flight:
@@ -197,8 +148,8 @@ class Watch:
     def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
         heyoka = _heyoka()
         self._found: list[tuple[float, int, np.ndarray]] = []
-        variables = [heyoka.expression(name) for name in layout.states]
-        system = list(zip(variables, layout.lowered(rates)))
+        variables = _variables(layout)
+        system = list(zip(variables, lowered(layout, rates)))
         found = self._found
 
         def note(place: int) -> Callable:
@@ -210,8 +161,8 @@ class Watch:
 
         events = [
             heyoka.nt_event(f + NUDGE, note(i), direction=heyoka.event_direction.positive)
-            for i, f in enumerate(layout.lowered(functions))
-            if not _is_number(f)
+            for i, f in enumerate(lowered(layout, functions))
+            if variables_of(functions[i])
         ]
         self._integrator = heyoka.taylor_adaptive(
             system,
@@ -272,13 +223,12 @@ class Run:
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
         heyoka = _heyoka()
-        variables = [heyoka.expression(name) for name in layout.states]
-        system = list(zip(variables, layout.lowered(rates)))
-        lowered = layout.lowered(functions)
-        self._places = [i for i, f in enumerate(lowered) if not _is_number(f)]
+        variables = _variables(layout)
+        system = list(zip(variables, lowered(layout, rates)))
+        self._places = [i for i, f in enumerate(functions) if variables_of(f)]
         events = [
-            heyoka.t_event(lowered[i] + NUDGE, direction=heyoka.event_direction.negative)
-            for i in self._places
+            heyoka.t_event(f + NUDGE, direction=heyoka.event_direction.negative)
+            for f in lowered(layout, [functions[i] for i in self._places])
         ]
         self._integrator = heyoka.taylor_adaptive(
             system,
@@ -286,7 +236,8 @@ class Run:
             t_events=events,
             compact_mode=_large(system),
         )
-        self._numbers = len(self._integrator.pars)
+        self._state, self._pars = self._integrator.state, self._integrator.pars  # views of what it works on
+        self._numbers = len(self._pars)
         self._done, self._stopped = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
 
     def __call__(
@@ -298,15 +249,15 @@ class Run:
         """
         ta = self._integrator
         ta.time = begin
-        ta.state[:] = state
-        ta.pars[:] = numbers[: self._numbers]
+        self._state[:] = state
+        self._pars[:] = numbers[: self._numbers]
         ta.reset_cooldowns()
         while True:
             before = ta.time
             outcome = ta.propagate_until(end, max_steps=MOST_STEPS)[0]
             if outcome != self._stopped or ta.time - before < RUNAWAY:
                 break
-        state[:] = ta.state
+        state[:] = self._state
         if outcome == self._done:
             return end, None
         code = -int(outcome.value) - 1
@@ -324,24 +275,13 @@ NUDGE = 1e-200
 LARGE = 12  # states from which compact code compiles much faster and runs nearly as fast
 
 
-LANES = 4  # flights that are integrated side by side
-
-
 def _variational(layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> Any:
     """The flow with its first variations by the states and by some of the numbers."""
     heyoka = _heyoka()
-    variables = [heyoka.expression(name) for name in layout.states]
+    variables = _variables(layout)
     asked = variables + [heyoka.par[i] for i in active]
-    return heyoka.var_ode_sys(list(zip(variables, layout.lowered(rates))), asked, order=1)
+    return heyoka.var_ode_sys(list(zip(variables, lowered(layout, rates))), asked, order=1)
 
 
 def _large(system: Sequence[Any]) -> bool:
     return len(system) >= LARGE
-
-
-def _is_number(value: Any) -> bool:
-    heyoka = _heyoka()
-    timed = heyoka.cfunc(
-        [value], vars=list(map(heyoka.expression, heyoka.get_variables(value))) or [heyoka.expression("x")]
-    )
-    return not heyoka.get_variables(value) and not heyoka.get_params(value) and not timed.is_time_dependent

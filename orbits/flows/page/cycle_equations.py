@@ -13,7 +13,7 @@ from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.flows.page import flights, loci
 from orbits.flows.page.margins import fill_margins, owned, per_node
-from orbits.integrators.heyoka import variables_of
+from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.words.of_pages import PageWord
 
@@ -173,7 +173,11 @@ class DeclaredSystem:
         self.flight_groups = []
         for key in dict.fromkeys(keys):
             places = np.array([i for i in range(self.length) if keys[i] == key])
-            many = compiled.flights(key, active) if len(places) >= flights.TOGETHER else None
+            many = (
+                compiled.flights(key, active)
+                if compiled.engine.LANES > 1 and len(places) >= flights.TOGETHER
+                else None
+            )
             self.flight_groups.append((compiled.flight(key, active), many, places))
         self.rate_groups = [
             (compiled.rates(key), np.array([i for i in range(self.length) if keys[i] == key]))

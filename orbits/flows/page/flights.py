@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from contvines.core.multipliers.periodic_schur import periodic_multipliers
-from orbits.integrators.heyoka import LANES
+from orbits.integrators.engine import engine
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
@@ -157,7 +157,7 @@ def _fly(data: Any, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work:
     for flight, many, places in data.flight_groups:
         alone = places
         if many is not None:
-            spare = len(places) % LANES
+            spare = len(places) % engine().LANES
             alone = places[-1:] if spare == 1 else places[:0]
             together = places[: len(places) - len(alone)]
             found = np.empty((len(together), flown.shape[1]))

@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.integrators import heyoka as engine
+from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.names import described
 from orbits.machines.page.patterns import Equations
@@ -35,7 +35,7 @@ class Draws:
         """Values, shape (DRAWS, count)."""
         numbers = np.hstack([self.params, self.signs if signs is None else signs])
         with np.errstate(all="ignore"):
-            return engine.Values(self.equations.layout, list(values))(
+            return Values(self.equations.layout, list(values))(
                 self.states if states is None else states, self.clock if clock is None else clock, numbers
             )
 
@@ -45,7 +45,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     e, draws = equations, Draws(equations, params)
     flips: dict[tuple[int, int], int | None] = {}
     frictions = [j for j, c in enumerate(e.contacts) if isinstance(c, DryFriction)]
-    force = {j: engine.variable(f"force_{e.contacts[j].name}") for j in frictions}
+    force = {j: variable(f"force_{e.contacts[j].name}") for j in frictions}
     rates = e.motion_with(force)
     zero = {f"force_{e.contacts[j].name}": 0.0 for j in frictions}
     _check_periods(draws, rates)
@@ -56,17 +56,17 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
         if np.all(limit < 0.0):
             raise PageError(f"{what}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
         name = f"force_{e.contacts[j].name}"
-        (effect,) = engine.derivatives([e.along(e.velocity[j], rates)], [force[j]])
+        (effect,) = derivatives([e.along(e.velocity[j], rates)], [force[j]])
         others = {n for n in zero if n != name}
-        if not any(name in engine.variables_of(rate) for rate in rates):
+        if not any(name in variables_of(rate) for rate in rates):
             raise PageError(
                 f"{what}: motion ignores contact.{e.contacts[j].name}; add the force to the rate of a velocity it acts on"
             )
-        if name in engine.variables_of(effect[0]) | _inside(rates, name):
+        if name in variables_of(effect[0]) | _inside(rates, name):
             raise PageError(
                 f"{what}: motion must be affine in contact.{e.contacts[j].name} (force times a mass factor)"
             )
-        sizes = draws.of([engine.replaced(effect[0], dict.fromkeys(others | {name}, 0.0))])[:, 0]
+        sizes = draws.of([replaced(effect[0], dict.fromkeys(others | {name}, 0.0))])[:, 0]
         if not np.all(sizes[np.isfinite(sizes)] > 1e-12):
             raise PageError(
                 f"{what}: a positive contact.{e.contacts[j].name} must speed its velocity up; here it gives the acceleration "
@@ -77,12 +77,12 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
             continue
         what = described(contact)
         rate = e.along(e.gap[j], rates)
-        if any(name in engine.variables_of(rate) for name in zero):
+        if any(name in variables_of(rate) for name in zero):
             raise PageError(
                 f"{what}: the rate of its gap contains a friction force; a gap is a distance, not a velocity"
             )
         after = e.impact(j)
-        (effects,) = engine.derivatives([rate], e.x)
+        (effects,) = derivatives([rate], e.x)
         moved: Any = 0.0
         for effect, push in zip(effects, e.push[j]):
             moved = effect * push + moved
@@ -111,7 +111,7 @@ def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
     if e.phase_rate is None:
         return
     forces = {name: 0.0 for j in e.velocity for name in (f"force_{e.contacts[j].name}",)}
-    told = [(f"motion's rate of {n}", engine.replaced(r, forces)) for n, r in zip(e.states, rates)]
+    told = [(f"motion's rate of {n}", replaced(r, forces)) for n, r in zip(e.states, rates)]
     for table, what in ((e.gap, "gap"), (e.velocity, "velocity"), (e.limit, "limit"), (e.surface, "surface")):
         told += [(f"the {what} of {described(e.contacts[j])}", value) for j, value in table.items()]
     values = [value for _, value in told]
@@ -131,12 +131,12 @@ def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
     e = draws.equations
     for j, surface in e.surface.items():
         what, name = described(e.contacts[j]), e.contacts[j].name
-        if not engine.variables_of(surface) & {*e.layout.states, e.layout.clock}:
+        if not variables_of(surface) & {*e.layout.states, e.layout.clock}:
             raise PageError(
                 f"{what}: its surface is a constant; give a function of the states that changes sign"
             )
-        known = set().union(*(engine.variables_of(v) for v in (*rates, *e.limit.values())))
-        if not engine.variables_of(e.sign[j]) & known:
+        known = set().union(*(variables_of(v) for v in (*rates, *e.limit.values())))
+        if not variables_of(e.sign[j]) & known:
             raise PageError(
                 f"{what}: motion ignores contact.{name}; use it where the law changes, or leave the switch out"
             )
@@ -167,12 +167,12 @@ def _proportional(draws: Draws, one: Any, other: Any) -> bool:
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
     """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
     e, draws = equations, Draws(equations, params)
-    force = {j: engine.variable(f"force_{e.contacts[j].name}") for j in e.velocity}
+    force = {j: variable(f"force_{e.contacts[j].name}") for j in e.velocity}
     rates = e.motion_with(force)
     found = set()
     for j, surface in e.surface.items():
         rate = e.along(surface, rates)
-        if any(name in engine.variables_of(rate) for f in force.values() for name in engine.variables_of(f)):
+        if any(name in variables_of(rate) for f in force.values() for name in variables_of(f)):
             continue
         for k, velocity in e.velocity.items():
             if _proportional(draws, rate, velocity):
@@ -182,8 +182,8 @@ def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int
 
 def _inside(rates: Sequence[Any], name: str) -> set[str]:
     """The name, if the rates are not affine in it."""
-    slopes = engine.derivatives(list(rates), [engine.variable(name)])
-    return {name} & set().union(*(engine.variables_of(row[0]) for row in slopes))
+    slopes = derivatives(list(rates), [variable(name)])
+    return {name} & set().union(*(variables_of(row[0]) for row in slopes))
 
 
 def _flip(draws: Draws, value: Any, table: np.ndarray) -> int | None:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
-from orbits.integrators import heyoka as engine
+from orbits.integrators.engine import engine
+from orbits.integrators.expressions import Values, derivatives, variable
 from orbits.machines.page.patterns import Equations, PatternKey
 
 
@@ -24,80 +25,81 @@ class Compiled:
         self.equations, self.layout = equations, equations.layout
         self.n = len(equations.states)
         self._made: dict[Hashable, Any] = {}
+        self.engine = engine()
 
     def _once(self, key: Hashable, make: Callable[[], Any]) -> Any:
         if key not in self._made:
             self._made[key] = make()
         return self._made[key]
 
-    def flight(self, key: PatternKey, active: tuple[int, ...]) -> engine.Flight:
+    def flight(self, key: PatternKey, active: tuple[int, ...]) -> Any:
         """The flow with its sensitivities."""
         return self._once(
             ("flight", key, active),
-            lambda: engine.Flight(self.layout, self.equations.pattern(key).clock_rates, active),
+            lambda: self.engine.Flight(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
-    def flights(self, key: PatternKey, active: tuple[int, ...]) -> engine.Flights:
+    def flights(self, key: PatternKey, active: tuple[int, ...]) -> Any:
         """The same, several at once."""
         return self._once(
             ("flights", key, active),
-            lambda: engine.Flights(self.layout, self.equations.pattern(key).clock_rates, active),
+            lambda: self.engine.Flights(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
-    def run(self, key: PatternKey) -> engine.Run:
+    def run(self, key: PatternKey) -> Any:
         """The flow up to the first guard that falls to zero."""
         pattern = self.equations.pattern(key)
         return self._once(
             ("run", key),
-            lambda: engine.Run(self.layout, pattern.clock_rates, [g.value for g in pattern.guards]),
+            lambda: self.engine.Run(self.layout, pattern.clock_rates, [g.value for g in pattern.guards]),
         )
 
-    def watch(self, key: PatternKey) -> engine.Watch:
+    def watch(self, key: PatternKey) -> Any:
         """The flow with every local minimum of every guard."""
         pattern = self.equations.pattern(key)
         return self._once(
             ("watch", key),
-            lambda: engine.Watch(
+            lambda: self.engine.Watch(
                 self.layout, pattern.clock_rates, [pattern.rate(g.value) for g in pattern.guards]
             ),
         )
 
-    def extremes(self, key: PatternKey) -> engine.Watch:
+    def extremes(self, key: PatternKey) -> Any:
         """The flow with every extreme of every state: rises of the rates are minima, rises of minus the rates maxima."""
         rates = self.equations.pattern(key).clock_rates
         return self._once(
             ("extremes", key),
-            lambda: engine.Watch(self.layout, rates, [*rates, *(-rate for rate in rates)]),
+            lambda: self.engine.Watch(self.layout, rates, [*rates, *(-rate for rate in rates)]),
         )
 
-    def rates(self, key: PatternKey) -> engine.Values:
+    def rates(self, key: PatternKey) -> Values:
         """Derivatives of the states by the clock: n values."""
         return self._once(
-            ("rates", key), lambda: engine.Values(self.layout, self.equations.pattern(key).clock_rates)
+            ("rates", key), lambda: self.engine.Values(self.layout, self.equations.pattern(key).clock_rates)
         )
 
-    def guards(self, key: PatternKey) -> engine.Values:
+    def guards(self, key: PatternKey) -> Values:
         """The guards, then their time derivatives."""
         pattern = self.equations.pattern(key)
 
-        def make() -> engine.Values:
+        def make() -> Values:
             values = [g.value for g in pattern.guards]
-            return engine.Values(self.layout, [*values, *(pattern.rate(v) for v in values)])
+            return self.engine.Values(self.layout, [*values, *(pattern.rate(v) for v in values)])
 
         return self._once(("guards", key), make)
 
-    def event(self, letter: Letter, sign: int, key: PatternKey, active: tuple[int, ...]) -> engine.Values:
+    def event(self, letter: Letter, sign: int, key: PatternKey, active: tuple[int, ...]) -> Values:
         """The function that is zero at an event, its derivatives by states, clock and active numbers, and at an impact the
         states after it with theirs, state by state."""
 
-        def make() -> engine.Values:
+        def make() -> Values:
             e = self.equations
             values = [self._zero(letter, sign, key)]
             if letter.kind == HIT:
                 values += e.impact(letter.contact)
-            by = [*e.x, e.clock, *(engine.variable(self.layout.numbers[i]) for i in active)]
-            table = [[value, *row] for value, row in zip(values, engine.derivatives(values, by))]
-            return engine.Values(self.layout, [entry for row in table for entry in row])
+            by = [*e.x, e.clock, *(variable(self.layout.numbers[i]) for i in active)]
+            table = [[value, *row] for value, row in zip(values, derivatives(values, by))]
+            return self.engine.Values(self.layout, [entry for row in table for entry in row])
 
         wanted = sign if letter.kind == SLIP else 0
         return self._once(("event", letter.contact, letter.kind, wanted, key, active), make)
@@ -116,62 +118,65 @@ class Compiled:
             raise ValueError(f"a slip of {e.contacts[j].name!r} follows a flight in which it does not stick")
         return found[0]
 
-    def contact_values(self) -> engine.Values:
+    def contact_values(self) -> Values:
         """Gaps, velocities and surfaces: one value per contact, in any mode."""
         e = self.equations
         every = {**e.gap, **e.velocity, **e.surface}
         return self._once(
-            "contacts", lambda: engine.Values(self.layout, [every[j] for j in range(len(e.contacts))])
+            "contacts", lambda: self.engine.Values(self.layout, [every[j] for j in range(len(e.contacts))])
         )
 
-    def limits(self, frictions: tuple[int, ...]) -> engine.Values:
+    def limits(self, frictions: tuple[int, ...]) -> Values:
         """Largest forces of these frictions."""
         limit = self.equations.limit
-        return self._once("limits", lambda: engine.Values(self.layout, [limit[j] for j in frictions]))
+        return self._once("limits", lambda: Values(self.layout, [limit[j] for j in frictions]))
 
-    def impact_map(self, wall: int) -> engine.Values:
+    def impact_map(self, wall: int) -> Values:
         """The states after an impact, then the gap's rate before it."""
         e = self.equations
         return self._once(
             ("impact", wall),
-            lambda: engine.Values(self.layout, [*e.impact(wall), e.gap_rate(wall)]),
+            lambda: self.engine.Values(self.layout, [*e.impact(wall), e.gap_rate(wall)]),
         )
 
-    def rebound(self, wall: int) -> engine.Values:
+    def rebound(self, wall: int) -> Values:
         """The rate of a gap and the wall's restitution."""
         e = self.equations
         return self._once(
-            ("rebound", wall), lambda: engine.Values(self.layout, [e.gap_rate(wall), e.restitution[wall]])
+            ("rebound", wall),
+            lambda: self.engine.Values(self.layout, [e.gap_rate(wall), e.restitution[wall]]),
         )
 
-    def approach(self, wall: int) -> engine.Values:
+    def approach(self, wall: int) -> Values:
         """The rate of a gap, its slopes by the states, and the wall's push."""
         e = self.equations
 
-        def make() -> engine.Values:
+        def make() -> Values:
             rate = e.gap_rate(wall)
-            return engine.Values(self.layout, [rate, *engine.derivatives([rate], e.x)[0], *e.push[wall]])
+            return self.engine.Values(self.layout, [rate, *derivatives([rate], e.x)[0], *e.push[wall]])
 
         return self._once(("approach", wall), make)
 
-    def gap_slopes(self, wall: int) -> engine.Values:
+    def gap_slopes(self, wall: int) -> Values:
         """Derivatives of a gap by the states."""
         e = self.equations
         return self._once(
-            ("slopes", wall), lambda: engine.Values(self.layout, engine.derivatives([e.gap[wall]], e.x)[0])
+            ("slopes", wall), lambda: self.engine.Values(self.layout, derivatives([e.gap[wall]], e.x)[0])
         )
 
-    def settled(self, wall: int) -> engine.Values:
+    def settled(self, wall: int) -> Values:
         """The states after an impulse that takes the rate of a gap away."""
         e = self.equations
-        return self._once(("settled", wall), lambda: engine.Values(self.layout, e.impact(wall, rest=True)))
+        return self._once(
+            ("settled", wall), lambda: self.engine.Values(self.layout, e.impact(wall, rest=True))
+        )
 
-    def gap_acceleration(self, wall: int, key: PatternKey) -> engine.Values:
+    def gap_acceleration(self, wall: int, key: PatternKey) -> Values:
         """Second derivative of a free wall's gap: one value."""
         e = self.equations
         return self._once(
             ("acceleration", wall, key),
-            lambda: engine.Values(self.layout, [e.pattern(key).rate(e.gap_rate(wall))]),
+            lambda: self.engine.Values(self.layout, [e.pattern(key).rate(e.gap_rate(wall))]),
         )
 
     def numbers(self, params: np.ndarray, modes: Sequence[int]) -> np.ndarray:

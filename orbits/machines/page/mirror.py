@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.integrators import heyoka as engine
+from orbits.integrators.expressions import Values
 from orbits.machines.page.checks import DRAWS, SAME, Draws
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.names import described
@@ -95,11 +95,11 @@ class MirrorImage:
         return rows
 
     @cached_property
-    def _values(self) -> tuple[engine.Values, engine.Values]:
+    def _values(self) -> tuple[Values, Values]:
         layout = self.equations.layout
         return (
-            engine.Values(layout, [row[1] for row in self._rows]),
-            engine.Values(layout, [row[2] for row in self._rows]),
+            Values(layout, [row[1] for row in self._rows]),
+            Values(layout, [row[2] for row in self._rows]),
         )
 
     def _both(self, draws: Draws) -> tuple[np.ndarray, np.ndarray]:

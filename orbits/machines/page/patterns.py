@@ -18,7 +18,7 @@ from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import HELD, Wall
-from orbits.integrators import heyoka as engine
+from orbits.integrators.expressions import Layout, constant, derivatives, replaced, variable, variables_of
 from orbits.machines.page.formulas import Named, NoPhase, PageError, States, called
 from orbits.symbols import Symbol
 
@@ -56,11 +56,11 @@ class Pattern:
     ) -> None:
         self.equations, self.stuck, self.held, self.absent = equations, stuck, held, absent
         e = equations
-        unknown = {j: engine.variable(f"force_{e.contacts[j].name}") for j in (*stuck, *held)}
+        unknown = {j: variable(f"force_{e.contacts[j].name}") for j in (*stuck, *held)}
         sliding = [
             j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction) and j not in stuck
         ]
-        known = {j: engine.constant(0.0) if j in absent else -e.limit[j] * e.sign[j] for j in sliding}
+        known = {j: constant(0.0) if j in absent else -e.limit[j] * e.sign[j] for j in sliding}
         base = e.motion_with({**known, **{j: unknown[j] for j in stuck}})
         for j in held:
             base = [r + d * unknown[j] for r, d in zip(base, e.push[j])]
@@ -111,7 +111,7 @@ class Equations:
     Attributes
     ----------
     contacts : tuple of Wall, DryFriction or Switch
-    layout : engine.Layout
+    layout : Layout
     sign : dict of int to Symbol
         Sign of a sliding friction or of a switch: a number at run time.
     gap, push, restitution; velocity, limit; surface : dict of int to Symbol (push: list of Symbol)
@@ -137,12 +137,12 @@ class Equations:
         self.flips: Mapping[tuple[int, int], int | None] = {}
         signed = [j for j, c in enumerate(contacts) if isinstance(c, (DryFriction, Switch))]
         numbers = (*(f"p_{name}" for name in parameters), *(f"sign_{contacts[j].name}" for j in signed))
-        self.layout = engine.Layout(tuple(f"x_{name}" for name in states), CLOCK, numbers)
+        self.layout = Layout(tuple(f"x_{name}" for name in states), CLOCK, numbers)
         self.signed = tuple(signed)
-        self.x = [engine.variable(name) for name in self.layout.states]
-        self.clock = engine.variable(CLOCK)
-        self.p = Named("p", {name: engine.variable(f"p_{name}") for name in parameters})
-        self.sign = {j: engine.variable(f"sign_{contacts[j].name}") for j in signed}
+        self.x = [variable(name) for name in self.layout.states]
+        self.clock = variable(CLOCK)
+        self.p = Named("p", {name: variable(f"p_{name}") for name in parameters})
+        self.sign = {j: variable(f"sign_{contacts[j].name}") for j in signed}
         self.phase_rate = None if phase_rate is None else getattr(self.p, phase_rate)
         self.phase: Any = NoPhase() if phase_rate is None else self.clock
         self.state = States(states, self.x)
@@ -184,7 +184,7 @@ class Equations:
         if isinstance(value, Symbol):
             return value
         try:
-            return engine.constant(float(value))
+            return constant(float(value))
         except (TypeError, ValueError):
             raise PageError(f"{what} is {value!r}; it must be one formula or number") from None
 
@@ -214,7 +214,7 @@ class Equations:
     def along(self, value: Symbol, rates: Sequence[Symbol]) -> Symbol:
         """Time derivative of a quantity along a flow."""
         by = self.x if self.phase_rate is None else [*self.x, self.clock]
-        (slopes,) = engine.derivatives([value], by)
+        (slopes,) = derivatives([value], by)
         total = slopes[0] * rates[0]
         for slope, rate in zip(slopes[1:], rates[1:]):
             total = total + slope * rate
@@ -222,9 +222,7 @@ class Equations:
 
     def gap_rate(self, j: int) -> Symbol:
         """Rate of a wall's gap: contact forces do not enter it (`checks` sees to that)."""
-        frictions = {
-            k: engine.constant(0.0) for k, c in enumerate(self.contacts) if isinstance(c, DryFriction)
-        }
+        frictions = {k: constant(0.0) for k, c in enumerate(self.contacts) if isinstance(c, DryFriction)}
         return self.along(self.gap[j], self.motion_with(frictions))
 
     def impact(self, j: int, rest: bool = False) -> list[Symbol]:
@@ -233,7 +231,7 @@ class Equations:
         g(x + I d) = g(x) + I (dg/dx . d), so I = -(1 + e) g / (dg/dx . d).
         """
         rate = self.gap_rate(j)
-        (slopes,) = engine.derivatives([rate], self.x)
+        (slopes,) = derivatives([rate], self.x)
         effect: Any = 0.0
         for slope, push in zip(slopes, self.push[j]):
             effect = slope * push + effect
@@ -271,9 +269,9 @@ def _solved(
     if not unknown:
         return {}, {}
     symbols = list(unknown.values())
-    matrix = engine.derivatives(list(conditions), symbols)
-    zero = {name: 0.0 for s in symbols for name in engine.variables_of(s)}
-    rest = [engine.replaced(c, zero) for c in conditions]
+    matrix = derivatives(list(conditions), symbols)
+    zero = {name: 0.0 for s in symbols for name in variables_of(s)}
+    rest = [replaced(c, zero) for c in conditions]
     whole = _determinant(matrix)
     forces, mobility = {}, {}
     for column, j in enumerate(unknown):

@@ -12,7 +12,7 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.integrators import heyoka as engine
+from orbits.integrators.expressions import Values, derivatives
 from orbits.machines.page.formulas import Named, States
 from orbits.machines.page.patterns import Equations
 
@@ -38,8 +38,8 @@ def singular_at(
                 return f"{what} has {_named(error)}{_line(error)} at {at}"
     for what, symbols in _on_symbols(equations, modes):
         numbers = np.concatenate([params, equations.signs(modes)])
-        slopes = [slope for row in engine.derivatives(symbols, equations.x) for slope in row]
-        if not np.isfinite(engine.Values(equations.layout, slopes).one(state, clock, numbers)).all():
+        slopes = [slope for row in derivatives(symbols, equations.x) for slope in row]
+        if not np.isfinite(Values(equations.layout, slopes).one(state, clock, numbers)).all():
             return f"{what} has no slopes (a root of zero, or the like) at {at}"
     return ""
 

@@ -1,0 +1,41 @@
+"""Which integrator flies pages: heyoka, or scipy where heyoka is not installed or `CONTVINES_PAGES=scipy` asks for it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import cache
+from importlib.util import find_spec
+from types import ModuleType
+
+HOW = "pip install 'contvines[machines]' (Linux), or conda install heyoka.py -c conda-forge (macOS, Windows)"
+
+
+class EngineMissing(ImportError):
+    """The integrator asked for is not installed."""
+
+
+@cache
+def engine() -> ModuleType:
+    """The module with `Values`, `Flight`, `Flights`, `Watch` and `Run`; what each does is said in `orbits.integrators`.
+
+    Raises
+    ------
+    EngineMissing
+        If `CONTVINES_PAGES` names an integrator that is not installed, or none.
+    """
+    asked = os.environ.get("CONTVINES_PAGES", "")
+    if asked not in ("", "heyoka", "scipy"):
+        raise EngineMissing(f"CONTVINES_PAGES={asked}: say heyoka or scipy, or leave it out")
+    there = find_spec("heyoka") is not None
+    if asked == "heyoka" and not there:
+        raise EngineMissing(f"CONTVINES_PAGES=heyoka, which is not installed: {HOW}")
+    if there and asked != "scipy":
+        from orbits.integrators import heyoka
+
+        return heyoka
+    if not asked:
+        print(f"pages are integrated by scipy, slowly, for heyoka is missing: {HOW}", file=sys.stderr)
+    from orbits.integrators import solve_ivp
+
+    return solve_ivp
