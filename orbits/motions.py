@@ -9,7 +9,7 @@ import numpy as np
 from orbits.attractors import find_attractor
 from orbits.flows.native.cycle_equations import unit_nodes
 from orbits.machines.base import Model
-from orbits.machines.catalogue import stepper
+from orbits.simulation.native import NativeSimulator
 from orbits.simulation.section import Section
 from orbits.words import Word
 
@@ -61,11 +61,8 @@ class Simulated:
         """
         if not len(self.word):
             raise ValueError("the absorber that never slides has no section")
-        code, mode = int(self.word.codes[0]), int(self.word.mode_codes[0])
-        params = self.values(p)
         unit = unit_nodes(self.word, self.model.node, self.units)[0]
-        left, right = (float(r) for r in self.model.restitutions(params))
-        return Section(stepper(self.model.name), params, code, mode, self.periods, unit, (left, right))
+        return Section(NativeSimulator(self.model, self.values(p)), self.word, self.periods, unit)
 
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter of the machine cannot have.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,17 +12,18 @@ from contvines.shared.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
 from orbits.attractors.distinct import alike, distinct
-from orbits.attractors.embedded import PERIODS as WANDERED
 from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
-from orbits.attractors.recurrence import settle
+from orbits.attractors.recurrence import recurring, settle
 from orbits.attractors.returning import returning_cycles
 from orbits.attractors.sweep import described
+from orbits.flows.protocol import Record
 from orbits.machines.notation import STARTS
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
 from orbits.orbit import Orbit
 from orbits.simulation.driver import SimulationError, machine, skip
+from orbits.simulation.native import NativeSimulator
 from orbits.starts.closed import closed_orbits
 
 TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
@@ -33,6 +34,7 @@ PATIENCE = 3  # times a motion that does not recur is looked at again
 LATE = 3000.0  # forcing periods between two such looks
 GROWTH = 4000  # forcing periods over which the growth of small differences is followed
 RECOGNISED = 1e-7  # difference of two nodes that counts as a return of a single motion
+CLOSED = 1e-8  # largest residual of a cycle
 NEAR = 1e-3  # a settled state lies so near to the solved motion that it belongs to
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
@@ -167,9 +169,24 @@ class Population:
         p : float
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
-        cycles = list(embedded_cycles(self.model, self.engine, params, state, EMBEDDED))
-        self.work += WANDERED + SOLVED * len(cycles)
-        return distinct((cycle.orbit.root() for cycle in cycles), self.parameter, p)
+        simulator = NativeSimulator(self.model, params)
+        simulator.state = state.copy()
+        simulator.state[TURNS] = 0.0
+        cycles = list(embedded_cycles(simulator, EMBEDDED, self._solver(params)))
+        self.work += simulator.time + SOLVED * len(cycles)
+        return distinct(cycles, self.parameter, p)
+
+    def _solver(self, params: np.ndarray) -> Callable[[Record, int, int, int], Any]:
+        """What makes a cycle of a piece of a record."""
+
+        def solve(record: Record, first: int, last: int, periods: int) -> Any:
+            codes, modes, rows = (part[first:last] for part in record.source)
+            if not np.any(codes < 2):
+                return None
+            found = recurring(self.model, self.engine, params, codes, modes, rows, periods)
+            return found.orbit.root() if found.residual < CLOSED and found.word is not None else None
+
+        return solve
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
         """Cycles, stable or not, that are known in closed form or to which Newton's method leads from starts, each once.
@@ -182,12 +199,11 @@ class Population:
         p : float
         """
         params = self.model.vector_at(self.parameter, p, self.parameters)
-        cycles = list(
-            returning_cycles(self.model, self.engine, params, self._states(starts), self.box(p)[1:], EMBEDDED)
-        )
+        simulator = NativeSimulator(self.model, params)
+        cycles = list(returning_cycles(simulator, starts, self.box(p), EMBEDDED, self._solver(params)))
         self.work += SOLVED * (len(starts) + len(cycles))
         closed = closed_orbits(self.model, params, Orbit)
-        return distinct((*closed, *(cycle.orbit.root() for cycle in cycles)), self.parameter, p)
+        return distinct((*closed, *cycles), self.parameter, p)
 
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
         """The real motions known in closed form, stable or not: rest, sliding between the walls, symmetric impacts."""

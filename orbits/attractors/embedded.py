@@ -2,44 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from orbits.attractors.attractor import Attractor
-from orbits.attractors.recurrence import recurring
-from orbits.machines.states import nodes_of
-from orbits.machines.stepping import HOLD, TURNS, Machine
-from orbits.simulation.driver import collect
-from orbits.simulation.trajectory import TWO_PI
+from orbits.flows.protocol import Record, Simulator
 
-PERIODS = 2000  # forcing periods of the motion in which returns are looked for
-PER_PERIOD = 400  # events
 NEAR = 0.1  # largest difference of a return, relative to the spread of the motion
 TRIES = 3  # returns with one and the same list of events
 PER_LENGTH = 200  # nearest returns of each length
-SOLVED = 1e-8  # largest residual of a cycle
+LONGEST_WORD = 400
+PER_PERIOD = (
+    4  # events of the longest cycle that are looked for per period asked for, of a self-excited machine
+)
 
 
 def embedded_cycles(
-    model: Any, engine: Machine, params: np.ndarray, state: np.ndarray, longest: int
-) -> Iterator[Attractor]:
+    simulator: Simulator, longest: int, solve: Callable[[Record, int, int, int], Any]
+) -> Iterator[Any]:
     """Cycles next to the nearest returns of a motion, of up to `longest` forcing periods.
 
     Parameters
     ----------
-    model : Model
-    engine : Machine
-        Its compiled simulation.
-    params : float array (P,)
-    state : float array (S,)
-        On the motion; it is not changed.
+    simulator : Simulator
+        On the motion; it is moved on.
     longest : int
+        Of a self-excited machine: a fourth of the events of the longest cycle.
+    solve : callable
+        ``(record, first, last, periods)`` -> the cycle next to these events of a record, or None.
 
     Yields
     ------
-    Attractor
+    Orbit
         A cycle, as a rule unstable; one may come more than once.
 
     Notes
@@ -47,56 +42,54 @@ def embedded_cycles(
     Chaotic motion comes back near each of its unstable cycles again and again, and a short piece between two near states is a guess
     for Newton's method (D. P. Lathrop and E. J. Kostelich, Phys. Rev. A 40 (1989) 4028).
     """
-    state = state.copy()
-    state[TURNS] = 0.0
-    codes, modes, rows, _ = collect(engine, state, params, PERIODS, PER_PERIOD * PERIODS)
-    nodes = nodes_of(engine, params, codes, modes, rows)
-    hits = np.flatnonzero(codes < 2)
-    if len(hits) < 2:
+    periods, events = simulator.watched
+    record = simulator.record(simulator.time + periods, events)
+    marks = np.flatnonzero(record.impacts) if record.impacts.sum() > 1 else np.arange(len(record))
+    if len(marks) < 2:
         return
-    spread = np.ptp(nodes[hits, 1:], axis=0)
-    spread = np.append(1.0, np.where(spread > 0.0, spread, 1.0))  # phases are counted in radians
-    for periods in range(1, longest + 1):
-        tried: dict[bytes, int] = {}
-        for i, j in _returns(codes, modes, nodes, hits, spread, periods):
-            piece = slice(i, j)
-            if np.any(codes[piece] == HOLD):
+    spread = np.ptp(record.points[marks], axis=0)
+    spread[spread <= 0.0] = 1.0
+    lengths = range(1, longest + 1) if simulator.forced else range(1)
+    for length in lengths:
+        tried: dict[tuple, int] = {}
+        for i, j in _returns(record, marks, spread, length, PER_PERIOD * longest):
+            if record.piled[i:j].any():
                 continue
-            key = _list_of_events(codes[piece], modes[piece])
+            key = _list_of_events(record.events[i:j])
             tried[key] = tried.get(key, 0) + 1
             if tried[key] > TRIES:
                 continue
-            found = recurring(model, engine, params, codes[piece], modes[piece], rows[piece], periods)
-            if found.residual < SOLVED and found.word is not None:
+            found = solve(record, i, j, max(length, 1))
+            if found is not None:
                 yield found
 
 
 def _returns(
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    hits: np.ndarray,
-    spread: np.ndarray,
-    periods: int,
+    record: Record, marks: np.ndarray, spread: np.ndarray, periods: int, events: int
 ) -> list[tuple[int, int]]:
-    """Pairs of impacts so many forcing periods apart, alike in what they are, the nearest ones first."""
-    phases = nodes[hits, 0]
-    after = np.searchsorted(phases, phases + TWO_PI * periods)
-    pairs = []
-    for k in (after - 1, after):
-        fits = k < len(hits)
-        one, other = hits[fits], hits[k[fits]]
-        gap = nodes[other] - nodes[one]
-        gap[:, 0] -= TWO_PI * periods
-        size = np.abs(gap / spread).max(axis=1)
-        size[(codes[one] != codes[other]) | (modes[one] != modes[other])] = np.inf
-        pairs.append(np.column_stack([one, other, size]))
-    table = np.concatenate(pairs)
-    table = table[np.argsort(table[:, 2], kind="stable")][:PER_LENGTH]
-    return [(int(i), int(j)) for i, j, size in table if size < NEAR]
+    """Pairs of marks alike in what they are and so many forcing periods (0: up to so many events) apart, the nearest ones first."""
+    times, points = record.times[marks], record.points[marks]
+    first = np.arange(len(marks))
+    if periods:
+        after = np.searchsorted(times, times + periods)
+        ends = [after - 1, after]
+    else:
+        ends = [first + n for n in range(1, events + 1)]
+    table = []
+    for last in ends:
+        fits = (last < len(marks)) & (last > first)
+        one, other = first[fits], last[fits]
+        size = np.abs((points[other] - points[one]) / spread).max(axis=1, initial=0.0)
+        if periods:
+            size = np.maximum(size, 2.0 * np.pi * np.abs(times[other] - times[one] - periods))
+        alike = [record.events[i] == record.events[j] for i, j in zip(marks[one], marks[other])]
+        size[~np.array(alike, dtype=bool)] = np.inf
+        table.append(np.column_stack([marks[one], marks[other], size]))
+    rows = np.concatenate(table)
+    rows = rows[np.argsort(rows[:, 2], kind="stable")][:PER_LENGTH]
+    return [(int(i), int(j)) for i, j, size in rows if size < NEAR and j - i <= LONGEST_WORD]
 
 
-def _list_of_events(codes: np.ndarray, modes: np.ndarray) -> bytes:
+def _list_of_events(events: Sequence[Hashable]) -> tuple:
     """The events and modes, the same wherever the cycle is begun."""
-    row = (10 * codes.astype(int) + modes + 1).astype(np.uint8)
-    return min(np.roll(row, -k).tobytes() for k in range(len(row)))
+    return min(tuple(events[k:]) + tuple(events[:k]) for k in range(len(events)))

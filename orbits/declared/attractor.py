@@ -11,11 +11,12 @@ import numpy as np
 from orbits.contacts.letters import HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.simulation import Trajectory, collect, first_state
-from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 from orbits.flows.page.cycle_equations import DeclaredSystem
 from orbits.flows.page.solving import SOLVED, newton
+from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
+from orbits.flows.protocol import Record
 from orbits.machines.page.machine import Machine
+from orbits.simulation.page import Trajectory, collect, first_state
 from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
@@ -222,6 +223,22 @@ def solved(run: Trajectory, length: int, periods: int, far: float = 0.1) -> Decl
         first = np.append(np.diff(clocks), clocks[0] - run.clocks[-length - 1])
     nodes = np.column_stack([first, run.states[-length:]])
     return polished(DeclaredOrbit(machine, word, periods, nodes, run.params), far)
+
+
+def of_record(record: Record, first: int, last: int, periods: int, far: float) -> DeclaredOrbit | None:
+    """The cycle next to events `first` to `last` - 1 of a record; see `solved`."""
+    run, stop = record.source, last + 1
+    part = Trajectory(
+        run.machine,
+        run.params,
+        run.clocks[:stop],
+        run.states[:stop],
+        run.modes[:stop],
+        run.events[:last],
+        float(run.clocks[last]),
+        run.status,
+    )
+    return solved(part, last - first, periods, far)
 
 
 def polished(orbit: DeclaredOrbit, far: float = 0.1) -> DeclaredOrbit | None:

@@ -21,10 +21,10 @@ from orbits.declared.edits import edits_at
 from orbits.declared.neighbours import Found, grown, margins_of
 from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.rounds import escapes
-from orbits.declared.stepper import SimulationError, Stepper
 from orbits.flows.page.cycle_equations import DeclaredSystem
 from orbits.flows.page.margins import per_node
 from orbits.flows.page.solving import SOLVED, newton
+from orbits.flows.page.stepper import SimulationError, Stepper
 from orbits.protocol import Seed
 
 FOLLOWED = 1e-5  # deviation of the simulation up to which it follows an orbit next to a border

@@ -9,9 +9,9 @@ import numpy as np
 from orbits.contacts.letters import HIT, STICK
 from orbits.declared.attractor import attracted
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.stepper import SimulationError, Stepper
 from orbits.flows.page.cycle_equations import DeclaredSystem
 from orbits.flows.page.margins import border_kind, per_node
+from orbits.flows.page.stepper import SimulationError, Stepper
 from orbits.machines.page.names import described
 
 BESIDE = 1e-6  # of the parameter, from where simulation is asked

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from orbits.declared.simulation import collect
-from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
+from orbits.simulation.page import collect
 
 DELICATE = 1e-4  # margins below this may make two events one
 WILD = 1e3  # multipliers above this blow rounding up within a period

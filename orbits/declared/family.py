@@ -13,12 +13,12 @@ import numpy as np
 
 from orbits.declared.attractor import find_attractor, polished, random_start
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.simulation import SimulationError, outside
 from orbits.declared.starts import find
-from orbits.declared.stepper import Stepper
 from orbits.declared.sweep import sweep
+from orbits.flows.page.stepper import Stepper
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.machine import Machine
+from orbits.simulation.page import SimulationError, outside
 from orbits.starts.find import StartError
 from orbits.words.of_pages import PageWord
 

@@ -7,29 +7,34 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from orbits.attractors.distinct import alike, distinct
+from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
+from orbits.attractors.returning import returning_cycles
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
-from orbits.declared.attractor import RETURNED, look, returning, skip
-from orbits.declared.embedded import embedded_cycles
-from orbits.declared.growth import growth
+from orbits.declared.attractor import RETURNED, look, of_record, returning, skip
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.returning import returning_cycles
-from orbits.declared.simulation import Trajectory, collect, letter_of, outside
-from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 from orbits.declared.sweep import sweep
+from orbits.flows.page.growth import growth
+from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.machines.notation import STARTS
 from orbits.machines.page.machine import Machine
+from orbits.simulation.page import PageSimulator, Trajectory, collect, letter_of, outside
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
 EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for
 LONGEST = 16  # forcing periods of the longest recurrence looked for
+FAR, WIDE = (
+    0.01,
+    0.5,
+)  # largest distance of a cycle from its guess, relative to 1 + states; on a chaotic motion all that is real counts
 SURE = 1e-7  # a state so near to a known motion, relative to 1 + states, lies on it
 NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto it
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
@@ -182,18 +187,19 @@ class DeclaredPopulation:
 
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
         """Unstable cycles that the chaotic motion through a start passes near, each once, as problems with their unknowns."""
-        stepper = Stepper(self.machine, self.vector(p))
-        stepper.start(*self._parted(state))
-        cycles = list(embedded_cycles(stepper, EMBEDDED))
-        self.work += (stepper.base + stepper.clock) / TWO_PI + SOLVED * len(cycles)
+        simulator = PageSimulator(self.machine, self.vector(p))
+        point, clock = self._parted(state)
+        simulator.start(point, clock / TWO_PI)
+        cycles = list(embedded_cycles(simulator, EMBEDDED, partial(of_record, far=WIDE)))
+        self.work += simulator.time + SOLVED * len(cycles)
         return distinct(cycles, self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
         """Cycles, stable or not, to which Newton's method leads from starts, each once; of a self-excited machine none."""
         if not self.machine.forced:
             return []
-        stepper = Stepper(self.machine, self.vector(p))
-        cycles = list(returning_cycles(stepper, np.asarray(starts, dtype=float), self.box(p), EMBEDDED))
+        simulator, starts = PageSimulator(self.machine, self.vector(p)), np.asarray(starts, dtype=float)
+        cycles = list(returning_cycles(simulator, starts, self.box(p), EMBEDDED, partial(of_record, far=FAR)))
         self.work += SOLVED * (len(starts) + len(cycles))
         return distinct(cycles, self.parameter, p)
 

@@ -16,13 +16,13 @@ from orbits.declared.crossing import cross
 from orbits.declared.dead_ends import dead_end
 from orbits.declared.distance import SAME, distance
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.section import Section
 from orbits.flows.page import measures as measuring
 from orbits.flows.page.cycle_equations import DeclaredSystem
 from orbits.flows.page.margins import border_kind
 from orbits.machines.notation import SYMBOLS
 from orbits.protocol import Answers
 from orbits.relatives import Relatives
+from orbits.simulation.section import VariedSection, section_of_page
 
 
 class DeclaredProblem(DeclaredSystem, Relatives, Answers):
@@ -116,9 +116,9 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
         """The solution as a `DeclaredOrbit`."""
         return DeclaredOrbit.of(self, u, p)
 
-    def section(self, p: float) -> Section:
+    def section(self, p: float) -> VariedSection:
         """Its motions by simulation, once per period of the cycle."""
-        return Section(self.machine, self.values(p), self.word, self.periods, self.index)
+        return section_of_page(self.machine, self.values(p), self.word, self.periods, self.index)
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.declared.population.DeclaredPopulation`."""

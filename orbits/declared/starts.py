@@ -10,8 +10,8 @@ import numpy as np
 from orbits.contacts.letters import HIT
 from orbits.declared.attractor import find_attractor, random_start
 from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.stepper import TWO_PI, SimulationError
 from orbits.flows.page.solving import SOLVED, newton
+from orbits.flows.page.stepper import TWO_PI, SimulationError
 from orbits.machines.page.machine import Machine
 from orbits.starts.find import StartError
 from orbits.words.of_pages import PageWord

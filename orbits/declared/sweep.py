@@ -10,9 +10,9 @@ import numpy as np
 from orbits.contacts.letters import HIT
 from orbits.contacts.wall import Wall
 from orbits.declared.attractor import DeclaredAttractor, attracted
-from orbits.declared.simulation import outside
-from orbits.declared.stepper import TWO_PI, Stepper
+from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.machines.page.machine import Machine
+from orbits.simulation.page import outside
 
 SAMPLES = 2000  # of a motion without a period, for its extremes
 NUDGE = 1e-7  # states are changed by this at each value, as noise would: an unstable motion is then left

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
+from orbits.flows.protocol import SimulationError
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import EVENTS_FULL, FAILED, MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 from orbits.simulation.trajectory import Trajectory
@@ -18,10 +19,6 @@ MOST_EVENTS = 1_000_000
 FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
 _KEYS = {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}
 _BODIES = ("q1", "q2", "q1_rate", "q2_rate")
-
-
-class SimulationError(ValueError):
-    """A start or a length of a run that cannot be; the sentence names the field, the value and what would do."""
 
 
 def simulate(

@@ -1,14 +1,20 @@
-"""The motion of a machine seen once per period of a cycle, whenever the forcing passes phase zero, by simulation."""
+"""The motion of a machine seen once per period of a cycle, by simulation.
+
+The section is where the forcing passes phase zero; of a self-excited machine just after the event with which the cycle begins.
+"""
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
-from orbits.machines.states import state_of
-from orbits.machines.stepping import FAILED, PSI, TURNS, Machine, W
-from orbits.simulation.driver import buffers, skip
+from orbits.flows.page.variations import Variations
+from orbits.flows.protocol import SimulationError, Simulator, later
+from orbits.simulation.page import TWO_PI, PageSimulator
 
-EVENTS = 4096  # in one period at most
+LONGEST = 1e3  # clock without the event of the section after which a motion does not come back
 
 
 class Section:
@@ -16,77 +22,121 @@ class Section:
 
     Parameters
     ----------
-    engine : Machine
-    params : ndarray, shape (P,)
-    code, mode : int
-        First event of the cycle, and the mode after it.
+    simulator : Simulator
+    word : Word
+        Of the cycle.
     periods : int
         Forcing periods of the cycle.
     unit : ndarray, shape (n,)
-        What 1 is in each of the first node's unknowns, in the machine's units.
-    restitutions : (float, float)
-        Of the left and of the right wall.
+        What 1 is in each of the first node's unknowns, in the simulator's units.
     """
 
-    def __init__(
-        self,
-        engine: Machine,
-        params: np.ndarray,
-        code: int,
-        mode: int,
-        periods: int,
-        unit: np.ndarray,
-        restitutions: tuple[float, float],
-    ) -> None:
-        self.engine, self.params = engine, params
-        self.code, self.mode, self.periods, self.unit = code, mode, periods, unit
-        self.restitutions = restitutions
-        self.places = list(engine.places)
-        self.scratch = buffers(engine, 64)
+    def __init__(self, simulator: Simulator, word: Any, periods: int, unit: np.ndarray) -> None:
+        self.simulator, self.word, self.periods, self.unit = simulator, word, periods, unit
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Position and velocity in the cavity, then those of the centre of mass."""
-        return self.engine.coordinates
+        """The coordinates of a point."""
+        return self.simulator.names
 
     def through(self, u: np.ndarray) -> np.ndarray:
         """Where the motion that begins with the first of the nodes u passes phase zero next, shape (d,)."""
-        state = self._first(u)
-        return self._after(state, float(state[TURNS]) + 1.0)
+        return self.rounds(u, 1)[0]
 
-    def rounds(self, u: np.ndarray) -> np.ndarray:
+    def rounds(self, u: np.ndarray, count: int | None = None) -> np.ndarray:
         """Where the cycle passes phase zero, once per forcing period, shape (periods, d)."""
-        state = self._first(u)
-        first = float(state[TURNS]) + 1.0
-        return np.array([self._after(state, first + k) for k in range(self.periods)])
+        points = np.full((count or self.periods, len(self.names)), np.nan)
+        try:
+            self.simulator.begin(self.word, np.asarray(u, dtype=float)[: len(self.unit)] * self.unit)
+            first = math.floor(self.simulator.time) + 1.0
+            for k in range(len(points)):
+                self.simulator.follow(first + k)
+                points[k] = self.simulator.point
+        except SimulationError:
+            pass  # it does not come back
+        return points
 
     def step(self, x: np.ndarray) -> np.ndarray:
-        """One period of the cycle later; NaN where the motion is no longer finite, or leaves its cavity at once."""
-        state = np.zeros(self.engine.state)
-        state[self.places] = x
-        left, right = self.engine.walls(self.params)
-        if not right <= state[W] <= left:
-            return np.full(len(self.places), np.nan)
-        self.engine.launch(state, self.params)
-        return self._after(state, float(self.periods))
+        """One period of the cycle later; NaN where the motion does not come back."""
+        return later(self.simulator, x, float(self.periods))
 
     def struck(self, x: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere."""
-        for wall, side, r in zip(self.engine.walls(self.params), (1.0, -1.0), self.restitutions):
-            if abs(x[0] - wall) < near and x[1] != 0.0:
-                other, away = np.array(x, dtype=float), np.zeros(len(x))
-                other[0], other[1] = wall, -x[1] * r if side * x[1] > 0.0 else -x[1] / r
-                away[0] = -side
-                return (other, away) if np.all(np.isfinite(other)) else None
-        return None
+        return self.simulator.struck(x, near)
 
-    def _first(self, u: np.ndarray) -> np.ndarray:
-        """The state right after the first event."""
-        node = np.asarray(u)[: len(self.unit)] * self.unit
-        return state_of(self.engine, self.params, self.code, self.mode, node)
 
-    def _after(self, state: np.ndarray, until: float) -> np.ndarray:
-        status = skip(self.engine, state, self.params, until, EVENTS * self.periods, self.scratch)
-        if status == FAILED or not abs(state[TURNS] + state[PSI] / (2.0 * np.pi) - until) < 1e-9:
-            return np.full(len(self.places), np.nan)
-        return state[self.places]
+class VariedSection(Section):
+    """A section that knows the derivatives of its steps: of a machine on a page.
+
+    Parameters
+    ----------
+    index : int
+        Of the parameter by which `varied` differentiates.
+    """
+
+    simulator: PageSimulator
+
+    def __init__(self, simulator: PageSimulator, word: Any, periods: int, index: int) -> None:
+        super().__init__(simulator, word, periods, np.ones(len(simulator.names) + 1))
+        self.index = index
+
+    def varied(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`step` with its derivatives by x, shape (d, d), and by the parameter, shape (d,); NaN where a wall holds the body."""
+        n, stepper = len(x), self.simulator.stepper
+        try:
+            self._start(x)
+            passage = Variations(stepper, self.index)
+            self._go(passage)
+        except SimulationError:
+            return np.full(n, np.nan), np.full((n, n), np.nan), np.full(n, np.nan)
+        return stepper.state.copy(), *passage.derivatives
+
+    def _start(self, x: np.ndarray) -> None:
+        self.simulator.start(x)
+
+    def _go(self, mover: Any) -> None:
+        """Move on by a period of the cycle."""
+        while mover.advance(TWO_PI * self.periods) is not None:
+            pass
+
+
+class EventSection(VariedSection):
+    """The section of a self-excited machine."""
+
+    def __init__(self, simulator: PageSimulator, word: Any, periods: int, index: int) -> None:
+        super().__init__(simulator, word, periods, index)
+        letters = [word.letter(i) for i in range(len(word))]
+        first = letters[0] if letters else None
+        self.event = None if first is None else (first.contact, first.kind)
+        self.times = sum((letter.contact, letter.kind) == self.event for letter in letters)
+
+    def rounds(self, u: np.ndarray, count: int | None = None) -> np.ndarray:
+        """The states just after the first event, shape (1, d)."""
+        return np.array([np.asarray(u, dtype=float)[1 : len(self.unit)]])
+
+    def step(self, x: np.ndarray) -> np.ndarray:
+        """One period of the cycle later; NaN where the motion does not come back."""
+        try:
+            self._start(x)
+            self._go(self.simulator.stepper)
+        except SimulationError:
+            return np.full(len(x), np.nan)
+        return self.simulator.point
+
+    def _start(self, x: np.ndarray) -> None:
+        self.simulator.start(x, 0.0, self.word.modes[0])
+
+    def _go(self, mover: Any) -> None:
+        left = self.times
+        while left:
+            stepper = self.simulator.stepper
+            found = mover.advance(stepper.base + stepper.clock + LONGEST)
+            if found is None:
+                raise SimulationError("the event of the section does not come again")
+            left -= found[:2] == self.event
+
+
+def section_of_page(machine: Any, params: np.ndarray, word: Any, periods: int, index: int) -> VariedSection:
+    """The section of a cycle of a machine on a page; `index` is that of the parameter by which it is differentiated."""
+    kind = VariedSection if machine.forced else EventSection
+    return kind(PageSimulator(machine, params), word, periods, index)

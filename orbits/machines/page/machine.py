@@ -217,7 +217,7 @@ class Machine:
         events: int | None = None,
         **parameters: float,
     ) -> Any:
-        """Simulate from event to event; see `orbits.declared.simulation.simulate`."""
+        """Simulate from event to event; see `orbits.simulation.page.simulate`."""
         return above("simulate_page")(self, start, periods=periods, time=time, events=events, **parameters)
 
     def attractor(self, start: Mapping[str, float] | None = None, **parameters: float) -> Any:

@@ -13,9 +13,9 @@ import numpy as np
 import contvines as cv
 from orbits.contacts.letters import HOLD, RELEASE
 from orbits.declared.deviation import deviation
-from orbits.declared.simulation import collect, outside
-from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
 from orbits.flows.page.sampling import lengths
+from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
+from orbits.simulation.page import collect, outside
 from tests.orbits.declared.pages import page
 
 # parameters that are drawn, uniformly; the others stay as the page has them

@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 from orbits.contacts.letters import HIT
-from orbits.declared.stepper import Stepper
+from orbits.flows.page.stepper import Stepper
 from tests.orbits.declared.test_simulation import rattler
 
 

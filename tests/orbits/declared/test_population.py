@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Machine, Wall, Word
-from orbits.declared.growth import growth
-from orbits.declared.stepper import Stepper
+from orbits.flows.page.growth import growth
+from orbits.flows.page.stepper import Stepper
 from tests.orbits.declared.pages import page
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orbits import DryFriction, Machine, Wall
-from orbits.declared.stepper import Stepper
+from orbits.flows.page.stepper import Stepper
 from orbits.symbols import sin
 from tests.orbits.declared.independent import deviation
 from tests.orbits.declared.pages import page

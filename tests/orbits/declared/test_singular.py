@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import Machine, Switch, Wall
-from orbits.declared.stepper import SimulationError
+from orbits.flows.page.stepper import SimulationError
 from orbits.machines.page.singular import singular_at
 from orbits.symbols import cos, sqrt
 

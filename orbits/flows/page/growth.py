@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from orbits.declared.stepper import TWO_PI, Stepper
+from orbits.flows.page.stepper import TWO_PI, Stepper
 
 APART = 1e-7  # distance of the neighbours, relative to 1 + states
 SAMPLES, BLOCKS = 1200, 20

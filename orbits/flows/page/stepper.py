@@ -10,6 +10,7 @@ import numpy as np
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
 from orbits.contacts.wall import FREE, HELD, Wall
+from orbits.flows.protocol import SimulationError
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.singular import singular_at
 
@@ -20,10 +21,6 @@ NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impact
 SLOW = 1e-6  # squared approach speed below which impacts may be piling up
 HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
 FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
-
-
-class SimulationError(ValueError):
-    """A start that cannot be, or a motion that the machine's laws do not continue; the sentence says what would do."""
 
 
 class Stepper:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.contacts.letters import HIT, HOLD, RELEASE, Letter
-from orbits.declared.stepper import Stepper
+from orbits.flows.page.stepper import Stepper
 
 
 class Variations:

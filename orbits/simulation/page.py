@@ -12,7 +12,8 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
-from orbits.declared.stepper import TWO_PI, SimulationError, Stepper
+from orbits.flows.page.stepper import TWO_PI, Stepper
+from orbits.flows.protocol import Record, SimulationError
 from orbits.machines.page.machine import Machine
 
 MOST_EVENTS = 1_000_000
@@ -230,13 +231,78 @@ def collect(stepper: Stepper, length: float, most: int) -> Trajectory:
     )
 
 
-__all__: list[Any] = [
-    "SimulationError",
-    "Stepper",
-    "Trajectory",
-    "collect",
-    "first_state",
-    "letter_of",
-    "outside",
-    "simulate",
-]
+class PageSimulator:
+    """A page's motion on its way; see the contract at the top of `orbits.flows.protocol`."""
+
+    watched = (3000.0, 3000)
+
+    def __init__(self, machine: Machine, params: np.ndarray) -> None:
+        self.machine, self.params = machine, params
+        self.stepper = Stepper(machine, params)
+        self.forced, self.names = machine.forced, machine.states
+        self.hard = np.zeros(machine.size, dtype=bool)  # a start within a wall is refused
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the machine equals its mirror image."""
+        return self.machine.has_mirror(self.params)
+
+    @property
+    def time(self) -> float:
+        """Forcing periods; of a self-excited machine its time over 2 pi."""
+        return (self.stepper.base + self.stepper.clock) / TWO_PI
+
+    @property
+    def point(self) -> np.ndarray:
+        """The states."""
+        return self.stepper.state.copy()
+
+    def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None:
+        """Begin at a point."""
+        self.stepper.start(point, TWO_PI * time, modes)
+
+    def begin(self, word: Any, node: np.ndarray) -> None:
+        """Just after the first event of a cycle."""
+        self.stepper.start(node[1:], float(node[0]), word.modes[0])
+
+    def follow(self, until: float) -> None:
+        """Move on."""
+        while self.stepper.advance(TWO_PI * until) is not None:
+            pass
+
+    def record(self, until: float, most: int) -> Record:
+        """Move on and list the events."""
+        run = collect(self.stepper, TWO_PI * (until - self.time), most)
+        kinds = np.array([kind for _, kind, _ in run.events], dtype=int)
+        events = [*zip(run.events, run.modes[1:])]
+        piled = (kinds == HOLD) | (kinds == RELEASE)
+        return Record(
+            run.clocks[1:] / TWO_PI, run.states[1:], events, kinds == HIT, piled, run.status == REACHED, run
+        )
+
+    def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere.
+
+        Where the forcing passes phase zero; the points just after the events of a self-excited machine are not told apart.
+        """
+        if not self.forced:
+            return None
+        machine, here = self.machine, np.array(point, dtype=float)
+        compiled = machine.compiled
+        numbers = compiled.numbers(self.params, machine.rest_mode(self.params, here, 0.0))
+        gaps = compiled.contact_values().one(here, 0.0, numbers)
+        for j, contact in enumerate(machine.contacts):
+            if not isinstance(contact, Wall):
+                continue
+            slopes = compiled.gap_slopes(j).one(here, 0.0, numbers)
+            steep = float(np.linalg.norm(slopes))
+            if not abs(gaps[j]) < near * steep:
+                continue
+            here = here - gaps[j] * slopes / steep**2
+            row = compiled.impact_map(j).one(here, 0.0, numbers)
+            jump, rate = row[:-1] - here, row[-1]
+            if rate > 0.0:  # after an impact: the impulse was larger by 1/restitution and the other way round
+                jump = jump / compiled.rebound(j).one(here, 0.0, numbers)[1]
+            if rate != 0.0 and np.all(np.isfinite(jump)):
+                return here + jump, slopes / steep
+        return None

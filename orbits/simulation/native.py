@@ -1,0 +1,110 @@
+"""A built-in machine's motion on its way: the simulator (`orbits.flows.protocol`) round the native core's stepper or its reference."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from orbits.flows.protocol import Record, SimulationError
+from orbits.machines.catalogue import stepper
+from orbits.machines.states import event_states, state_of
+from orbits.machines.stepping import FAILED, HOLD, PSI, TURNS, W
+from orbits.simulation.driver import buffers, collect, skip
+
+PER_PERIOD = 400  # events
+
+
+class NativeSimulator:
+    """See the contract at the top of `orbits.flows.protocol`.
+
+    Attributes
+    ----------
+    state : float array (S,)
+        As `orbits.machines.stepping` has it.
+    """
+
+    forced = True
+    watched = (2000.0, 800_000)
+
+    def __init__(self, model: Any, params: np.ndarray) -> None:
+        self.model, self.params = model, np.asarray(params, dtype=float)
+        self.engine = stepper(model.name)
+        self.state = np.zeros(self.engine.state)
+        self._places = list(self.engine.places)
+        self._scratch = buffers(self.engine, 64)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Position and velocity in the cavity, then those of the centre of mass."""
+        return self.engine.coordinates
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the machine equals its mirror image."""
+        return self.model.has_mirror(self.params)
+
+    @property
+    def hard(self) -> np.ndarray:
+        """The walls limit the position in the cavity."""
+        return np.arange(len(self._places)) == 0
+
+    @property
+    def time(self) -> float:
+        """Forcing periods."""
+        return float(self.state[TURNS]) + float(self.state[PSI]) / (2.0 * np.pi)
+
+    @property
+    def point(self) -> np.ndarray:
+        """The coordinates."""
+        return self.state[self._places]
+
+    def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None:
+        """Begin at a point; the mode follows from it."""
+        self.state = np.zeros(self.engine.state)
+        self.state[PSI] = 2.0 * np.pi * time
+        self.state[self._places] = point
+        left, right = self.engine.walls(self.params)
+        if not right <= self.state[W] <= left:
+            raise SimulationError(
+                f"w = {self.state[W]:g} lies outside the cavity: give {right:g} <= w <= {left:g}"
+            )
+        self.engine.launch(self.state, self.params)
+
+    def begin(self, word: Any, node: np.ndarray) -> None:
+        """Just after the first event of a cycle."""
+        self.state = state_of(self.engine, self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
+
+    def follow(self, until: float) -> None:
+        """Move on; `SimulationError` if the motion is not finite or comes to rest for ever."""
+        most = int(PER_PERIOD * max(until - self.time + 1.0, 1.0))
+        status = skip(self.engine, self.state, self.params, until, most, self._scratch)
+        if status == FAILED or not abs(self.time - until) < 1e-9:
+            raise SimulationError(
+                f"the motion of {self.model.name!r} does not go on to {until:g} forcing periods"
+            )
+
+    def record(self, until: float, most: int) -> Record:
+        """Move on and list the events."""
+        codes, modes, rows, _ = collect(self.engine, self.state, self.params, until, most)
+        states = event_states(self.engine, modes, rows)
+        return Record(
+            states[:, TURNS] + states[:, PSI] / (2.0 * np.pi),
+            states[:, self._places],
+            [*zip(codes.tolist(), modes.tolist())],
+            codes < 2,
+            codes == HOLD,
+            bool(abs(self.time - until) < 1e-9),
+            (codes, modes, rows),
+        )
+
+    def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Of a point at a wall the other one there and the direction away from the wall; None elsewhere."""
+        walls, restitutions = self.engine.walls(self.params), self.model.restitutions(self.params)
+        for wall, side, r in zip(walls, (1.0, -1.0), map(float, restitutions)):
+            if abs(point[0] - wall) < near and point[1] != 0.0:
+                other, away = np.array(point, dtype=float), np.zeros(len(point))
+                other[0], other[1] = wall, -point[1] * r if side * point[1] > 0.0 else -point[1] / r
+                away[0] = -side
+                return (other, away) if np.all(np.isfinite(other)) else None
+        return None
