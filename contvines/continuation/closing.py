@@ -18,6 +18,7 @@ class Closing:
 
     def __init__(self, engine: Engine, start: Solved) -> None:
         self.engine, self.start = engine, start
+        self.left = False  # whether a chunk has gone away from the start
 
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
@@ -75,6 +76,8 @@ class Closing:
         engine, start, problem = self.engine, self.start, self.engine.problem
         ahead = np.sign(start.tangent[-1])
         gaps = (chunk.values - start.p) * ahead
+        if not self.left:
+            gaps[0], self.left = 0.0, True  # the start itself, solved for on another mesh
         for i in np.flatnonzero((gaps[:-1] < 0.0) & (gaps[1:] >= 0.0)):
             share = gaps[i] / (gaps[i] - gaps[i + 1])
             guess = chunk.points[i] + share * (chunk.points[i + 1] - chunk.points[i])

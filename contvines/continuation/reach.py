@@ -19,7 +19,7 @@ DOUBLINGS = 26
 # a doubling that takes so much less than the one before, and so little of the interval, is one of the last
 SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
-OFF = 2.0  # times `escape`, of cycles: as of families of a linear oscillator, which have all amplitudes
+OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
 ROUNDING = 1e-12  # changes of the parameter, in its unit, that are none
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
@@ -81,12 +81,13 @@ class Reach:
             room = self.engine.upper - value if ahead else value - self.engine.lower
             last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
             # where the parameter stands still its turns are those of rounding
-            turned = self.turned and moved > max(ROUNDING, 10.0 * self.engine.noise) * self.engine.scale[-1]
+            stands = moved <= max(ROUNDING, 10.0 * self.engine.noise) * self.engine.scale[-1]
+            turned = self.turned and not stands
             comparable = self.moved < np.inf and not turned
             bound = (
                 not self.bounded and comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
             )
-            if bound or distances[i] > (OFF if self.bounded else FAR) * escape:
+            if bound or distances[i] > (OFF if self.bounded and stands else FAR) * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
             self.moved, self.turned = np.inf if turned else moved, False

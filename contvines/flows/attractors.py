@@ -16,8 +16,31 @@ FIRST = 50.0  # time scales of the first transient
 DOUBLINGS = 12  # of the transient
 
 
+class AtRest(ValueError):
+    """A motion that comes to rest in `state`."""
+
+    def __init__(self, state: np.ndarray) -> None:
+        self.state = state
+        super().__init__(
+            f"the motion comes to rest at {np.array2string(state, precision=6)}; contvines.diagram of the flow follows equilibria"
+        )
+
+
+class Escaped(ValueError):
+    """A motion that cannot be simulated on."""
+
+
+class Irregular(ValueError):
+    """A motion that does not recur."""
+
+
 def recurrence(
-    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int
+    field: Any,
+    p: float,
+    x: np.ndarray,
+    transient: float | None,
+    longest: int,
+    doublings: int = DOUBLINGS,
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Times and states of one period of the cycle on which a motion settles, and after how many periods of the forcing it recurs.
 
@@ -27,8 +50,8 @@ def recurrence(
         If the motion escapes, comes to rest, or does not recur.
     """
     if field.forced:
-        return _forced(field, p, x, transient, longest)
-    return _free(field, p, x, transient, longest)
+        return _forced(field, p, x, transient, longest, doublings)
+    return _free(field, p, x, transient, longest, doublings)
 
 
 def _run(
@@ -47,16 +70,16 @@ def _run(
         dense_output=dense,
     )
     if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > 1e12:
-        raise ValueError(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
+        raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
     return found
 
 
 def _forced(
-    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int
+    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
 ) -> tuple[np.ndarray, np.ndarray, int]:
     period = float(field.length_of_period(p))
     count = 100 if transient is None else max(1, int(np.ceil(transient / period)))
-    for _ in range(DOUBLINGS if transient is None else 1):
+    for _ in range(doublings if transient is None else 1):
         x = _run(field, p, x, 0.0, count * period, rough=True).y[:, -1]
         points = [x]
         low = high = x
@@ -73,13 +96,13 @@ def _forced(
         x, count = points[-1], 2 * count
         if count > 20000:
             break
-    raise ValueError(
+    raise Irregular(
         f"the motion has not become periodic after {count} periods of the forcing; it may be chaotic: try another x0 or other parameters"
     )
 
 
 def _free(
-    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int
+    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
 ) -> tuple[np.ndarray, np.ndarray, int]:
     rate = rates(field, p)
     matrix = field.jacobian(x[None, :], p)[0]
@@ -87,14 +110,12 @@ def _free(
     span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
     if not rate(0.0, x).any():
         x = x + 1e-3 * field.lengths * (-1.0) ** np.arange(len(x))
-    for _ in range(DOUBLINGS):
+    for _ in range(doublings):
         x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
         run = _run(field, p, x, 0.0, span, rough=True)
         ranges = np.ptp(run.y, axis=1)
         if (ranges <= STILL * (field.lengths + np.abs(x))).all():
-            raise ValueError(
-                f"the motion comes to rest at {np.array2string(x, precision=6)}; contvines.diagram of the flow follows equilibria"
-            )
+            raise AtRest(x)
         # a plane across the motion where it is fastest, in units of its size
         own = ranges / field.lengths
         unit = field.lengths * np.maximum(own, LEAST * own.max())
@@ -109,7 +130,7 @@ def _free(
             times = np.linspace(0.0, period, SAMPLES + 1)
             return times, whole.sol(times).T, 1
         x, span = run.y[:, -1], 2.0 * span
-    raise ValueError(
+    raise Irregular(
         "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
     )
 

@@ -455,6 +455,11 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             return None
         return value if np.isfinite(value) else None
 
+    def population(self, over: str | None = None, **options: Any) -> Any:
+        """Starts round this cycle, and what they settle on."""
+        states = self.u0[: self.states].reshape(-1, self.node)
+        return self.flow.population(over or self.parameter, around=states, **{**self.parameters, **options})
+
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
         """Means over the shortest period of powers and products of the coordinates, the same for all meshes and phases; of mirror images the smaller."""
@@ -480,7 +485,8 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         mean = share @ points
         rest = points - mean
         size = np.sqrt(share @ rest**2)
-        unit = rest / np.where(size > 0.0, size, 1.0)
+        moves = size > SAME * size.max()  # what stands still has no shape
+        unit = np.where(moves, rest / np.where(moves, size, 1.0), 0.0)
         second = np.einsum("i,ia,ib->ab", share, rest, unit)
         area = np.einsum("i,ia,ib->ab", turns, unit, slopes)
         upper = np.triu_indices(d)

@@ -70,6 +70,10 @@ class Equilibria(AlgebraicProblem):
         k = upper[int(np.argmin(np.abs(values[upper].real)))]
         return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k])]
 
+    def population(self, over: str | None = None, **options: Any) -> Any:
+        """Starts round the flow's start, and what they settle on."""
+        return self.flow.population(over or self.parameter, **{**self.values.values, **options})
+
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again."""
         about = super().describe()

@@ -21,6 +21,7 @@ from .expressions import compiled_expressions
 from .field import Field
 from .newton import settled
 from .orbit import CycleOrbit
+from .population import FlowPopulation
 
 INTERVALS = 40  # of a cycle from data, to begin with
 MIRRORED = 1e-8
@@ -205,10 +206,29 @@ class FlowProblem:
             return self._equilibria
         return self._equilibria.against(parameter, values)
 
+    @hinting
+    def population(
+        self,
+        over: str | None = None,
+        *,
+        box: Sequence[tuple[float, float]] | None = None,
+        around: np.ndarray | None = None,
+        **values: float,
+    ) -> FlowPopulation:
+        """Starts in a box of states and what they settle on; see :mod:`contvines.flows.population`."""
+        parameter = self.values.varying if over is None else over
+        return FlowPopulation(self, parameter, values, box, around)
+
     # ------------------------------------------------------------------ cycles
     @hinting
     def attractor(
-        self, x0: Any = None, *, transient: float | None = None, longest: int = 64, **values: float
+        self,
+        x0: Any = None,
+        *,
+        transient: float | None = None,
+        longest: int = 64,
+        doublings: int = 12,
+        **values: float,
     ) -> CycleOrbit:
         """The cycle on which a motion settles: simulated until it recurs, then solved for.
 
@@ -220,6 +240,8 @@ class FlowProblem:
             Time before recurrence is looked for; it is lengthened as long as nothing recurs.
         longest : int
             Returns (periods of the forcing) after which a motion is given up.
+        doublings : int
+            How often the transient is lengthened before that.
         **values
             Of parameters.
 
@@ -233,7 +255,7 @@ class FlowProblem:
         if len(start) != len(self.x0):
             raise ValueError(f"x0 has {len(start)} numbers; the flow has {len(self.x0)} states")
         field = self.field.against(parameters)
-        times, states, rounds = recurrence(field, parameters.start, start, transient, longest)
+        times, states, rounds = recurrence(field, parameters.start, start, transient, longest, doublings)
         return self._cycle(times, states, parameters, rounds)
 
     @hinting

@@ -1,0 +1,82 @@
+"""Many motions of a flow at once: Dormand and Prince's method of order five, each motion with a step length of its own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.integrate import RK45
+
+from ..problems.functions import NotEvaluable
+
+RELATIVE = 1e-7  # error of a step, relative to the state
+ABSOLUTE = 1e-9  # ... and relative to the size of the box
+SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+TABLEAU = RK45.A[:, :5], RK45.B, RK45.C, RK45.E
+
+
+class March:
+    """Motions that go on from where they are.
+
+    Parameters
+    ----------
+    field : Field
+    p : float
+    x : ndarray, shape (n, d)
+    size : ndarray, shape (d,)
+        What counts as large in each coordinate.
+    """
+
+    def __init__(self, field: Any, p: float, x: np.ndarray, size: np.ndarray) -> None:
+        self.field, self.p, self.size = field, p, size
+        self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
+        self.slope = self._rates(self.x, self.t)
+        speed = np.abs(self.slope / size).max(axis=1)
+        self.h = 1e-3 / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
+        self.steps = 0
+
+    def _rates(self, x: np.ndarray, t: np.ndarray) -> np.ndarray:
+        field = self.field
+        with np.errstate(all="ignore"):
+            try:
+                return np.asarray(field(x, self.p, t if field.forced else None), dtype=float)
+            except NotEvaluable:
+                return np.array([self._one(y, s) for y, s in zip(x, t, strict=True)])
+
+    def _one(self, x: np.ndarray, t: float) -> np.ndarray:
+        try:
+            return self.field(x[None], self.p, np.array([t]) if self.field.forced else None)[0]
+        except NotEvaluable:
+            return np.full(len(x), np.nan)
+
+    def go(self, rows: np.ndarray, steps: int, until: float = np.inf, far: float = np.inf) -> None:
+        """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN."""
+        a, b, c, e = TABLEAU
+        for _ in range(steps):
+            rows = rows[np.isfinite(self.x[rows, 0]) & (self.t[rows] < until)]
+            if not rows.size:
+                return
+            x, t, h = self.x[rows], self.t[rows], np.minimum(self.h[rows], until - self.t[rows])
+            k = np.empty((7, *x.shape))
+            k[0] = self.slope[rows]
+            with np.errstate(all="ignore"):
+                for s in range(1, 6):
+                    k[s] = self._rates(x + h[:, None] * np.einsum("j,jnd->nd", a[s, :s], k[:s]), t + c[s] * h)
+                new = x + h[:, None] * np.einsum("j,jnd->nd", b, k[:6])
+                k[6] = self._rates(new, t + h)
+                wrong = h[:, None] * np.einsum("j,jnd->nd", e, k)
+                allowed = ABSOLUTE * self.size + RELATIVE * np.maximum(np.abs(x), np.abs(new))
+                error = np.sqrt(np.mean((wrong / allowed) ** 2, axis=1))
+                factor = np.clip(SAFETY * error**-0.2, SHRINK, GROW)
+            good = error <= 1.0
+            took = rows[good]
+            self.x[took], self.t[took], self.slope[took] = new[good], (t + h)[good], k[6][good]
+            whole = h == self.h[rows]
+            self.h[rows] = np.where(
+                np.isfinite(error), np.where(whole | ~good, h * factor, self.h[rows]), SHRINK * h
+            )
+            lost = (np.abs(self.x[rows]) > far * self.size).any(axis=1) | (
+                h < 1e-14 * np.maximum(1.0, np.abs(t))
+            )
+            self.x[rows[lost]] = np.nan
+            self.steps += len(rows)

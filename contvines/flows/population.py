@@ -1,0 +1,345 @@
+"""Many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.coexistence.population`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .attractors import AtRest, Escaped, Irregular
+from .march import March
+
+BLOCK, STEPS = (
+    200,
+    (3, 9, 27),
+)  # steps of the integration, and how often so many, for those that have settled on nothing before
+BLOCK_PERIODS, PERIODS = 20, (3, 9, 27)  # likewise, periods of a forcing
+MOST_STEPS = 20000  # in so many periods
+PER_PERIOD = 30  # steps that count as a period in the budget of an atlas
+LONGEST = 16  # returns, or periods of the forcing, after which a motion is taken to be irregular
+DOUBLINGS = 3  # of the transient of a motion that is looked at by itself
+NEAR = 2e-3  # a state so near to a motion, relative to its size, belongs to it
+FAR = 1e4  # times the box: escaped
+BRIEF = (5, 48)  # values, and starts at each, of a brief look
+TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looked at by themselves
+NEWTON = 30
+GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
+BLOCKS = 20
+SIGMAS = 3.0
+SAME = 1e-6  # equilibria, relative to the box
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """What some starts settle on."""
+
+    kind: str
+    word: str = ""
+    periods: int = 0
+    problem: Any = field(default=None, repr=False)
+    u: np.ndarray | None = field(default=None, repr=False)
+    exponent: float = float("nan")
+    error: float = float("nan")
+    state: np.ndarray | None = field(default=None, repr=False)
+    curve: np.ndarray | None = field(default=None, repr=False)  # states on it
+
+
+class FlowPopulation:
+    """Starts in a box of the flow's states.
+
+    Parameters
+    ----------
+    flow : FlowProblem
+    parameter : str
+    values : mapping of str to float
+        Of the other parameters.
+    box : sequence of (low, high), optional
+        One pair per state; by default round the flow's own start, and round ``around``.
+    around : ndarray, shape (n, d), optional
+        States of a motion that is known.
+    """
+
+    across = 60
+    brief = BRIEF
+
+    def __init__(
+        self,
+        flow: Any,
+        parameter: str,
+        values: dict[str, float],
+        box: Sequence[tuple[float, float]] | None = None,
+        around: np.ndarray | None = None,
+    ) -> None:
+        self.flow, self.parameter = flow, parameter
+        self.values = flow.values.against(parameter, values)
+        self.field = flow.field.against(self.values)
+        self.node = len(flow.x0)
+        self.work = 0.0
+        if box is None:
+            points = np.array(flow.x0)[None] if around is None else np.vstack([flow.x0, around])
+            reach = np.maximum(
+                np.ptp(points, axis=0), np.maximum(self.field.lengths, np.abs(points).max(axis=0))
+            )
+            self._box = np.column_stack([points.min(axis=0) - reach, points.max(axis=0) + reach])
+        else:
+            self._box = np.array(box, dtype=float)
+            if self._box.shape != (self.node, 2) or not np.all(self._box[:, 0] < self._box[:, 1]):
+                raise ValueError(f"box = {box!r}: give {self.node} pairs (low, high), one per state")
+        self.size = np.ptp(self._box, axis=1)
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """The flow's name."""
+        return {"name": self.flow.name}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """x0, x1, ..."""
+        return tuple(f"x{j}" for j in range(self.node))
+
+    def box(self, p: float) -> np.ndarray:
+        """Ranges of the starts, shape (d, 2)."""
+        return self._box
+
+    def starts(self, count: int, seed: int, p: float) -> np.ndarray:
+        """Low-discrepancy starts (Sobol, scrambled by the seed), shape (count, d)."""
+        from scipy.stats import qmc
+
+        draw = qmc.Sobol(self.node, scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
+        points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
+        return self._box[:, 0] + points * self.size
+
+    # ------------------------------------------------------------------ what attracts
+    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Settled], np.ndarray, np.ndarray]:
+        """Integrate all starts and recognise what they settle on."""
+        march = March(self.field, p, np.asarray(starts, dtype=float), self.size)
+        n = len(march.x)
+        index, mirrored = np.full(n, -1), np.zeros(n, dtype=bool)
+        motions: list[Settled] = []
+        period = float(self.field.length_of_period(p)) if self.field.forced else None
+        rounds = 0
+        for steps, periods, most in zip(STEPS, PERIODS, TRIED, strict=True):
+            for _ in range(steps if period is None else periods):
+                left = np.flatnonzero(index < 0)
+                if period is None:
+                    march.go(left, BLOCK, far=FAR)
+                else:
+                    rounds += BLOCK_PERIODS
+                    march.go(left, MOST_STEPS, until=rounds * period, far=FAR)
+                gone = left[~np.isfinite(march.x[left]).all(axis=1)]
+                if gone.size:
+                    self._add(motions, index, gone, Settled("escaped"))
+                for k, motion in enumerate(motions):
+                    self._assign(march.x, index, mirrored, k, motion)
+                if (index >= 0).all():
+                    break
+            self.work += march.steps / PER_PERIOD
+            march.steps = 0
+            self._recognise(march, index, mirrored, motions, p, most)
+            if (index >= 0).all():
+                return motions, index, mirrored
+        left = np.flatnonzero(index < 0)
+        if left.size:
+            self._add(motions, index, left, self._wandering(march.x[left[0]], p))
+        return motions, index, mirrored
+
+    def _add(self, motions: list[Settled], index: np.ndarray, which: np.ndarray, motion: Settled) -> None:
+        same = [k for k, m in enumerate(motions) if m.kind == motion.kind and m.curve is None]
+        if same:
+            index[which] = same[0]
+            return
+        index[which] = len(motions)
+        motions.append(motion)
+
+    def _assign(
+        self, x: np.ndarray, index: np.ndarray, mirrored: np.ndarray, k: int, motion: Settled
+    ) -> None:
+        """Give the motion, or its mirror image, the states that lie on it."""
+        if motion.curve is None:
+            return
+        left = np.flatnonzero((index < 0) & np.isfinite(x).all(axis=1))
+        near = self._on(x[left], motion.curve)
+        index[left[near]] = k
+        mirror = self.flow.mirror
+        if mirror is not None:
+            left = left[~near]
+            near = self._on(x[left], np.array([mirror(y) for y in motion.curve]))
+            index[left[near]], mirrored[left[near]] = k, True
+
+    def _on(self, x: np.ndarray, curve: np.ndarray) -> np.ndarray:
+        """Which states lie on a curve, of one point or of many that follow each other round it (in forced flows: apart)."""
+        size = np.maximum(np.ptp(curve, axis=0), 1e-3 * self.size)
+        near = np.zeros(len(x), dtype=bool)
+        apart = self.field.forced or len(curve) == 1
+        ahead = (curve if apart else np.roll(curve, -1, axis=0)) - curve
+        unit = ahead / size
+        length = (unit**2).sum(axis=1)
+        for i, state in enumerate(x):
+            gap = (state - curve) / size
+            share = np.clip((gap * unit).sum(axis=1) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+            distance = np.sqrt(((gap - share[:, None] * unit) ** 2).sum(axis=1))
+            near[i] = distance.min() <= NEAR * np.sqrt(self.node)
+        return near
+
+    def _recognise(
+        self,
+        march: March,
+        index: np.ndarray,
+        mirrored: np.ndarray,
+        motions: list[Settled],
+        p: float,
+        most: int,
+    ) -> None:
+        """Solve for what the states that belong to nothing yet have come near to."""
+        tried: list[int] = []
+        while len(tried) < most:
+            left = [int(i) for i in np.flatnonzero(index < 0) if i not in tried]
+            if not left:
+                return
+            i = left[0]
+            motion = self._solved(march.x[i], p)
+            if motion is None:
+                tried.append(i)
+                continue
+            if motion.curve is None:
+                self._add(motions, index, np.array([i]), motion)
+                continue
+            known = [k for k, m in enumerate(motions) if m.curve is not None and self._same(m, motion)]
+            if not known:
+                motions.append(motion)
+            k = known[0] if known else len(motions) - 1
+            index[i] = k
+            self._assign(march.x, index, mirrored, k, motion)
+
+    def _same(self, one: Settled, other: Settled) -> bool:
+        assert one.curve is not None and other.curve is not None
+        images = [one.curve]
+        if self.flow.mirror is not None:
+            images.append(np.array([self.flow.mirror(y) for y in one.curve]))
+        return (
+            one.word == other.word
+            and one.periods == other.periods
+            and any(bool(self._on(other.curve[:: max(1, len(other.curve) // 8)], c).all()) for c in images)
+        )
+
+    def _solved(self, x: np.ndarray, p: float) -> Settled | None:
+        """The equilibrium or cycle on which the motion from a state settles; None where it is neither, or not soon."""
+        if not self.field.forced:
+            rest = self._rest(x, p)
+            if rest is not None and np.abs((rest - x) / self.size).max() <= NEAR and self._attracts(rest, p):
+                return self._equilibrium(rest, p)
+        known = {self.parameter: p}
+        try:
+            orbit = self.flow.attractor(
+                x, longest=LONGEST, doublings=DOUBLINGS, **({**self.values.values, **known})
+            )
+        except AtRest as still:
+            rest = self._rest(still.state, p)
+            return None if rest is None or not self._attracts(rest, p) else self._equilibrium(rest, p)
+        except Escaped:
+            return Settled("escaped")
+        except (Irregular, ValueError):
+            return None
+        if not orbit.stable:
+            return None
+        problem = orbit.problem(self.parameter)
+        return self._cycle(problem, orbit, p)
+
+    def _cycle(self, problem: Any, orbit: Any, p: float) -> Settled:
+        if self.field.forced:
+            curve = orbit(np.arange(problem.rounds) * orbit.period / problem.rounds)
+        else:
+            curve = orbit(np.linspace(0.0, orbit.period, 1001)[:-1])
+        rounds = problem.rounds if self.field.forced else 0
+        return Settled("periodic", "cycle", rounds, problem, orbit.u.copy(), state=curve[0], curve=curve)
+
+    def _equilibrium(self, x: np.ndarray, p: float) -> Settled:
+        problem = self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p})
+        return Settled("periodic", "equilibrium", 0, problem, x, state=x, curve=x[None])
+
+    def _rest(self, x: np.ndarray, p: float) -> np.ndarray | None:
+        """The equilibrium next to a state, by Newton's method; None if there is none."""
+        x = np.array(x, dtype=float)
+        for _ in range(NEWTON):
+            with np.errstate(all="ignore"):
+                try:
+                    rate, matrix = self.field(x[None], p)[0], self.field.jacobian(x[None], p)[0]
+                except ValueError:
+                    return None
+            if not (np.isfinite(rate).all() and np.isfinite(matrix).all()):
+                return None
+            step = np.linalg.lstsq(matrix * self.size, -rate, rcond=1e-13)[0] * self.size
+            x = x + step
+            if np.abs(step / self.size).max() < 1e-12:
+                return x
+        return None
+
+    def _attracts(self, x: np.ndarray, p: float) -> bool:
+        return bool((np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all())
+
+    def _wandering(self, x: np.ndarray, p: float) -> Settled:
+        """A motion that does not recur, told by the growth of a vector along it; blocks give the error of the mean."""
+        from scipy.integrate import solve_ivp
+
+        d, forced = self.node, self.field.forced
+
+        def rate(t: float, y: np.ndarray) -> np.ndarray:
+            at = np.array([t]) if forced else None
+            return np.concatenate(
+                [self.field(y[None, :d], p, at)[0], self.field.jacobian(y[None, :d], p, at)[0] @ y[d:]]
+            )
+
+        try:
+            speed = float(
+                np.abs(
+                    np.linalg.eigvals(self.field.jacobian(x[None], p, np.zeros(1) if forced else None)[0])
+                ).max()
+            )
+            span = (
+                float(self.field.length_of_period(p)) * 10.0
+                if forced
+                else GROWTH / BLOCKS / max(speed, 1e-12)
+            )
+            y, logs, t = np.concatenate([x, np.ones(d) / np.sqrt(d)]), [], 0.0
+            for _ in range(BLOCKS):
+                y = solve_ivp(
+                    rate, (t, t + span), y, method="LSODA", rtol=1e-7, atol=1e-10 * float(self.size.min())
+                ).y[:, -1]
+                size = float(np.linalg.norm(y[d:]))
+                logs.append(np.log(size) / span)
+                y[d:] /= size
+                t += span
+        except ValueError:
+            return Settled("slow", state=x)
+        mean, error = float(np.mean(logs)), float(np.std(logs, ddof=1) / np.sqrt(BLOCKS))
+        if not np.isfinite(mean):
+            return Settled("slow", state=x)
+        kind = "chaotic" if mean > SIGMAS * error else "quasi-periodic" if mean > -SIGMAS * error else "slow"
+        return Settled(kind, exponent=mean, error=error, state=x)
+
+    # ------------------------------------------------------------------ what does not attract
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Unstable cycles in chaos are not looked for."""
+        return []
+
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Equilibria, stable or not, to which Newton's method leads from starts."""
+        if self.field.forced:
+            return []
+        found: list[np.ndarray] = []
+        for start in np.asarray(starts, dtype=float):
+            x = self._rest(start, p)
+            inside = x is not None and ((x >= self._box[:, 0]) & (x <= self._box[:, 1])).all()
+            if x is not None and inside and not any((np.abs(x - y) <= SAME * self.size).all() for y in found):
+                found.append(x)
+        return [(self._equilibrium(x, p).problem, x) for x in found]
+
+    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+        """Motions known in closed form: none."""
+        return []
+
+    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
+        """Measures of a motion that is no cycle: none."""
+        return {}

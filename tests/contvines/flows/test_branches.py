@@ -1,0 +1,49 @@
+"""Branches of cycles as wholes: closed ones, those that are traced once, those that grow."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def chemical(s0):
+    """Demo plp of AUTO-07p."""
+
+    def f(x, p):
+        rate = p.rho * x[0] * x[1] / (1 + x[0] + 0.1 * x[0] ** 2)
+        return [s0 - x[0] - rate, 0.2 * (500 - x[1]) - rate]
+
+    return f
+
+
+def test_an_isola_that_begins_where_it_was_adapted_is_not_closed_at_once():
+    flow = cv.FlowProblem(chemical(111.0), [40.0, 95.0], {"rho": 4.0})
+    graph = cv.diagram(flow.attractor(), over="rho", within=(2.5, 6.0))
+    assert graph["B1"].closed
+    # AUTO-07p prints 2.98629 and 4.72213
+    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([2.98629, 4.72213], abs=6e-6)
+
+
+def test_cycles_in_an_invariant_plane_are_one_branch():
+    def f(x, p):
+        square = x[0] ** 2 + x[1] ** 2
+        growth = p.m * (1.0 - p.m) - square
+        return [growth * x[0] - x[1], x[0] + growth * x[1], (square - 0.4) * x[2] + x[0] * x[2] * x[1]]
+
+    graph = cv.diagram(cv.FlowProblem(f, [0.0, 0.0, 0.0], {"m": -0.2}), over="m", within=(-0.3, 1.3))
+    cycles = [b for b in graph.branches.values() if b.description["word"] == "cycle"]
+    assert len(cycles) == 1  # from one Hopf point to the next, whatever rounding says of the third state
+    assert cycles[0].range == pytest.approx((0.0, 1.0), abs=1e-9)
+
+
+def test_cycles_that_grow_to_a_hundred_times_where_they_began_go_on():
+    """Demo ops of AUTO-07p: at its Hopf point the equations bend within 0.04, and the cycles grow to a size of 4."""
+
+    def f(x, p):
+        return [(-2 * (x[0] ** 3 / 3 - x[0]) + (x[2] - x[0]) / 4 - x[1]) / 0.5, x[0] - p.c, (x[0] - x[2]) / 4]
+
+    graph = cv.diagram(cv.FlowProblem(f, [0.9, 1.314, 0.9], {"c": 0.9}), over="c", within=(0.9, 0.95))
+    assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([0.937563], abs=6e-7)
+    # AUTO-07p prints 0.921972 and 0.928528
+    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([0.921972, 0.928528], abs=6e-7)
+    assert np.ptp(graph["B2"].values) == pytest.approx(0.037563, abs=1e-6)

@@ -1,0 +1,114 @@
+"""Many starts of flows: what they settle on is known from closed forms."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import contvines as cv
+from contvines.flows.march import March
+
+
+def radial(x, p):
+    """r' = r (m + r^2 - r^4), angle' = 1: at rest and a cycle, parted by r^2 = (1 - sqrt(1 + 4 m)) / 2."""
+    square = x[0] ** 2 + x[1] ** 2
+    growth = p.m + square - square**2
+    return [growth * x[0] - x[1], x[0] + growth * x[1]]
+
+
+def duffing(x, p, t):
+    return [x[1], -0.1 * x[1] - x[0] - x[0] ** 3 + 0.5 * np.cos(p.omega * t)]
+
+
+@pytest.fixture
+def flow():
+    return cv.FlowProblem(radial, [0.1, 0.0], {"m": -0.1})
+
+
+def test_motions_go_on_as_by_scipy(flow):
+    starts = np.random.default_rng(1).uniform(-1.5, 1.5, (5, 2))
+    march = March(flow.field, -0.1, starts, np.ones(2))
+    march.go(np.arange(5), 10000, until=7.0)
+    assert (march.t == 7.0).all()
+    for start, end in zip(starts, march.x):
+        exact = solve_ivp(
+            lambda t, x: radial(x, flow.field.values.at(-0.1)), (0.0, 7.0), start, rtol=1e-11, atol=1e-12
+        )
+        assert end == pytest.approx(exact.y[:, -1], abs=1e-5)
+
+
+def test_each_start_reaches_what_its_radius_says(flow):
+    population = flow.population("m", box=[(-1.5, 1.5), (-1.5, 1.5)])
+    starts = population.starts(64, 3, -0.1)
+    motions, index, mirrored = population.settle(starts, -0.1)
+    inside = (starts**2).sum(axis=1) < (1.0 - np.sqrt(0.6)) / 2.0
+    assert sorted(m.word for m in motions) == ["cycle", "equilibrium"]
+    words = np.array([motions[k].word for k in index])
+    assert (words == np.where(inside, "equilibrium", "cycle")).all()
+    assert not mirrored.any()
+
+
+def test_mirror_images_are_told_apart():
+    flow = cv.FlowProblem(
+        lambda x, p: [x[1], x[0] - x[0] ** 3 - p.c * x[1]], [1.0, 0.0], {"c": 0.5}, mirror=lambda x: -x
+    )
+    motions, index, mirrored = flow.population().settle(np.array([[1.1, 0.0], [-0.9, 0.0], [0.8, 0.1]]), 0.5)
+    assert [m.word for m in motions] == ["equilibrium"]
+    assert index.tolist() == [0, 0, 0]
+    assert mirrored.tolist() == [False, True, False]
+
+
+def test_what_escapes_and_what_does_not_recur():
+    lorenz = cv.FlowProblem(
+        lambda x, p: [10 * (x[1] - x[0]), p.r * x[0] - x[1] - x[0] * x[2], x[0] * x[1] - 8 / 3 * x[2]],
+        [1.0, 1.0, 20.0],
+        {"r": 28.0},
+    )
+    motions, index, _ = lorenz.population().settle(np.array([[1.0, 2.0, 20.0]]), 28.0)
+    assert [m.kind for m in motions] == ["chaotic"]
+    assert (
+        abs(motions[0].exponent - 0.9056) < 4 * motions[0].error + 0.05
+    )  # Sprott, Chaos and Time-Series Analysis, 2003
+    away = cv.FlowProblem(lambda x, p: [x[0] ** 2 + p.a], [0.0], {"a": 1.0})
+    motions, index, _ = away.population().settle(np.array([[0.0], [1.0]]), 1.0)
+    assert [m.kind for m in motions] == ["escaped"]
+
+
+def test_an_atlas_has_what_no_branch_of_the_diagram_reaches():
+    """Beside the equilibrium, which has no Hopf point here, a cycle lives up to a fold, where m (1 - m) is at most 0.06."""
+
+    def f(x, p):
+        square = x[0] ** 2 + x[1] ** 2
+        growth = 0.06 - p.m * (1.0 - p.m) - (square - 1.0) ** 2
+        return [growth * x[0] - x[1], x[0] + growth * x[1]]
+
+    flow = cv.FlowProblem(f, [0.1, 0.0], {"m": 0.1})
+    graph = cv.atlas(
+        flow.population("m", box=[(-1.5, 1.5), (-1.5, 1.5)]),
+        over="m",
+        within=(0.0, 0.2),
+        values=3,
+        starts=8,
+        scan=0,
+    )
+    folds = graph.of_kind("fold")
+    assert [p.value for p in folds] == pytest.approx([(1.0 - np.sqrt(0.76)) / 2.0], abs=1e-8)
+    assert {a.word for a in graph.attractors} == {"equilibrium", "cycle"}
+    assert all(a.branch for a in graph.attractors)
+
+
+def test_basins_of_a_forced_flow():
+    flow = cv.FlowProblem(duffing, [0.0, 0.0], {"omega": 1.6}, period=lambda p: 2 * np.pi / p.omega)
+    found = cv.basins(flow, over="omega", at=1.6, plane=("x0", "x1"), points=6)
+    assert [a.word for a in found.attractors] == ["cycle", "cycle"]
+    for i, j in ((0, 0), (3, 2)):
+        start = [found.x[j], found.y[i]]
+        end = solve_ivp(
+            lambda t, x: duffing(x, flow.field.values.at(1.6), t),
+            (0.0, 400 * np.pi / 1.6),
+            start,
+            rtol=1e-9,
+            atol=1e-10,
+        ).y[:, -1]
+        other = flow.attractor(start)
+        assert np.abs(end - other.states[0]).max() < 1e-4
+    assert set(found.index.ravel().tolist()) == {0, 1}
