@@ -29,7 +29,6 @@ lead(
         "attractor_of_page": "orbits.declared.attractor:find_attractor",
         "attractors": "orbits.attractors.sweep:different_attractors",
         "attractors_of_page": "orbits.declared.attractor:find_attractors",
-        "DeclaredPopulation": "orbits.declared.population:DeclaredPopulation",
         "DeclaredProblem": "orbits.declared.problem:DeclaredProblem",
         "find": "orbits.starts.find:find",
         "find_on_page": "orbits.declared.starts:find",

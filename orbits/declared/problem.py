@@ -121,7 +121,7 @@ class DeclaredProblem(DeclaredSystem, Relatives, Answers):
         return section_of_page(self.machine, self.values(p), self.word, self.periods, self.index)
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
-        """Starts of this machine and what they settle on; see `orbits.declared.population.DeclaredPopulation`."""
+        """Starts of this machine and what they settle on; see `orbits.population.Population`."""
         over = over or self.parameter
         values = {**self.parameters, **parameters}
         return self.machine.population(over, **{n: v for n, v in values.items() if n != over})

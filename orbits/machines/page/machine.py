@@ -229,8 +229,8 @@ class Machine:
         return above("attractors_of_page")(self, count, seed, size, parameters=parameters)
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
-        """Many starts and what they settle on; see `orbits.declared.population.DeclaredPopulation`."""
-        return above("DeclaredPopulation")(self, over or self.default_parameter, parameters)
+        """Many starts and what they settle on; see `orbits.population.Population`."""
+        return above("Population")(self, over or self.default_parameter, parameters)
 
     def orbit(
         self,

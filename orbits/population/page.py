@@ -1,22 +1,15 @@
-"""Many starts of a declared machine and what they settle on, each motion once.
-
-It is what `contvines` asks of a machine for atlases and basins: the contract is that of `orbits.population`.
-"""
+"""Starts of a machine on a page: where they are drawn, and what they settle on, one after the other."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from orbits.attractors.distinct import alike, distinct
-from orbits.attractors.embedded import embedded_cycles
-from orbits.attractors.low_discrepancy import low_discrepancy
-from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
-from orbits.attractors.returning import returning_cycles
+from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.declared.attractor import RETURNED, look, of_record, returning, skip
@@ -24,8 +17,10 @@ from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.sweep import sweep
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
+from orbits.flows.protocol import Record
 from orbits.machines.notation import STARTS
 from orbits.machines.page.machine import Machine
+from orbits.population.sorting import Sorting
 from orbits.simulation.page import PageSimulator, Trajectory, collect, letter_of, outside
 
 BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
@@ -43,66 +38,34 @@ BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page
 TOLD = 5  # looks after which a motion that does not recur is taken for the one that is known not to
 WANDERING = ("chaotic", "quasi-periodic", "slow")
 RELEASED = 1e-6  # difference of the clocks of two releases that are one
-DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
 
 
-class DeclaredPopulation:
-    """Starts of a declared machine against one of its parameters.
+class PageStarts:
+    """What `orbits.population.population.Population` asks of the starts of a machine on a page."""
 
-    Parameters
-    ----------
-    machine : Machine
-    parameter : str
-    parameters : mapping
-        In place of the page's own.
+    across = 60
+    brief = BRIEF
+    longest = EMBEDDED
+    notation: ClassVar = {"phase": STARTS["phase"]}  # states are shown by the names on the page
+    leftward = ""
 
-    Raises
-    ------
-    ValueError
-        If the machine has no such parameter.
-    """
-
-    def __init__(
-        self, machine: Machine, parameter: str, parameters: Mapping[str, float] | None = None
-    ) -> None:
+    def __init__(self, machine: Machine, parameter: str, parameters: Mapping[str, float]) -> None:
         self.machine, self.parameter = machine, parameter
-        self.parameters = {k: float(v) for k, v in dict(parameters or {}).items() if k != parameter}
-        machine.vector({**self.parameters, parameter: machine.parameters.get(parameter, 1.0)})
+        self.parameters = {k: float(v) for k, v in parameters.items()}
+        self.vector(machine.parameters.get(parameter, 1.0))
         self._boxes: dict[float, np.ndarray] = {}
-        self.work = 0.0
-        """Forcing periods simulated so far, those that solve for cycles included; of a self-excited machine its time over 2 pi."""
-
-    @property
-    def about(self) -> dict[str, Any]:
-        """The machine's page and settings."""
-        return self.machine.settings()
-
-    @property
-    def notation(self) -> dict[str, str]:
-        """Labels of axes by name of coordinate; states are shown by the names on the page."""
-        return {"phase": STARTS["phase"]}
-
-    across = 60  # starts each way in a picture of basins where no number is given
-
-    @property
-    def brief(self) -> tuple[int, int]:
-        """Values, and starts at each, of a brief look."""
-        return BRIEF
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Coordinates of a start: the phase of a forced machine, then its states."""
-        return (*(["phase"] if self.machine.forced else []), *self.machine.states)
+        self.names = (*(["phase"] if machine.forced else []), *machine.states)
 
     def vector(self, p: float) -> np.ndarray:
-        """All parameters at the value `p` of the one that varies, shape (P,)."""
+        """The parameter vector."""
         return self.machine.vector({**self.parameters, self.parameter: float(p)})
 
-    def box(self, p: float) -> np.ndarray:
-        """Smallest and largest coordinate of the starts, shape (n, 2).
+    def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
+        """Plain numbers have none."""
+        return {}
 
-        What the page says (``starts=``), else twice what the motion from rest reaches in sixty periods.
-        """
+    def box(self, p: float) -> np.ndarray:
+        """What the page says, else twice what the motion from rest reaches in sixty periods."""
         if p not in self._boxes:
             given = self.machine.starts
             missing = [name for name in self.machine.states if name not in given]
@@ -127,29 +90,7 @@ class DeclaredPopulation:
         largest = float(reach.max())
         return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
 
-    def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts in the box and outside the walls, shape (count, n).
-
-        Raises
-        ------
-        ValueError
-            If the walls leave nearly none of the box.
-        """
-        box = self.box(p)
-        kept: list[np.ndarray] = []
-        drawn = 0
-        while sum(map(len, kept)) < count:
-            if drawn > DRAWS * max(count, 2):
-                raise ValueError(
-                    f"the walls of {self.machine.name!r} leave nearly none of the box of starts at {self.parameter} = {p:g}; "
-                    "say in the page where starts are drawn: Machine(..., starts={'x': (low, high)})"
-                )
-            points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn) * (box[:, 1] - box[:, 0])
-            drawn += len(points)
-            kept.append(points[self._free(points, self.vector(p))])
-        return np.concatenate(kept)[:count]
-
-    def _free(self, points: np.ndarray, params: np.ndarray) -> np.ndarray:
+    def free(self, points: np.ndarray, params: np.ndarray) -> np.ndarray:
         """Which starts have all gaps open, bool array (m,)."""
         machine = self.machine
         walls = [j for j, contact in enumerate(machine.contacts) if isinstance(contact, Wall)]
@@ -162,63 +103,37 @@ class DeclaredPopulation:
         values = machine.compiled.contact_values()(states, np.ascontiguousarray(clocks), rows)
         return np.all(values[:, walls] >= 0.0, axis=1)
 
-    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion], np.ndarray, np.ndarray]:
-        """Simulate all starts and recognise what they settle on.
+    def simulator(self, params: np.ndarray, state: np.ndarray | None = None) -> PageSimulator:
+        """A simulator, on a motion if a start of it is given."""
+        simulator = PageSimulator(self.machine, params)
+        if state is not None:
+            point, clock = parted(self.machine, state)
+            simulator.start(point, clock / TWO_PI)
+        return simulator
 
-        Parameters
-        ----------
-        starts : float array (m, n)
-        p : float
+    def solver(self, params: np.ndarray, wide: bool = False) -> Callable[[Record, int, int, int], Any]:
+        """What makes a cycle of a piece of a record."""
+        return partial(of_record, far=WIDE if wide else FAR)
 
-        Returns
-        -------
-        motions : list of Motion
-            In the order of their first start. Starts inside a wall are ``impossible``.
-        index : int array (m,)
-        mirrored : bool array (m,)
-        """
-        starts = np.asarray(starts, dtype=float)
-        sorting = _Sorting(self, self.vector(p))
-        free = self._free(starts, sorting.params)
-        found = [
-            sorting.sort(start) if ok else sorting.plain("impossible") for start, ok in zip(starts, free)
-        ]
-        return sorting.motions, np.array([k for k, _ in found]), np.array([side for _, side in found])
+    def closed(self, params: np.ndarray) -> Iterable[Any]:
+        """Nothing is known in closed form of equations of one's own."""
+        return ()
 
-    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
-        """Unstable cycles that the chaotic motion through a start passes near, each once, as problems with their unknowns."""
-        simulator = PageSimulator(self.machine, self.vector(p))
-        point, clock = self._parted(state)
-        simulator.start(point, clock / TWO_PI)
-        cycles = list(embedded_cycles(simulator, EMBEDDED, partial(of_record, far=WIDE)))
-        self.work += simulator.time + SOLVED * len(cycles)
-        return distinct(cycles, self.parameter, p)
-
-    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
-        """Cycles, stable or not, to which Newton's method leads from starts, each once; of a self-excited machine none."""
-        if not self.machine.forced:
-            return []
-        simulator, starts = PageSimulator(self.machine, self.vector(p)), np.asarray(starts, dtype=float)
-        cycles = list(returning_cycles(simulator, starts, self.box(p), EMBEDDED, partial(of_record, far=FAR)))
-        self.work += SOLVED * (len(starts) + len(cycles))
-        return distinct(cycles, self.parameter, p)
-
-    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
-        """Motions known in closed form: none of a machine with equations of its own."""
-        return []
-
-    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
-        """Measures of the motion through a start; see `orbits.declared.sweep.measure_names`."""
-        if state is None:
-            return {}
+    def observed(self, state: np.ndarray, p: float) -> dict[str, float]:
+        """Measures of the motion through a start."""
         start = state if self.machine.forced else np.append(0.0, state)
         fixed: dict[str, Any] = dict(self.parameters)
         (row,) = sweep(self.machine, self.parameter, [p], start=start, **fixed)
         return dict(row.measures)
 
-    def _parted(self, start: np.ndarray) -> tuple[np.ndarray, float]:
-        """States and phase of a start."""
-        return (start[1:], float(start[0])) if self.machine.forced else (start, 0.0)
+    def fleet(self, points: np.ndarray, params: np.ndarray, workers: int | None) -> PageFleet:
+        """Starts under way."""
+        return PageFleet(self.machine, params, points, self.free(points, params))
+
+
+def parted(machine: Machine, start: np.ndarray) -> tuple[np.ndarray, float]:
+    """States and phase of a start."""
+    return (start[1:], float(start[0])) if machine.forced else (start, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,68 +146,62 @@ class _Marks:
     known: np.ndarray  # which columns count
 
 
-class _Sorting:
-    """The starts of one census, sorted by the motions they reach."""
+class PageFleet:
+    """Starts of a machine on a page, one after the other; one that falls onto a known motion is followed no further."""
 
-    def __init__(self, population: DeclaredPopulation, params: np.ndarray) -> None:
-        self.population, self.machine, self.params = population, population.machine, params
-        self.motions: list[Motion] = []
-        self.forms: list[tuple[Any, np.ndarray] | None] = []
+    def __init__(self, machine: Machine, params: np.ndarray, points: np.ndarray, free: np.ndarray) -> None:
+        self.machine, self.points, self.free = machine, points, free
+        self.stepper = Stepper(machine, params)
         self.marks: list[_Marks] = []
+        self.work = 0.0
 
-    def plain(self, kind: str, **facts: Any) -> tuple[int, bool]:
-        """The motion of a kind that is not told apart any further."""
-        for k, motion in enumerate(self.motions):
-            if motion.kind == kind and self.forms[k] is None:
-                return k, False
-        self.motions.append(Motion(kind, **facts))
-        self.forms.append(None)
-        return len(self.motions) - 1, False
-
-    def sort(self, start: np.ndarray) -> tuple[int, bool]:
-        """Which motion a start reaches, and whether its mirror image."""
-        stepper = Stepper(self.machine, self.params)
+    def sort(self, i: int, sorting: Sorting) -> None:
+        """Which motion start number i reaches, and whether its mirror image."""
+        if not self.free[i]:
+            return sorting.plain(i, "impossible")
+        stepper = self.stepper
         begin = 0.0
         try:
-            stepper.start(*self.population._parted(start))
+            stepper.start(*parted(self.machine, self.points[i]))
             begin = stepper.base + stepper.clock
-            return self._followed(stepper)
+            self._followed(i, stepper, sorting)
         except SimulationError:
-            return self.plain("escaped")
+            sorting.plain(i, "escaped")
         finally:
-            self.population.work += (stepper.base + stepper.clock - begin) / TWO_PI
+            self.work += (stepper.base + stepper.clock - begin) / TWO_PI
+        return None
 
-    def _followed(self, stepper: Stepper) -> tuple[int, bool]:
+    def _followed(self, i: int, stepper: Stepper, sorting: Sorting) -> None:
         before: tuple[_Marks | None, float] = (None, np.inf)
         for looks, block in enumerate(BLOCKS):
             skip(stepper, block)
             marks, gap = self._nearest(stepper)
             if marks is not None and (gap < SURE or (marks is before[0] and gap < 0.5 * before[1])):
-                return marks.place, marks.mirrored
+                return sorting.assign(i, marks.place, marks.mirrored)
             before = marks, gap
             if looks < 1 or (marks is not None and looks < 4):
                 continue
             run = look(stepper, LONGEST)
             orbit = returning(run, LONGEST, RETURNED)
             if orbit is not None:
-                return self._add(orbit, stepper)
+                return self._add(orbit, i, stepper, sorting)
             if run.held or not (run.events or self.machine.forced):
-                return self.plain("stuck", state=_start(stepper))
+                return sorting.plain(i, "stuck", state=_start(stepper))
             if _chatters(run):
-                return self.plain("chatter", periods=0, state=_start(stepper))
-            if looks >= TOLD and any(m.kind in WANDERING for m in self.motions):
+                return sorting.plain(i, "chatter", periods=0, state=_start(stepper))
+            if looks >= TOLD and any(m.kind in WANDERING for m in sorting.motions):
                 break
-        known = next((k for k, m in enumerate(self.motions) if m.kind in WANDERING), None)
+        known = next((k for k, m in enumerate(sorting.motions) if m.kind in WANDERING), None)
         if known is not None:
-            return known, False
+            return sorting.assign(i, known)
         exponent, error = growth(stepper)
         state = _start(stepper)
         kind = wandering(exponent, error, self.machine.size > 2)
         if kind == "slow":  # neighbours come together: it may recur, but late
             orbit = returning(look(stepper, RARE), RARE, RETURNED)
             if orbit is not None:
-                return self._add(orbit, stepper)
-        return self.plain(kind, exponent=exponent, error=error, state=state)
+                return self._add(orbit, i, stepper, sorting)
+        return sorting.plain(i, kind, exponent=exponent, error=error, state=state)
 
     def _row(self, stepper: Stepper) -> np.ndarray:
         if not self.machine.forced:
@@ -321,22 +230,18 @@ class _Sorting:
                 best = marks, gap
         return best
 
-    def _add(self, orbit: DeclaredOrbit, stepper: Stepper) -> tuple[int, bool]:
+    def _add(self, orbit: DeclaredOrbit, i: int, stepper: Stepper, sorting: Sorting) -> None:
         root = orbit.root()
-        problem = root.problem(self.population.parameter)
-        u, p = root.seed(problem)
-        form = problem.canonical(u, p)
-        for k, known in enumerate(self.forms):
-            if known is not None and alike(form, known):
-                return k, self._side(k, stepper)
-        place = len(self.motions)
         kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
-        self.motions.append(Motion(kind, root.word.text, root.periods, problem, u, state=_start(stepper)))
-        self.forms.append(form)
+        place, problem, u = sorting.known(root, kind, root.periods)
+        if place >= 0:
+            return sorting.assign(i, place, self._side(place, stepper))
+        motion = Motion(kind, root.word.text, root.periods, problem, u, state=_start(stepper))
+        place = sorting.add(root, motion)
         self.marks.append(self._marks(place, root, False))
         if self.machine.has_mirror(root.params) and not root.symmetric:
             self.marks.append(self._marks(place, root.mirror(), True))
-        return place, False
+        return sorting.assign(i, place)
 
     def _side(self, place: int, stepper: Stepper) -> bool:
         marks, _ = self._nearest(stepper)

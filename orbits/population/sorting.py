@@ -1,0 +1,85 @@
+"""The starts of one census, sorted by the motions they reach."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from orbits.attractors.distinct import alike
+from orbits.attractors.motion import Motion
+
+
+class Fleet(Protocol):
+    """Many starts under way; what it finds of them it tells to a `Sorting`."""
+
+    def sort(self, i: int, sorting: Sorting) -> None:
+        """Say which motion start number i reaches; others may be said with it."""
+        ...
+
+
+class Sorting:
+    """Motions, each once, and which start reaches which.
+
+    Attributes
+    ----------
+    motions : list of Motion
+    index : int array (n,)
+        Which of them each start reaches; -1 while that is not known.
+    mirrored : bool array (n,)
+        Whether it reaches the mirror image of that motion.
+    """
+
+    def __init__(self, count: int, parameter: str, p: float) -> None:
+        self.parameter, self.p = parameter, p
+        self.motions: list[Motion] = []
+        self.index = np.full(count, -1)
+        self.mirrored = np.zeros(count, dtype=bool)
+        self._forms: list[Any] = []
+
+    def sort(self, fleet: Fleet) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+        """Motions in the order of their first start, then `index` and `mirrored`."""
+        for i in range(len(self.index)):
+            if self.index[i] < 0:
+                fleet.sort(i, self)
+        first = [int(np.flatnonzero(self.index == k)[0]) for k in range(len(self.motions))]
+        order = sorted(range(len(first)), key=first.__getitem__)
+        place = np.argsort(order)
+        return [self.motions[k] for k in order], place[self.index], self.mirrored
+
+    def plain(self, members: Any, kind: str, **facts: Any) -> None:
+        """These starts reach the motion of a kind that is not told apart any further."""
+        for k, motion in enumerate(self.motions):
+            if motion.kind == kind and self._forms[k] is None and not motion.word:
+                return self.assign(members, k)
+        self.motions.append(Motion(kind, **facts))
+        self._forms.append(None)
+        self.assign(members, len(self.motions) - 1)
+
+    def known(self, orbit: Any, kind: str, periods: int) -> tuple[int, Any, Any]:
+        """Which motion an orbit (None: one without a word) is, -1 if it is new; its problem and unknowns."""
+        problem = u = form = None
+        if orbit is not None:
+            problem = orbit.problem(self.parameter)
+            u = orbit.seed(problem)[0]
+            form = problem.canonical(u, self.p)
+        for k, motion in enumerate(self.motions):
+            other = self._forms[k]
+            one = alike(form, other) if form is not None and other is not None else form is other
+            if one and motion.kind == kind and motion.periods == periods:
+                return k, problem, u
+        return -1, problem, u
+
+    def add(self, orbit: Any, motion: Motion) -> int:
+        """A new motion; its number."""
+        self.motions.append(motion)
+        self._forms.append(None if orbit is None else motion.problem.canonical(motion.u, self.p))
+        return len(self.motions) - 1
+
+    def assign(self, members: Any, k: int, mirrored: Any = False) -> None:
+        """These starts, as far as they are free, reach motion k, or its mirror image."""
+        here = np.zeros(len(self.index), dtype=bool)
+        here[members] = True
+        here &= self.index < 0
+        self.mirrored[here] = np.broadcast_to(mirrored, here.shape)[here]
+        self.index[here] = k
