@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping
+from typing import Any
 
 
 def short_word(word: str, limit: int = 24) -> str:
@@ -25,6 +27,11 @@ def short_word(word: str, limit: int = 24) -> str:
 def short_text(text: str, limit: int = 100) -> str:
     """A text on one line of at most `limit` characters, cut between words."""
     return textwrap.shorten(text, limit, placeholder=" ...", break_on_hyphens=False)
+
+
+def motion_name(description: Mapping[str, Any], limit: int = 24) -> str:
+    """How tables and pictures call a motion: its word, or, where nothing happens on it, what its problem calls that ("stuck", "no events")."""
+    return short_word(str(description.get("word") or description.get("name", "")), limit)
 
 
 def short_words(text: str, limit: int = 24) -> str:

@@ -6,7 +6,7 @@ import html
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from ..graph.shortening import short_word
+from ..graph.shortening import motion_name, short_word
 from ..graph.table import size_of, with_unit
 from ..number_text import number_text
 from ..text_table import Table, fitted, terminal_width
@@ -119,9 +119,9 @@ def _stable(region: Region, at: Callable[..., str]) -> str:
 
 
 def _word(locus: Locus) -> str:
-    """Of the motion; "stuck" for one without events, nothing where solutions have no words."""
-    word = locus.branch.description.get("word")
-    return "" if word is None else short_word(str(word)) or "stuck"
+    """Of the motion; nothing where solutions have no words."""
+    about = locus.branch.description
+    return "" if about.get("word") is None else motion_name(about)
 
 
 def _realness(locus: Locus) -> str:

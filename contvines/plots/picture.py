@@ -11,7 +11,7 @@ from ..events.kinds import KINDS
 from ..graph.measures import measure_at, measured, undrawn
 from ..graph.proving import mark as proof_of
 from ..graph.proving import stretches
-from ..graph.shortening import short_word
+from ..graph.shortening import motion_name, short_word
 from .curves import Curve
 from .figures import scale
 from .insets import Region, add_inset, crowded_region, find_room, outlines
@@ -297,7 +297,7 @@ class Picture:
             i = int(np.searchsorted(total, 0.5 * total[-1]))  # never at a gap: nothing is added there
             text = self._named(label)
             if words:
-                text = short_word(str(curve.branch.description.get("word") or "stuck"), 24)
+                text = motion_name(curve.branch.description)
             tint = "0.25" if self.color == "stability" else self.tint[label]
             found[label] = Label(text, float(xy[i, 0]), float(xy[i, 1]), tint, 0, chosen is not None, True)
         longest = sorted(found, key=lambda label: -lengths[label])

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..graph.measures import default_measure
 from ..graph.proving import mark, told
-from ..graph.shortening import short_word
+from ..graph.shortening import motion_name, short_word
 from ..plots.style import MARKS, PLAIN, axis_label
 from ..problems.abilities import Animated
 from .numbers import plain_label, rounded, shortened, told_of
@@ -84,7 +84,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
     word = about["word"]
     return about | {
         "word": None if word is None else str(word),
-        "what": "" if word is None else short_word(str(word)) or "stuck",
+        "what": "" if word is None else motion_name(branch.description),
         "stable_points": None if branch.stable is None else branch.stable.astype(int).tolist(),
         "measures": measures,
         "marks": [[int(i), label] for i, label in branch.marks],
