@@ -18,6 +18,7 @@ from .field import Field
 from .forms import LARGEST, neimark_sacker, period_doubling
 from .kernels import KERNELS, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
+from .returns import ReturnMap
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
@@ -106,6 +107,11 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
     def data(self) -> CycleProblem:
         """The problem itself."""
         return self
+
+    @property
+    def period_place(self) -> int:
+        """Which of the unknowns is the period."""
+        return self.states
 
     def workspace(self) -> CycleWork:
         """Arrays for the kernels."""
@@ -459,6 +465,10 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         """Starts round this cycle, and what they settle on."""
         states = self.u0[: self.states].reshape(-1, self.node)
         return self.flow.population(over or self.parameter, around=states, **{**self.parameters, **options})
+
+    def return_map(self, u: np.ndarray, p: float) -> ReturnMap:
+        """The map of which a cycle is a fixed point."""
+        return ReturnMap(self, u, p)
 
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:

@@ -30,7 +30,9 @@ class CycleWork:
         self.closeness = np.inf
         self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
         self.kept: Any = None  # by_period and phase, while the closure is turned round
-        self.full: np.ndarray | None = None  # F_u written out, where it has been changed (loci)
+        self.full: Any = (
+            None  # F_u as a sparse matrix in the place of its blocks, where it has been transposed (loci)
+        )
         self.closure, self.corner = 1.0, 0.0
 
     def __getitem__(self, i: int) -> np.ndarray:
@@ -125,15 +127,14 @@ def _solve(
 def _solve_full(
     data: Any, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    assert work.full is not None
-    whole = np.block([[work.full, column[:, None]], [border[None, :]]])
-    rows = np.abs(whole).max(axis=1)
-    rows[rows == 0.0] = 1.0
-    whole, sides = whole / rows[:, None], sides / rows[:, None]
-    sign = float(np.linalg.slogdet(whole)[0])
-    if sign != 0.0:
-        return np.linalg.solve(whole, sides), sign
-    return np.linalg.lstsq(whole, sides, rcond=1e-18)[0], 0.0
+    from scipy.sparse import bmat
+    from scipy.sparse.linalg import splu
+
+    whole = bmat([[work.full, column[:, None]], [border[None, :-1], border[None, -1:]]], format="csc")
+    try:
+        return splu(whole).solve(sides), 0.0  # nobody asks for the sign
+    except RuntimeError as error:
+        raise np.linalg.LinAlgError(str(error)) from error
 
 
 def condensed(data: Any, work: CycleWork) -> tuple[np.ndarray, np.ndarray]:
@@ -187,24 +188,30 @@ def matrix(data: Any, work: CycleWork) -> np.ndarray:
 
 def full_matrix(data: Any, work: CycleWork) -> np.ndarray:
     """F_u written out, in units of the scales."""
+    return _sparse(data, work).toarray()
+
+
+def _sparse(data: Any, work: CycleWork) -> Any:
+    """F_u as a sparse matrix, in units of the scales."""
+    from scipy.sparse import coo_array
+
     if work.full is not None:
-        return work.full.copy()
+        return work.full
     count, m, d, free = data.intervals, data.rule.degree, data.node, data.free_period
     states, size = count * m * d, data.dimension
-    whole = np.zeros((size, size))
-    for i in range(count):
-        rows = slice(i * m * d, (i + 1) * m * d)
-        whole[rows, rows] = work.blocks[i][:, : m * d]
-        first = (i + 1) * m * d % states
-        sign = work.closure if i == count - 1 else 1.0
-        whole[rows, first : first + d] += sign * work.blocks[i][:, m * d :]
-        if free:
-            whole[rows, states] = work.by_period[i]
-            whole[states, rows] = work.phase[i]
-            whole[states, states] = work.corner
+    own, wide = m * d, (m + 1) * d
+    blocks = work.blocks.copy()
+    blocks[-1, :, own:] *= work.closure
+    first = own * np.arange(count)[:, None, None]
+    rows, columns = np.broadcast_arrays(first + np.arange(own)[:, None], (first + np.arange(wide)) % states)
     tail = np.arange(states + free, size)
-    whole[tail, tail] = 1.0
-    return whole
+    entries = [(blocks, rows, columns), (np.ones(count), tail, tail)]
+    if free:
+        there, last = np.arange(states), np.full(states, states)
+        entries += [(work.by_period, there, last), (work.phase, last, there)]
+        entries += [(np.array([work.corner]), last[:1], last[:1])]
+    parts = [np.concatenate([np.reshape(entry[k], -1) for entry in entries]) for k in range(3)]
+    return coo_array((parts[0], (parts[1], parts[2])), shape=(size, size)).tocsc()
 
 
 def flip(data: Any, work: CycleWork, sign: float) -> None:
@@ -222,8 +229,11 @@ def flip(data: Any, work: CycleWork, sign: float) -> None:
 
 def transpose(data: Any, work: CycleWork, column: np.ndarray, other: CycleWork) -> None:
     """The transposed F_u, with another last column, into another workspace."""
-    turned = matrix(data, work).T
-    other.full = turned / data.row_scale[:, None] * data.column_scale
+    from scipy.sparse import diags_array
+
+    # F_u in the user's units, transposed, in units of the scales once more
+    sizes = data.row_scale * data.column_scale
+    other.full = diags_array(1.0 / sizes) @ _sparse(data, work).T @ diags_array(sizes)
     other.derivative[:] = column
 
 

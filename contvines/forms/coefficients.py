@@ -169,9 +169,14 @@ class Forms:
         key = direction.tobytes()
         if key not in self.lines:
 
-            def rows(u: np.ndarray) -> np.ndarray | None:
-                found = self._jacobian(self.open_calls, u)
-                return None if found is None else found[: self.n]
+            def rows(points: np.ndarray) -> np.ndarray | None:
+                found = []
+                for u in points:
+                    here = self._jacobian(self.open_calls, u)
+                    if here is None:
+                        return None
+                    found.append(here[: self.n])
+                return np.array(found)
 
             found = along_line(rows, self.whole, direction, self.reach, self.rough)
             if found is None:
@@ -198,6 +203,11 @@ class Forms:
             first = -first
         second = self._solve(self.closed_by(factor), -(self.K @ first))
         return np.column_stack([first, second - (first @ second) / (first @ first) * first])
+
+    def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+        """``rest`` at many displacements, shape (k, N)."""
+        after = [None] * len(here) if following is None else following
+        return np.array([self.rest(x, y) for x, y in zip(here, after, strict=True)])
 
     def rest(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
         """The equations of one period at a displacement whose next period begins with another one; F for a flow.

@@ -79,7 +79,7 @@ class Reduction:
     Parameters
     ----------
     forms : Forms
-        The point, with J, K and ``rest``.
+        The point, with J, K and ``rests``.
     vectors : ndarray of complex, shape (N, m)
         Critical directions; those of complex coordinates in conjugate pairs.
     linear : ndarray of complex, shape (m, m)
@@ -120,14 +120,13 @@ class Reduction:
     def _rest(self, w: np.ndarray) -> np.ndarray:
         """What H and N, as far as they are known, leave over in the equations at points w, shape (n, N)."""
         here, drift = np.real(values_of(self.H, w)), values_of(self.N, w)
-        rest = self.forms.rest
         if not self.forms.flow:
-            return np.array([rest(x, y) for x, y in zip(here, np.real(values_of(self.H, drift)))])
+            return self.forms.rests(here, np.real(values_of(self.H, drift)))
         rate = np.zeros(here.shape, dtype=complex)
         for j in range(self.m):
             slopes = {_less(a, j): a[j] * c for a, c in self.H.items() if a[j]}
             rate += drift[:, j, None] * values_of(slopes, w)
-        return np.array([rest(x, None) for x in here]) - np.real(rate)
+        return self.forms.rests(here, None) - np.real(rate)
 
     def _left_over(self, degree: int) -> np.ndarray:
         """Taylor coefficients of this degree of what is left over, shape (number of monomials, N)."""

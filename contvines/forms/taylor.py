@@ -31,7 +31,7 @@ class Line(NamedTuple):
 
 
 def along_line(
-    jacobian: Callable[[np.ndarray], np.ndarray | None],
+    jacobians: Callable[[np.ndarray], np.ndarray | None],
     u: np.ndarray,
     x: np.ndarray,
     scale: float = 1.0,
@@ -41,8 +41,8 @@ def along_line(
 
     Parameters
     ----------
-    jacobian : callable
-        u -> F_u(u), of any shape (m, N); None: not evaluable.
+    jacobians : callable
+        points (k, N) -> F_u there, of any shape (k, m, N); None: not evaluable.
     u : ndarray, shape (N,)
     x : ndarray, shape (N,)
     scale : float
@@ -53,11 +53,11 @@ def along_line(
     """
     size = float(np.abs(x).max())
     if size == 0.0:
-        here = jacobian(u)
-        return None if here is None else Line(np.zeros_like(here), np.zeros_like(here), 0.0, 0.0)
+        here = jacobians(u[None, :])
+        return None if here is None else Line(np.zeros_like(here[0]), np.zeros_like(here[0]), 0.0, 0.0)
     radius = RADIUS * scale / size
     if rough:
-        samples = _sampled(jacobian, u, x, ROUGH * radius, FEW)
+        samples = jacobians(_places(u, x, ROUGH * radius, FEW))
         if samples is None:
             return None
         inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * nodes(FEW)[i]) for i in (1, 0))
@@ -65,9 +65,9 @@ def along_line(
             *_fitted(samples, ROUGH * radius), float(np.abs(inner - outer).max()) / (ROUGH * radius), 0.0
         )
     best: Line | None = None
-    narrow = _fit(jacobian, u, x, radius)
+    narrow = _fit(jacobians, u, x, radius)
     for _ in range(14):
-        wide, narrow = narrow, _fit(jacobian, u, x, SMALLER * radius)
+        wide, narrow = narrow, _fit(jacobians, u, x, SMALLER * radius)
         if wide is not None and narrow is not None:
             errors = [float(np.abs(a - b).max()) for a, b in zip(wide, narrow)]
             if best is None or errors[1] < best.third_error:
@@ -81,27 +81,14 @@ def along_line(
 
 
 def _fit(
-    jacobian: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray, x: np.ndarray, radius: float
+    jacobians: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray, x: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    samples = _sampled(jacobian, u, x, radius, NODES)
+    samples = jacobians(_places(u, x, radius, NODES))
     return None if samples is None else _fitted(samples, radius)
 
 
-def _sampled(
-    jacobian: Callable[[np.ndarray], np.ndarray | None],
-    u: np.ndarray,
-    x: np.ndarray,
-    radius: float,
-    count: int,
-) -> np.ndarray | None:
-    """The Jacobians at the nodes; None where one cannot be evaluated."""
-    samples = []
-    for t in nodes(count):
-        found = jacobian(u + radius * t * x)
-        if found is None:
-            return None
-        samples.append(found)
-    return np.array(samples)
+def _places(u: np.ndarray, x: np.ndarray, radius: float, count: int) -> np.ndarray:
+    return u + radius * nodes(count)[:, None] * x
 
 
 def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..forms.coefficients import Forms
 from ..forms.critical import normal_form
+from ..forms.returned import ReturnForms, forms_at
 from .linear import Linearisation
 from .plane_point import PlanePoint
 
@@ -22,7 +23,7 @@ def coefficients(point: PlanePoint) -> dict[str, float]:
     if problem.kernels.matrix is None or point.margins:
         return {}
     try:
-        forms = Forms(problem, point.u, point.value[0])
+        forms = forms_at(problem, point.u, point.value[0])
         pairs = critical_pairs(forms)
         found = normal_form(kind, forms, pairs)
     except (ValueError, np.linalg.LinAlgError, IndexError):
@@ -40,10 +41,14 @@ def critical_pairs(forms: Forms) -> list[complex]:
         upper = spectrum[spectrum.imag > 1e-6 * size]
         distance = np.abs(upper.real) / size
     else:
-        line = Linearisation(forms.problem)
-        line.at(forms.u * forms.units, forms.p)
-        spectrum = line.spectrum()
+        spectrum = forms.spectrum() if isinstance(forms, ReturnForms) else _spectrum(forms)
         upper = spectrum[spectrum.imag > 1e-6]
         distance = np.abs(np.abs(upper) - 1.0)
     order = np.argsort(distance, kind="stable")
     return [complex(upper[i]) for i in order if distance[i] < CRITICAL]
+
+
+def _spectrum(forms: Forms) -> np.ndarray:
+    line = Linearisation(forms.problem)
+    line.at(forms.u * forms.units, forms.p)
+    return line.spectrum()

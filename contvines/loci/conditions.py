@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..forms.coefficients import Coefficient, Forms
+from ..forms.returned import ReturnForms, forms_at
 from .kinds import Look
 from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null
@@ -109,7 +110,8 @@ def coefficient_of(look: Look, at: References, plane: Plane, rough: bool = False
 def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
     """The quadratic coefficient of a fold, along the null vector that goes with the reference."""
     v, _ = plane.first.null(null.column, null.row)
-    found = _forms(plane, rough).quadratic(v)
+    forms = _forms(plane, rough)
+    found = forms.quadratic(forms.along(v) if isinstance(forms, ReturnForms) else v)
     if found.error <= UNSURE * found.size or (rough and found.error < abs(found.value)):
         return found  # of a rough one the sign is enough
     return _bend(plane, null) if rough else UNKNOWN
@@ -117,7 +119,7 @@ def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
 
 def _forms(plane: Plane, rough: bool = False) -> Forms:
     place = plane.place
-    return Forms(plane.locus.at(place.q), place.u, place.p, rough)
+    return forms_at(plane.locus.at(place.q), place.u, place.p, rough)
 
 
 def critical_eigenvalue(forms: Forms) -> complex | None:

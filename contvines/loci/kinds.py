@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ..events.kinds import CODIMENSION_TWO
 from ..problems.protocol import Problem
-from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
+from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR, PERIOD
 
 #: kind of a point of codimension two -> prefix of its label
 PREFIXES = {kind.name: kind.label for kind in CODIMENSION_TWO.values()}
@@ -20,6 +20,7 @@ CONDITIONS = {
     "hopf": PAIR,
     "period-doubling": FLIP,
     "symmetry-breaking": FLIP,
+    "homoclinic": PERIOD,
 }
 
 

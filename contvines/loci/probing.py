@@ -22,6 +22,7 @@ from .layout import (
     LINES,
     MARGIN,
     MULTIPLIERS,
+    PERIOD,
     POINT,
     REFERENCE,
     ROW,
@@ -124,6 +125,8 @@ def tests(data, work, u, p, q, values):
         calls.bordered(first, trial, lines[0], 0.0, lines[1], solutions[TESTED])
         values[0] = solutions[TESTED, n]
         values[1] = lines[1, n]
+    elif kind == PERIOD:
+        values[0] = u[data[WHICH]] / work[REFERENCE][0] - 1.0
     else:
         row = work[ROW]
         calls.inspect(first, u, p, trial, row)

@@ -13,6 +13,7 @@ from ..core.table import TableKernels, native_table
 from ..problems.abilities import notation_of
 from ..problems.kernels import Kernels
 from ..problems.protocol import Problem, ProblemDefaults
+from .borders import fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
 from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
@@ -163,7 +164,7 @@ class LocusProblem(ProblemDefaults):
         self.unit = float(unit)
         # typical sizes of unknowns, both parameters, and equations; workspaces look at these arrays
         self.sizes, self.rows = np.ones(self.size + 3), np.ones(self.size)
-        self.borders = self._fresh_borders() if borders is None else np.array(borders, dtype=float)
+        self.borders = fresh_borders(self.size) if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
         self.compiled = bool(kernels.compiled)
@@ -177,10 +178,6 @@ class LocusProblem(ProblemDefaults):
         shift = problem.period_shift
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
-
-    def _fresh_borders(self) -> np.ndarray:
-        borders = np.random.default_rng(5).standard_normal((4, self.size + 1))
-        return borders / np.sqrt(self.size)
 
     def workspace(self) -> Work:
         """Arrays for the kernels; borders and reference are state that a trace renews."""
@@ -349,11 +346,13 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Loc
     from ..problems.registry import rebuild
 
     problem = rebuild(description["problem"], trust)
-    if problem is None:
-        return None
+    return None if problem is None else LocusProblem(problem, *described(description))
+
+
+def described(description: Mapping[str, Any]) -> tuple[Any, ...]:
+    """The arguments of a LocusProblem, without the problem, from its description."""
     low, high = description["bounds"]
-    return LocusProblem(
-        problem,
+    return (
         description["kind"],
         description["parameter"],
         description["index"],

@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
+from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
+from .adaptive import AdaptiveLocus
+from .borders import borders_at
 from .kinds import condition
-from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR
+from .layout import MARGIN, PAIR, PERIOD
 from .linear import Linearisation
 from .probing import pair_of
 from .problem import LocusProblem, has_natural_units
@@ -51,20 +54,18 @@ def begin(
     wanted = condition(problem, kind)
     if wanted == MARGIN:
         index = problem.smooth_margin(index)
-    locus = LocusProblem(problem, kind, over, index, bounds, unit=unit_of(problem, bounds, p))
+    reference = 0.0
+    if wanted == PERIOD:
+        index = problem.period_place
+        reference = float(u[index])
+    make = AdaptiveLocus if isinstance(problem, Adaptive) else LocusProblem
+    unit = unit_of(problem, bounds, p)
+    locus = make(problem, kind, over, index, bounds, reference=reference, unit=unit)
+    locus.borders = borders_at(problem, wanted, u, p)
     line = Linearisation(problem)
     line.at(u, p)
-    n = locus.size
-    null = line.null_vectors()
-    if wanted in (FOLD, BRANCH):
-        locus.borders[0, :n], locus.borders[1, :n] = null.column, null.row
-    else:  # a regular matrix: any borders that are not special
-        b = line.rows * (np.random.default_rng(6).standard_normal(n) / np.sqrt(n))
-        v, _ = line.null(b, null.row)
-        locus.borders[0, :n], locus.borders[1, :n] = b, line.border_of(v)
-    if wanted == FLIP:
-        null = line.null_vectors(flipped=True)
-        locus.borders[2, :n], locus.borders[3, :n] = null.column, null.row
+    if wanted == PERIOD:
+        locus.masked = tuple(range(int(problem.n_margins)))  # near to the equilibrium all along
     if wanted == MARGIN:
         margins = line.row()[2 * int(problem.n_multipliers) :]
         locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < ZERO)) or (index,)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -136,7 +137,39 @@ def trace_locus(
     journal: Any = None,
     progress: Callable[[str, int, float], None] | None = None,
 ) -> Locus | None:
-    """The locus through a special point, both ways; None if its equations do not converge there."""
+    """The locus through a special point, both ways; None if its equations do not converge there.
+
+    Where a mesh is too coarse all is done again with twice as many intervals.
+    """
+    for level in count(0):
+        name = f"locus/{label}" if level == 0 else f"locus/{label}/finer {level}"
+        try:
+            return _traced(problem, u, p, q, within, settings, label, seed, virtual, journal, progress, name)
+        except TooCoarse:
+            finer: Any = problem
+            u = finer.base.halved(u)
+            problem = finer.refined()
+    raise AssertionError("meshes are refined a few times at most")
+
+
+class TooCoarse(Exception):
+    """A locus asks for more intervals."""
+
+
+def _traced(
+    problem: LocusProblem,
+    u: np.ndarray,
+    p: float,
+    q: float,
+    within: tuple[float, float],
+    settings: Settings,
+    label: str,
+    seed: str | None,
+    virtual: bool,
+    journal: Any,
+    progress: Callable[[str, int, float], None] | None,
+    name: str,
+) -> Locus | None:
     engine, start = first_point(problem, u, p, q, within, settings)
     if start is None:
         return None
@@ -154,9 +187,9 @@ def trace_locus(
         now, half = real, None
         flags = np.zeros(0, dtype=bool)
         for part in range(20):
-            more = trace_half(
-                engine, first, watch, journal, f"locus/{label}/{side}/{part}", now, None, notice
-            )
+            more = trace_half(engine, first, watch, journal, f"{name}/{side}/{part}", now, None, notice)
+            if more.status == Status.COARSE:
+                raise TooCoarse
             flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))
             half = more if half is None else half.extended(more, skip=1)
             border = _border(more)

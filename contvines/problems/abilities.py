@@ -179,6 +179,13 @@ class Doubling(Protocol):
 
 
 @runtime_checkable
+class Returning(Protocol):
+    """Its solutions are fixed points of return maps, ``return_map(u, p)``; see :mod:`contvines.flows.returns`."""
+
+    def return_map(self, u: np.ndarray, p: float) -> Any: ...
+
+
+@runtime_checkable
 class Adaptive(Protocol):
     """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
 

@@ -1,0 +1,113 @@
+"""AdaptiveLocus: a locus of solutions on a mesh, which is adapted while the locus is followed, as it is along branches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from copy import copy
+from typing import Any
+
+import numpy as np
+
+from ..problems.registry import rebuild
+from .borders import borders_at
+from .layout import KNOWN, PERIOD
+from .problem import LocusProblem, Work, described
+
+
+class AdaptiveLocus(LocusProblem):
+    """Special points of cycles of flows, against a second parameter; see :class:`contvines.problems.abilities.Adaptive`.
+
+    The borders of the bordered systems belong to a mesh, and are found anew on each.
+    """
+
+    base: Any
+    first: Any
+    second: Any
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.works: list[Work] = []
+
+    def workspace(self) -> Work:
+        """Arrays for the kernels, whose borders follow the mesh."""
+        self.works.append(super().workspace())
+        return self.works[-1]
+
+    @property
+    def chunk(self) -> int:
+        """Points after which the mesh is adapted."""
+        return self.base.chunk
+
+    def accuracy(self, u: np.ndarray, p: float) -> float:
+        """Of values on the mesh, relative."""
+        inner, value = self.split(u)
+        return self.at(p).accuracy(inner, float(value))
+
+    def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
+        """Loci end at no infinite period."""
+        return 0.0
+
+    def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> float | None:
+        """Points of codimension two have forms of their own."""
+        return None
+
+    def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
+        """Keep the phase, and take the borders, of a point for those that follow; None: the phase of none."""
+        self.first.anchor(None)
+        self.second.anchor(None)
+        if u is None:
+            return
+        inner, value = self.split(u)
+        self.base.kernels.assign(self.first.data, self.second.data, float(p))
+        self.first.anchor(inner, float(value))
+        self.second.reference = self.first.reference
+        for work in self.works:
+            work.borders[:] = borders_at(self.at(p), self.condition, inner, float(value), work.borders)
+            work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # slopes belong to the borders
+
+    def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
+        """How unknowns, and directions of unknowns, read on a better mesh; None where the mesh is good."""
+        own = self.base.adapted(u[: self.size])
+        if own is None:
+            return None
+
+        def image(v: np.ndarray, direction: bool = False) -> np.ndarray:
+            return np.concatenate([own(v[: self.size], direction), v[self.size :]])
+
+        return image
+
+    def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
+        """Whether more intervals are needed."""
+        return self.base.too_coarse(u[: self.size], stuck)
+
+    def refined(self) -> AdaptiveLocus:
+        """The same locus with twice as many intervals."""
+        finer = self.base.refined()
+        found = copy(self)
+        found.__init__(
+            finer,
+            self.kind,
+            self.over,
+            finer.period_place if self.condition == PERIOD else self.index,
+            self.bounds,
+            None,
+            self.reference,
+            self.masked,
+            self.unit,
+        )
+        return found
+
+    def describe(self) -> dict[str, Any]:
+        """A description from which `from_description` builds the problem again."""
+        about = super().describe()
+        return {**about, "factory": about["factory"] and "contvines.loci.adaptive:from_description"}
+
+    def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
+        """Unknowns, or a direction of unknowns, with every interval halved."""
+        return np.concatenate([self.base.halved(u[: self.size], direction), u[self.size :]])
+
+
+def from_description(description: Mapping[str, Any], trust: bool = False) -> AdaptiveLocus | None:
+    """The AdaptiveLocus that `describe` described; None where functions of the user's own are not at hand."""
+    problem = rebuild(description["problem"], trust)
+    return None if problem is None else AdaptiveLocus(problem, *described(description))
