@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from copy import copy
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ..problems.protocol import Symmetry
 from ..problems.registry import rebuild
 from .borders import borders_at
 from .layout import KNOWN, PERIOD
@@ -27,6 +29,19 @@ class AdaptiveLocus(LocusProblem):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self.works: list[Work] = []
+
+    @property
+    def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
+        """Those in whose fixed spaces other motions lie: equilibria, and cycles of half the period. A locus that comes there has ended."""
+        own = [s for s in self.base.symmetries if s.root is not None]
+        return tuple(Symmetry(s.kind, partial(self._image, s.apply), None, self._kind_at(s)) for s in own)
+
+    def _image(self, apply: Callable[[np.ndarray], np.ndarray], U: np.ndarray) -> np.ndarray:
+        return np.concatenate([apply(U[: self.size]), U[self.size :]])
+
+    def _kind_at(self, symmetry: Symmetry) -> Callable[[np.ndarray], str] | None:
+        kind_at = symmetry.kind_at
+        return None if kind_at is None else lambda U: kind_at(U[: self.size])
 
     def workspace(self) -> Work:
         """Arrays for the kernels, whose borders follow the mesh."""

@@ -251,6 +251,10 @@ def _becoming(problem: LocusProblem, half: HalfBranch) -> str:
 def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
     """Why this side of the locus ends."""
     border = _border(half)
+    if half.events and half.events[-1][1].role is Role.MEETING:
+        met, at = half.events[-1][1], half.events[-1][1].point
+        what = "an equilibrium" if met.kind == "hopf" else "a cycle of half the period"
+        return f"the cycle becomes {what}, at {problem.inner} = {problem.split(at.u)[1]:.10g}, {problem.over} = {at.p:.10g}"
     if border is None:
         return _becoming(problem, half) or half.status.sentence(problem.over, half.end)
     kind, p, q = problem.margin_kind(border.index), problem.split(border.point.u)[1], border.point.p
