@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..problems.abilities import Returning
 from ..problems.protocol import Problem
@@ -48,9 +49,9 @@ class ReturnForms(Forms):
         """A direction of the cycle's unknowns as one of the section."""
         return self.returns.inverse @ direction[: self.returns.node]
 
-    def spectrum(self) -> np.ndarray:
+    def spectrum(self) -> NDArray[np.complex128]:
         """Multipliers."""
-        return np.linalg.eigvals(self.J + np.eye(self.n)).astype(complex)
+        return np.asarray(np.linalg.eigvals(self.J + np.eye(self.n)), dtype=complex)
 
     def extended(self, x: np.ndarray, factor: complex) -> np.ndarray:
         return x

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..forms.coefficients import Forms
 from ..forms.critical import normal_form
@@ -48,7 +49,7 @@ def critical_pairs(forms: Forms) -> list[complex]:
     return [complex(upper[i]) for i in order if distance[i] < CRITICAL]
 
 
-def _spectrum(forms: Forms) -> np.ndarray:
+def _spectrum(forms: Forms) -> NDArray[np.complex128]:
     line = Linearisation(forms.problem)
     line.at(forms.u * forms.units, forms.p)
     return line.spectrum()

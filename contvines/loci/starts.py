@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +57,8 @@ def begin(
         index = problem.smooth_margin(index)
     reference = 0.0
     if wanted == PERIOD:
-        index = problem.period_place
+        cycles: Any = problem
+        index = cycles.period_place
         reference = float(u[index])
     make = AdaptiveLocus if isinstance(problem, Adaptive) else LocusProblem
     unit = unit_of(problem, bounds, p)
