@@ -22,7 +22,9 @@ _HOME = {
     "Embedding": ".problems.protocol",
     "FlowProblem": ".flows",
     "Graph": ".graph.graph",
+    "KINDS": ".bifurcation.kinds",
     "Kernels": ".problems.kernels",
+    "Kind": ".bifurcation.kind",
     "MapProblem": ".problems.maps",
     "MemoryJournal": ".journal",
     "NullJournal": ".journal",
@@ -91,6 +93,7 @@ lead(
 )
 
 __all__ = [
+    "KINDS",
     "AlgebraicProblem",
     "Branch",
     "Chart",
@@ -98,6 +101,7 @@ __all__ = [
     "FlowProblem",
     "Graph",
     "Kernels",
+    "Kind",
     "Locus",
     "MapProblem",
     "MemoryJournal",
@@ -142,6 +146,8 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
+    from .bifurcation.kind import Kind
+    from .bifurcation.kinds import KINDS
     from .branches.branch import Branch
     from .branches.special_point import SpecialPoint
     from .continuation.settings import Settings

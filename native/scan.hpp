@@ -1,5 +1,5 @@
 // In which segments of a branch may there be something to locate? One pass over a chunk of points; the reference with all
-// docstrings is contvines/events/scan.py.
+// docstrings is contvines/bifurcation/scan.py.
 #pragma once
 #include "elimination.hpp"
 #include "march.hpp"

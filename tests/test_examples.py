@@ -10,7 +10,7 @@ import pytest
 from tests.orbits.fuzz.many_digits import exact
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-SCRIPTS = {"pitchfork", "henon", "absorber"}
+SCRIPTS = {"pitchfork", "henon", "absorber", "neutral_saddle"}
 STUDIES = {"friction", "friction_low", "frequency", "bouncing_ball"}
 
 

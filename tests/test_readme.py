@@ -113,10 +113,10 @@ def test_links_lead_somewhere(target):
 
 
 def test_labels_in_the_table_are_the_ones_in_use():
-    from contvines.events.kinds import PREFIXES
+    from contvines.bifurcation.kinds import LABELS
 
     named = set(re.findall(r"`([A-Z]{2})`", README))
-    assert named == set(PREFIXES.values())
+    assert named == set(LABELS.values())
 
 
 def test_commands_named_are_commands():

@@ -6,8 +6,8 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from ..bifurcation.segment import Segment
 from ..continuation.engine import Engine, Solved
-from ..events.segment import Segment
 from .branch import Branch
 from .ending import Ending
 from .half_branch import HalfBranch

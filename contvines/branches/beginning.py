@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from ..bifurcation.detect import AT_BORDER
+from ..bifurcation.locate import Root
+from ..bifurcation.one_sided_limits import one_sided
+from ..bifurcation.segment import Segment
 from ..continuation.engine import Engine, Solved
-from ..events.limits import one_sided
-from ..events.locate import Root
-from ..events.segment import Segment
-from ..events.watch import AT_BORDER
 from .half_branch import HalfBranch, piece_of
 
 

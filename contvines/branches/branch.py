@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.kinds import BORDERS
 from ..doors import above
-from ..events.kinds import BORDERS
 from ..hints import hinted
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem

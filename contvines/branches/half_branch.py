@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..bifurcation.located import Located
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
-from ..events.located import Located
 
 
 class Piece(NamedTuple):

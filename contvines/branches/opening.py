@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..bifurcation.detect import Detector
+from ..bifurcation.located import Located, Role
 from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from ..continuation.status import Status
-from ..events.leaps import SHORTEST
-from ..events.located import Located, Role
-from ..events.watch import Watch
 from ..journal import NullJournal
 from .half_branch import HalfBranch, piece_of, single
 from .records import pack, unpack
@@ -32,12 +31,12 @@ TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly
 
 
 def opening(
-    engine: Engine, origin: Solved, start: Solved, watch: Watch, journal: Any, key: str, real: bool
+    engine: Engine, origin: Solved, start: Solved, detector: Detector, journal: Any, key: str, real: bool
 ) -> tuple[HalfBranch, Solved]:
     """From a special point to the first point of a branch that leaves it, and that point: a nearer one than `start` where that one leapt."""
     known = journal.recall(key)
     if known is None:
-        events, times = _looked_at(engine, origin, start, watch, real)
+        events, times = _looked_at(engine, origin, start, detector, real)
         if not isinstance(journal, NullJournal):
             journal.record(key, {**pack(events, engine), "nearer": times})
     else:
@@ -55,17 +54,17 @@ def opening(
 
 
 def _looked_at(
-    engine: Engine, origin: Solved, start: Solved, watch: Watch, real: bool
+    engine: Engine, origin: Solved, start: Solved, detector: Detector, real: bool
 ) -> tuple[list[Located], int]:
     """The special points of the opening, and how many times its end was brought nearer; not at all where that does not help."""
-    whole = watch.beside(origin, start, real)
+    whole = detector.beside(origin, start, real)
     events, times, point = whole, 0, start
     while events and events[-1].role is Role.LEAP:
         closer = nearer(engine, origin, point)
-        if closer is None or engine.distance(origin, closer) <= SHORTEST:
+        if closer is None or engine.distance(origin, closer) <= engine.settings.resolution:
             return whole[:-1], 0
         times, point = times + 1, closer
-        events = watch.beside(origin, point, real)
+        events = detector.beside(origin, point, real)
     return events, times
 
 
@@ -148,7 +147,7 @@ def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved
     if point is None or float(engine.smallest_margin(origin.row)) < SHOWN:
         return point
     closer: Solved | None = point
-    while closer is not None and engine.distance(origin, closer) > SHORTEST:
+    while closer is not None and engine.distance(origin, closer) > engine.settings.resolution:
         if float(engine.smallest_margin(closer.row)) >= MARGIN:
             return closer
         closer = nearer(engine, origin, closer)

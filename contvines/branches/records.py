@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.kinds import RENAMED
+from ..bifurcation.located import Located, Role
 from ..continuation.engine import Engine, Solved
-from ..events.located import Located, Role
 
 
 def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
@@ -42,7 +43,8 @@ def pack(events: list[Located], engine: Engine) -> dict[str, Any]:
 def unpack(record: dict[str, Any]) -> list[Located]:
     """Located events from a journal."""
     events = []
-    for i, kind in enumerate(record["kind"]):
+    for i, name in enumerate(record["kind"]):
+        kind = RENAMED.get(name, name)
         position, error, low, high, p, sign, residual, correction = (float(x) for x in record["numbers"][i])
         point = Solved(
             np.array(record["u"][i]),

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.kinds import BORDERS
 from ..doors import above
-from ..events.kinds import BORDERS
 from ..hints import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
-from .later import Later
+from .lazy_field import Later
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 
@@ -27,7 +27,7 @@ class SpecialPoint:
     label : str
         Short and stable: LP1, SB1, PD1 ...
     kind : str
-        See :mod:`contvines.events.kinds`.
+        See :mod:`contvines.bifurcation.kinds`.
     branch : str
         Label of the branch on which it was located.
     value : float
@@ -52,7 +52,7 @@ class SpecialPoint:
         No margin is negative: a border point itself is real, whichever side it is seen from.
     criticality : {"supercritical", "subcritical"} or None
     coefficient : float or None
-        Normal-form coefficient (see :mod:`contvines.switching.normal_forms`); worked out when it is first asked for.
+        Normal-form coefficient (see :mod:`contvines.bifurcation.normal_forms.along_branch`); worked out when it is first asked for.
     replay : float or None
         Replay error by simulation; simulated when it is first asked for.
     multipliers_beyond : ndarray of complex or None

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from itertools import count as count_from
 from typing import Any
 
+from ..bifurcation.detect import Detector
+from ..bifurcation.located import Role
+from ..bifurcation.near_symmetric_step import OTHER
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
-from ..events.landing import OTHER
-from ..events.located import Role
-from ..events.watch import Watch
 from ..journal import NullJournal
 from ..problems.abilities import Adaptive
 from .half_branch import HalfBranch, Piece, piece_of, single
@@ -26,7 +26,7 @@ AGAIN = {Role.LEAP: SHORTER, Role.LANDING: OTHER}  # parts of the steps that are
 def trace_half(
     engine: Engine,
     start: Solved,
-    watch: Watch,
+    detector: Detector,
     journal: Any,
     key: str,
     real: bool = True,
@@ -44,7 +44,7 @@ def trace_half(
     ----------
     engine : Engine
     start : Solved
-    watch : Watch
+    detector : Detector
     journal, key
         Chunks and their events are asked for, and recorded, under ``key/number`` and ``key/number/events``.
     real : bool
@@ -56,7 +56,7 @@ def trace_half(
     """
     half = single(engine, start)
     if origin is not None:
-        half, closer = opening(engine, origin, start, watch, journal, f"{key}/opening", real)
+        half, closer = opening(engine, origin, start, detector, journal, f"{key}/opening", real)
         if half.status != Status.RUNNING:
             return half
         if closer is not start:
@@ -80,9 +80,9 @@ def trace_half(
             half.status = Status.COARSE
             return half
         known = journal.recall(name)
-        scan = watch.scan(chunk, real)
+        scan = detector.scan(chunk, real)
         if known is None:
-            events = watch.look(chunk, scan, real)
+            events = detector.look(chunk, scan, real)
             if len(chunk) > 1 and not isinstance(journal, NullJournal):
                 journal.record(name, pack(events, engine))
         else:

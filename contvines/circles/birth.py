@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..bifurcation.normal_forms.coefficients import Forms
+from ..bifurcation.normal_forms.criticality import strong_resonance
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..forms.coefficients import Forms
-from ..forms.criticality import strong_resonance
 from .invariance import Curve, Frame
 from .section import section_of, slopes
 

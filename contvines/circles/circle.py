@@ -88,7 +88,7 @@ class Circles:
     rotation : float
         Rotation number there.
     coefficient : float
-        First Lyapunov coefficient (:mod:`contvines.forms.coefficients`).
+        First Lyapunov coefficient (:mod:`contvines.bifurcation.normal_forms.coefficients`).
     growth : float
         d(log abs(multiplier))/dp there; the normal form has radius^2 proportional to -growth (p - value)/coefficient.
     names : tuple of str

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..continuation.settings import Settings
 from ..graph.automatic import new_run
 from ..graph.builder import finish
@@ -46,6 +47,7 @@ def atlas(
     journal: Any = None,
     progress: Callable[[Progress], None] | None = None,
     settings: Settings | Mapping[str, Any] | None = None,
+    kinds: Sequence[Kind] | None = None,
 ) -> Graph:
     """One graph with every attractor that many simulated starts find, and all that hangs together with them.
 
@@ -82,7 +84,7 @@ def atlas(
     budget : int, optional
         Work that the atlas may take, by default 500000: so many points of branches, or a hundred times as many simulated periods (steps of a map). It does not
         depend on the machine's speed or load; ``settings["work"]`` of the graph says how much of it was used.
-    depth, virtual, user_functions, journal, progress, settings
+    depth, virtual, user_functions, journal, progress, settings, kinds
         As for :func:`contvines.diagram`.
 
     Returns
@@ -119,6 +121,7 @@ def atlas(
         journal,
         progress,
         settings,
+        kinds=kinds,
     )
     if scan is None:
         scan = -(-len(where) * starts // FEW)

@@ -25,10 +25,16 @@ def checked_study(path: Path) -> "Study":
     ValueError
         With a sentence that names the file, the field, the value and what would do.
     """
+    from contvines.command.own_kinds import load_kinds
     from contvines.command.study import read_study
     from orbits.words import Word
 
     study = read_study(path)
+    if study.kinds is not None:
+        try:
+            load_kinds(path, study.kinds)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from error
     if study.flow is not None:
         return study
     try:
@@ -155,6 +161,15 @@ def _settled(study: "Study") -> Any:
     return orbit
 
 
+def kinds_of(study: "Study") -> Any:
+    """The kinds of special points that a study looks for; None where it names none of its own."""
+    if study.kinds is None:
+        return None
+    from contvines.command.own_kinds import load_kinds
+
+    return load_kinds(study.path, study.kinds)[0]
+
+
 def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
     """The automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
     import contvines
@@ -164,6 +179,7 @@ def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
         "virtual": study.virtual,
         "settings": study.settings,
         "bounds": study.bounds,
+        "kinds": kinds_of(study),
     }
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
@@ -174,7 +190,12 @@ def run_atlas(study: "Study", model: Any, **options: Any) -> "Graph":
     from contvines.coexistence.population import population_of
 
     fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
-    asked = {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
+    asked = {
+        "depth": study.depth,
+        "virtual": study.virtual,
+        "settings": study.settings,
+        "kinds": kinds_of(study),
+    }
     return contvines.atlas(
         population_of(model, study.parameter, **fixed),
         within=study.within,

@@ -109,6 +109,7 @@ def check(data: dict[str, Any], path: Path, flow: Any) -> dict[str, Any]:
         "sweep": SweepSection(),
         "atlas": AtlasSection(),
         "bounds": {name: (low, high) for name, (low, high) in go.bounds.items()},
+        "kinds": go.kinds,
         "flow": flow,
         "start_state": file.start.state,
     }

@@ -154,6 +154,7 @@ def check(data: dict[str, Any], path: Path) -> dict[str, Any]:
         "chart": file.chart,
         "survey": file.survey,
         "bounds": {name: (low, high) for name, (low, high) in go.bounds.items()},
+        "kinds": go.kinds,
         "machine": machine,
         "loose": {**machine.parameters, **given},
         "state": file.start.state,

@@ -116,7 +116,7 @@ def switch(
     trust: TrustOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
-    from contvines.graph.leaving import why_nothing_leaves
+    from contvines.graph.schedule_branches import why_nothing_leaves
 
     with held(file, quiet):
         graph, new = _switched(file, label, quiet, trust)

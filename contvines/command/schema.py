@@ -89,6 +89,7 @@ class ContinueSection(Section):
     max_points: Annotated[int, Field(ge=1)] | None = None
     max_branches: Annotated[int, Field(ge=1)] | None = None
     bounds: dict[str, Annotated[list[Unbounded], Field(min_length=2, max_length=2)]] = {}
+    kinds: str | None = None
 
 
 class SweepSection(Section):

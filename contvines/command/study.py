@@ -14,6 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from contvines.command.flow_study import check as check_flow
 from contvines.command.flow_study import flow_of
+from contvines.command.own_kinds import load_kinds
 from contvines.command.page_study import check as check_page
 from contvines.command.page_study import is_page
 from contvines.command.physical_study import converted, is_physical
@@ -64,6 +65,7 @@ class Study:
     state : where the simulation starts that looks for a first orbit, if no word is given.
     quantities : of a study in physical units, the machine's settings; its parameters are then counted in their units.
     survey : the many machines of a survey.
+    kinds : file and name of the user's own kinds of special points.
     """
 
     path: Path
@@ -88,6 +90,7 @@ class Study:
     bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
     flow: Any = None
     start_state: list[float] | None = None
+    kinds: str | None = None
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -111,6 +114,7 @@ class Study:
                     if self.bounds
                     else {}
                 ),
+                **({"kinds": [self.kinds, load_kinds(self.path, self.kinds)[1]]} if self.kinds else {}),
             },
         }
 
@@ -321,6 +325,7 @@ def _study(
         quantities=quantities,
         survey=file.survey,
         bounds={name: (low, high) for name, (low, high) in go.bounds.items()},
+        kinds=go.kinds,
     )
 
 

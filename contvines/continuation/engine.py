@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..interrupts import HELD, OPEN
-from ..problems.abilities import Rough
+from ..problems.abilities import Adaptive, Rough
 from ..problems.protocol import Problem
 from . import bracketing, corrector
 from . import loop as source
@@ -67,6 +67,12 @@ class Engine(Rows):
             1.0 if scales is None or self.detection != "flow" else float(scales.rate)
         )  # of one raw eigenvalue
         self.row_sizes = np.ones(n) if scales is None else scales.rows
+        # what the rows of multipliers tell: of problems with many unknowns eigenvalues only where they are asked for
+        self.scaled = scales is not None
+        self.exchanges = self.scaled and self.detection != "none"
+        self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
+        self.signed = bool(getattr(problem, "signed", True))
+        self.adaptive = isinstance(problem, Adaptive)
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.metric = Metric(self.weights, self.scale, 1.0 / n, float(self.weights[n]))
@@ -103,6 +109,14 @@ class Engine(Rows):
     def parameter_unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with."""
         return parameter_unit(self.within, p, float(self.scale[-1]))
+
+    def upright(self, p: float) -> float:
+        """The parameter's part of a unit tangent below which the branch stands upright."""
+        return self.settings.upright * self.parameter_unit(p)
+
+    def settled(self, p: float) -> float:
+        """Changes of the parameter near p that are rounding, or the noise of the equations."""
+        return max(self.settings.rounding, 10.0 * self.noise) * self.parameter_unit(p)
 
     def size(self, u: np.ndarray) -> float:
         """1 + the largest unknown, in units of the scale."""

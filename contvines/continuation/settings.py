@@ -11,6 +11,21 @@ from contvines.shared.near_names import did_you_mean
 from ..hints import hinted
 from .step_rule import BY_ANGLE, StepRule
 
+#: settings that are numbers between 0 and 1, and whole ones of at least 1
+BETWEEN = (
+    "tolerance",
+    "angle",
+    "first_step",
+    "min_step",
+    "max_step",
+    "amplitude",
+    "resolution",
+    "upright",
+    "rounding",
+    "same",
+)
+WHOLE = ("max_iterations", "max_points", "first_chunk", "chunk", "max_branches", "halvings")
+
 
 @hinted
 @dataclass(frozen=True)
@@ -20,26 +35,37 @@ class Settings:
     Attributes
     ----------
     tolerance : float
-        Largest last Newton correction, relative to 1 + abs(unknown). Newton converges quadratically and a point is
+        Steps: largest last Newton correction, relative to 1 + abs(unknown). Newton converges quadratically and a point is
         also asked for a predicted error at roundoff, so points are much more accurate than this.
     angle : float
-        Angle between neighbouring tangents to aim at, in radians; beyond twice of it a step is rejected.
+        Steps: angle between neighbouring tangents to aim at, in radians; beyond twice of it a step is rejected.
     first_step, min_step, max_step : float
-        Step lengths.
+        Steps: lengths.
     max_iterations : int
-        Newton sweeps per point.
+        Steps: Newton sweeps per point.
     max_points : int
-        Points per branch and direction.
+        Ends: points per branch and direction.
     first_chunk, chunk : int
-        Points per call of the compiled loop: the first call, later calls.
+        Steps: points per call of the compiled loop: the first call, later calls.
     amplitude : float
-        Distance from a special point at which the branch that leaves it is first corrected.
+        Switching: distance from a special point at which the branch that leaves it is first corrected.
     escape : float
-        A branch whose unknowns are further than this (rms) from its start has run away.
+        Ends: a branch whose unknowns are further than this (rms) from its start has run away.
     max_branches : int
-        The automatic diagram stops there.
+        Ends: the automatic diagram stops there.
+    resolution : float
+        Special points: length of a segment that is not halved any more. Two branches with a gap narrower than this are not told
+        from a branch point; what the ends of so short a segment say and the points found between do not is *unresolved*.
+    halvings : int
+        Special points: how many times a segment is halved at most whose ends say more than what is found between them.
+    upright : float
+        Special points: the parameter's part of a unit tangent, in its unit, below which the branch stands upright and has no folds.
+    rounding : float
+        Special points: changes of the parameter, in its unit, that are none.
+    same : float
+        Identity: distance of two solutions, relative to 1 + the largest unknown, up to which they are one.
     step_rule : StepRule
-        Whether a step is accepted, and how long the next one is; by default the rule that aims at `angle`.
+        Steps: whether a step is accepted, and how long the next one is; by default the rule that aims at `angle`.
     """
 
     tolerance: float = 1e-8
@@ -54,14 +80,19 @@ class Settings:
     amplitude: float = 2e-3
     escape: float = 50.0
     max_branches: int = 200
+    resolution: float = 3e-7
+    halvings: int = 16
+    upright: float = 1e-9
+    rounding: float = 1e-12
+    same: float = 1e-6
     step_rule: StepRule = BY_ANGLE
 
     def __post_init__(self) -> None:
-        for name in ("tolerance", "angle", "first_step", "min_step", "max_step", "amplitude"):
+        for name in BETWEEN:
             value = getattr(self, name)
             if not (isinstance(value, (int, float)) and 0.0 < value < 1.0):
                 raise ValueError(f"settings: {name} = {value!r} must be a number between 0 and 1")
-        for name in ("max_iterations", "max_points", "first_chunk", "chunk", "max_branches"):
+        for name in WHOLE:
             value = getattr(self, name)
             if not (isinstance(value, int) and value >= 1):
                 raise ValueError(f"settings: {name} = {value!r} must be a whole number of at least 1")

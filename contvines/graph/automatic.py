@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import checked
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
 from ..hints import hinting
@@ -13,9 +15,9 @@ from ..journal import NullJournal
 from ..problems.registry import without_problem
 from .builder import adopt, begin, finish, work
 from .graph import Graph
-from .leaving import leave, why_nothing_leaves
 from .limits import NO_LIMITS, Limits
 from .run import Progress, Run
+from .schedule_branches import leave, why_nothing_leaves
 
 
 @hinting
@@ -31,6 +33,7 @@ def diagram(
     settings: Settings | Mapping[str, Any] | None = None,
     stop: Mapping[str, Any] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
+    kinds: Sequence[Kind] | None = None,
 ) -> Graph:
     """All branches that hang together with a solution: traced, switched, each listed once.
 
@@ -57,6 +60,8 @@ def diagram(
         Like ``user_functions``; branches end at their zeros.
     bounds : mapping, optional
         name of a measure (``"u0"``, ``"norm"``, an output of your own) -> (low, high), either may be None; branches end there.
+    kinds : sequence of Kind, optional
+        What is looked for: ``[*contvines.KINDS, yours]``; the built-in kinds if it is left out.
 
     Returns
     -------
@@ -65,7 +70,7 @@ def diagram(
     Raises
     ------
     ValueError
-        If the interval, a setting or the start will not do; the sentence says why.
+        If the interval, a setting, a kind or the start will not do; the sentence says why.
     """
     problem, u, p = problem_and_start(seed, over)
     if within is None:
@@ -77,7 +82,17 @@ def diagram(
     about = dict(model) if isinstance(model, Mapping) else {"name": model}
     limits = Limits.of(stop, bounds, problem)
     run = new_run(
-        problem.parameter, about, within, depth, virtual, user_functions, journal, progress, settings, limits
+        problem.parameter,
+        about,
+        within,
+        depth,
+        virtual,
+        user_functions,
+        journal,
+        progress,
+        settings,
+        limits,
+        kinds,
     )
     begin(run, problem, u, p)
     work(run)
@@ -96,6 +111,7 @@ def new_run(
     progress: Callable[[Progress], None] | None,
     settings: Settings | Mapping[str, Any] | None,
     limits: Limits = NO_LIMITS,
+    kinds: Sequence[Kind] | None = None,
 ) -> Run:
     """A run with an empty graph.
 
@@ -106,15 +122,22 @@ def new_run(
     """
     if not (isinstance(depth, int) and depth >= 0):
         raise ValueError(f"depth = {depth!r} must be a whole number, 0 or more")
-    chosen = Settings.of(settings)
+    chosen, looked_for = Settings.of(settings), checked(kinds)
+    own = [kind.look() for kind in looked_for if kind.test is not None]
     graph = Graph(
         parameter=parameter,
         model=model,
         within=check_interval(within),
-        settings={**chosen.to_dict(), "depth": depth, "virtual": virtual, **limits.kept()},
+        settings={
+            **chosen.to_dict(),
+            "depth": depth,
+            "virtual": virtual,
+            **({"kinds": own} if own else {}),
+            **limits.kept(),
+        },
     )
     kept = NullJournal() if journal is None else journal
-    return Run(graph, chosen, kept, depth, virtual, user_functions, progress, limits)
+    return Run(graph, chosen, kept, depth, virtual, user_functions, progress, limits, looked_for)
 
 
 @hinting
@@ -128,6 +151,7 @@ def switch(
     settings: Settings | Mapping[str, Any] | None = None,
     stop: Mapping[str, Any] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
+    kinds: Sequence[Kind] | None = None,
 ) -> list[str]:
     """Follow the branches that leave a special point of a graph; the graph is extended in place.
 
@@ -138,7 +162,7 @@ def switch(
         A special point; its problem must be attached.
     depth : int
         How many more switches deep to go on from the new branches.
-    user_functions, journal, progress, settings, stop, bounds
+    user_functions, journal, progress, settings, stop, bounds, kinds
         As for :func:`diagram`; the settings of the graph, and its bounds, are the default.
 
     Returns
@@ -171,6 +195,7 @@ def switch(
         user_functions,
         progress,
         Limits.of(stop, graph.settings.get("bounds") if bounds is None else bounds, point.problem),
+        checked(kinds),
     )
     adopt(run)
     leave(run, point, graph.branches[point.branch], depth=0)

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.detect import Detector
+from ..bifurcation.kinds import BORDERS
 from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
 from ..branches.ending import Ending, Reason
@@ -18,16 +20,14 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from ..continuation.starts import solve_start, told_start
 from ..continuation.status import Status
-from ..events.kinds import BORDERS
-from ..events.watch import Watch
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .identity import parts_further_on
-from .leaving import SWITCHING, leave, tell_dead_end
-from .marking import mark, origin_index
-from .one_border import is_border, same_border, tie_borders
-from .pending import Origin, Pending
+from .label_special_points import mark, origin_index
+from .match_borders import is_border, same_border, tie_borders
+from .queue import Origin, Pending
 from .run import Run
+from .schedule_branches import SWITCHING, leave, tell_dead_end
 
 NOWHERE = 1e-12  # a branch shorter than this is none, and ...
 BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along, and ...
@@ -180,17 +180,17 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
 
 def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     """Trace a branch that is not known, label its special points, and queue what leaves it."""
-    engine, watch = run.engine(pending.problem)
+    engine, detector = run.engine(pending.problem)
     run.serial += 1
     label = run.new_label("B")
-    half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)
+    half, endings, closed = both_ways(run, engine, detector, pending, first, real, label)
     while any(ending.reason is Reason.COARSE for ending in endings):
         finer = refined(run, engine, pending, first)
         if finer is None:
             break
         run.serial += 1
-        engine, watch, first = finer
-        half, endings, closed = both_ways(run, engine, watch, pending, first, real, label)
+        engine, detector, first = finer
+        half, endings, closed = both_ways(run, engine, detector, pending, first, real, label)
     if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
         name = pending.problem.parameter
         raise ValueError(
@@ -225,11 +225,13 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.tell(f"{label} finished", float(branch.values[-1]))
 
 
-def refined(run: Run, engine: Engine, pending: Pending, first: Solved) -> tuple[Engine, Watch, Solved] | None:
+def refined(
+    run: Run, engine: Engine, pending: Pending, first: Solved
+) -> tuple[Engine, Detector, Solved] | None:
     """The same pending branch with more unknowns; None where it cannot be started there."""
     coarse: Any = pending.problem
     problem = coarse.refined()
-    finer, watch = run.engine(problem)
+    finer, detector = run.engine(problem)
 
     def image(point: Solved | None, solve: bool = True) -> Solved | None:
         if point is None:
@@ -248,7 +250,7 @@ def refined(run: Run, engine: Engine, pending: Pending, first: Solved) -> tuple[
     pending.tangent = begin.tangent if pending.tangent is not None else None
     pending.origin = image(pending.origin, solve=False)
     pending.ahead, pending.back = image(pending.ahead), image(pending.back)
-    return finer, watch, begin
+    return finer, detector, begin
 
 
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
@@ -353,7 +355,7 @@ def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
 
 
 def both_ways(
-    run: Run, engine: Engine, watch: Watch, pending: Pending, first: Solved, real: bool, label: str
+    run: Run, engine: Engine, detector: Detector, pending: Pending, first: Solved, real: bool, label: str
 ) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
     """The whole branch in order, why it ends at either side, and whether it is closed."""
     key = str(run.serial)
@@ -363,7 +365,9 @@ def both_ways(
 
     def go(start: Solved, side: str, origin: Solved | None = None) -> HalfBranch:
         place = f"{key}/{side}"
-        return trace_half(engine, start, watch, run.journal, place, real, pending.first_step, notice, origin)
+        return trace_half(
+            engine, start, detector, run.journal, place, real, pending.first_step, notice, origin
+        )
 
     def ending(half: HalfBranch) -> Ending:
         found = Ending.of(half.status, half.end)

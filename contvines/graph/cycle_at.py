@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.switching import departures
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..problems.registry import without_problem
-from ..switching.departures import departures
 
 HALVINGS = 4  # of the amplitude, until a cycle is found
 

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
 
+from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..doors import above
-from ..events.kinds import PREFIXES
 from ..hints import hinted
 from ..problems.abilities import notation_of
 from .attractor import Attractor
@@ -155,11 +156,22 @@ class Graph:
         ValueError
             If there is no such kind.
         """
-        if kind not in PREFIXES:
-            named = next((name for name, prefix in PREFIXES.items() if prefix == kind), None)
-            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, PREFIXES)
-            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(PREFIXES)}")
+        known = {**LABELS, **{name: entry.label for name, entry in self.own_kinds.items()}}
+        kind = RENAMED.get(kind, kind)
+        if kind not in known:
+            named = next((name for name, prefix in known.items() if prefix == kind), None)
+            hint = f" (did you mean {named!r}?)" if named else did_you_mean(kind, known)
+            raise ValueError(f"there is no kind {kind!r}{hint}; choose from {', '.join(known)}")
         return [point for point in self.special.values() if point.kind == kind]
+
+    @property
+    def own_kinds(self) -> dict[str, Kind]:
+        """The user's own kinds by name; of a graph from a file what they are called and drawn as."""
+        return {look["name"]: Kind(**look) for look in self.settings.get("kinds", [])}
+
+    def kind(self, name: str) -> Kind:
+        """The kind of this name: built-in or the user's own."""
+        return kind_named(name, self.own_kinds)
 
     def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
         """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""

@@ -15,6 +15,7 @@ from ..branches.special_point import SpecialPoint
 from ..problems.registry import UnknownFactory, rebuild
 from .attractor import Attractor
 from .graph import Graph, Switch
+from .old_names import renamed
 from .well_formed import check_graph
 
 Entry = tuple[str, str, dict[str, Any]]
@@ -54,6 +55,7 @@ def graph_from_entries(
     ValueError
         If the entries are not those of a graph.
     """
+    entries = renamed(entries)
     head = next(iter(entries.get("graph", {}).values()), {})
     graph = Graph(**{**head, "within": _pair(head["within"])} if head else {})
     built: dict[str, Any] = {}

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from ..bifurcation.detect import Detector
+from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import KINDS, kind_named
+from ..bifurcation.located import Located
 from ..branches.ending import Ending, Reason
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
-from ..events.located import Located
-from ..events.watch import Watch
 from ..interrupts import OPEN
 from ..problems.protocol import Problem
 from .graph import Graph, Switch
 from .identity import Register
 from .limits import NO_LIMITS, Limits
-from .pending import Pending
+from .queue import Pending
 
 Found = TypeVar("Found")
 
@@ -53,6 +55,8 @@ class Run:
     progress : callable or None
     limits : Limits
         Where branches end because the user says so.
+    kinds : sequence of Kind
+        What is looked for.
     """
 
     def __init__(
@@ -65,10 +69,11 @@ class Run:
         user_functions: Mapping[str, Any] | None,
         progress: Callable[[Progress], None] | None,
         limits: Limits = NO_LIMITS,
+        kinds: Sequence[Kind] = KINDS,
     ) -> None:
         self.graph, self.settings, self.journal = graph, settings, journal
         self.depth, self.virtual = depth, virtual
-        self.limits = limits
+        self.limits, self.kinds = limits, tuple(kinds)
         self.user_functions = {**(user_functions or {}), **limits.functions}
         self.progress = progress
         self.done: Callable[[], float] | None = None
@@ -76,7 +81,7 @@ class Run:
         self.register = Register()
         self.numbers: dict[str, int] = {}
         self.events: dict[str, Located] = {}
-        self.engines: dict[int, tuple[Any, Engine, Watch]] = {}
+        self.engines: dict[int, tuple[Any, Engine, Detector]] = {}
         self.forms: dict[str, tuple[SpecialPoint, Any]] = {}
         self.compared: dict[tuple[int, int], tuple[Solved, SpecialPoint, bool]] = {}
         self.serial = 0
@@ -108,14 +113,18 @@ class Run:
             return engine.parameter_unit(p)
         return parameter_unit(self.graph.within, p)
 
-    def engine(self, problem: Problem) -> tuple[Engine, Watch]:
-        """Engine and watch of a problem, made once."""
+    def engine(self, problem: Problem) -> tuple[Engine, Detector]:
+        """Engine and detector of a problem, made once."""
         if id(problem) not in self.engines:
             engine = Engine(problem, self.graph.within, self.settings)
-            watch = Watch(engine, self.user_functions, tuple(self.limits.functions))
-            self.engines[id(problem)] = (problem, engine, watch)
-        _, engine, watch = self.engines[id(problem)]
-        return engine, watch
+            detector = Detector(engine, self.kinds, self.user_functions, tuple(self.limits.functions))
+            self.engines[id(problem)] = (problem, engine, detector)
+        _, engine, detector = self.engines[id(problem)]
+        return engine, detector
+
+    def kind(self, name: str) -> Kind:
+        """The kind of this name among those that are looked for, or of the built-in ones."""
+        return kind_named(name, {kind.name: kind for kind in self.kinds})
 
     def new_label(self, prefix: str) -> str:
         """The next label with this prefix; labels that the graph has already are passed over."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..bifurcation.kinds import BORDERS, KINDS
 from ..branches.special_point import TRANSCRITICAL
-from ..events.kinds import BORDERS
 from ..number_text import number_text
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
@@ -20,13 +20,7 @@ if TYPE_CHECKING:
     from .attractor import Attractor
     from .graph import Graph
 
-LEFT = (
-    "hopf",
-    "neimark-sacker",
-    "period-doubling",
-    "symmetry-breaking",
-    "branch-point",
-)  #: kinds that solutions leave
+LEFT = tuple(kind.name for kind in KINDS if kind.leaves)  #: kinds that solutions leave
 AT_END = 1e-9  # part of the interval: special points closer to its end are at it
 
 

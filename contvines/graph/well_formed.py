@@ -12,7 +12,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from ..branches.branch import Branch
-from ..branches.later import Later
+from ..branches.lazy_field import Later
 from ..branches.special_point import SpecialPoint
 from .graph import Graph
 

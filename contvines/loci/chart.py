@@ -9,8 +9,9 @@ from typing import Any
 
 from contvines.shared.near_names import did_you_mean
 
+from ..bifurcation.kinds import CODIMENSION_TWO
 from ..doors import above
-from ..events.kinds import CODIMENSION_TWO
+from ..graph.old_names import renamed
 from ..graph.persistence import branch_of, content_of
 from ..graph.well_formed import check_branch, check_fields, fits
 from ..hints import hinted
@@ -167,6 +168,7 @@ def chart_from_entries(
     entries: Mapping[str, Mapping[str, dict[str, Any]]], *, problems: bool = True, trust: bool = False
 ) -> Chart:
     """The chart that `Chart.entries` took apart."""
+    entries = renamed(entries)
     head = dict(next(iter(entries["chart"].values())))
     head["parameters"] = tuple(head["parameters"])
     head["within"] = tuple(tuple(interval) for interval in head["within"])

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..bifurcation.kinds import kind_named
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..events.kinds import kind_of
 from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..journal import NullJournal
@@ -194,7 +194,7 @@ class Charting:
         own = (
             candidate.seed in self.graph.special
         )  # a locus is called like the special point from which it comes
-        label = candidate.seed if own else self.label(kind_of(candidate.kind).label)
+        label = candidate.seed if own else self.label(kind_named(candidate.kind).label)
         try:
             problem = begin(
                 candidate.problem,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..forms.coefficients import Forms
-from ..forms.critical import normal_form
-from ..forms.returned import ReturnForms, forms_at
+from ..bifurcation.normal_forms.coefficients import Forms
+from ..bifurcation.normal_forms.critical import normal_form
+from ..bifurcation.normal_forms.returned import ReturnForms, forms_at
 from .linear import Linearisation
 from .plane_point import PlanePoint
 
@@ -17,7 +17,7 @@ CRITICAL = 1e-5  # distance of a critical multiplier from the boundary
 def coefficients(point: PlanePoint) -> dict[str, float]:
     """Normal-form coefficients at a point, by name; none where the derivatives cannot be had.
 
-    The normal forms are those of :mod:`contvines.forms.critical`; beside their coefficients "angle" is that of a pair (of the
+    The normal forms are those of :mod:`contvines.bifurcation.normal_forms.critical`; beside their coefficients "angle" is that of a pair (of the
     problem's own period), "omega" its frequency, where the kind itself leaves them open.
     """
     problem, kind = point.problem, point.kind

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..forms.coefficients import Coefficient, Forms
-from ..forms.returned import ReturnForms, forms_at
+from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
+from ..bifurcation.normal_forms.returned import ReturnForms, forms_at
 from .kinds import Look
 from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null

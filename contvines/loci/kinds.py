@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..events.kinds import CODIMENSION_TWO
+from ..bifurcation.kinds import CODIMENSION_TWO
 from ..problems.protocol import Problem
 from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR, PERIOD
 

@@ -22,7 +22,7 @@ class PlanePoint:
     on : list of str
         Labels of the loci on which it lies.
     coefficients : dict
-        Of its normal form; see :mod:`contvines.forms.coefficients`.
+        Of its normal form; see :mod:`contvines.bifurcation.normal_forms.coefficients`.
     multipliers : ndarray of complex
         Of the full period.
     real : bool

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..bifurcation.detect import Detector
+from ..bifurcation.located import Located, Role
 from ..branches.assembly import make_branch
 from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
@@ -17,8 +19,6 @@ from ..continuation.engine import Solved
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..continuation.status import Status
-from ..events.located import Located, Role
-from ..events.watch import Watch
 from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
@@ -173,7 +173,7 @@ def _traced(
     engine, start = first_point(problem, u, p, q, within, settings)
     if start is None:
         return None
-    watch = Watch(engine)
+    detector = Detector(engine)
     journal = NullJournal() if journal is None else journal
     own = int(problem.base.n_margins)
     margins = engine.margins(start.row)
@@ -187,7 +187,7 @@ def _traced(
         now, half = real, None
         flags = np.zeros(0, dtype=bool)
         for part in range(20):
-            more = trace_half(engine, first, watch, journal, f"{name}/{side}/{part}", now, None, notice)
+            more = trace_half(engine, first, detector, journal, f"{name}/{side}/{part}", now, None, notice)
             if more.status == Status.COARSE:
                 raise TooCoarse
             flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))

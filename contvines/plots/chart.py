@@ -33,7 +33,7 @@ BORDER_COLORS = {
     "wall-graze": "#8b5e3c",
     "velocity-graze": "#4b5563",
     "stick": "#a3861a",
-    "chatter": "#a21caf",
+    "vanishing-event": "#a21caf",
 }
 BORDER_COLOR = "#6b6b6b"  # of any other border
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..events.kinds import KINDS
+from ..bifurcation.kinds import BY_NAME
 from ..graph.measures import measure_at, measured, undrawn
 from ..graph.proving import mark as proof_of
 from ..graph.proving import stretches
@@ -17,7 +17,7 @@ from .figures import scale
 from .insets import Region, add_inset, crowded_region, find_room, outlines
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
-from .style import LINES, MARKS, PLAIN, PROVED, STATE_COLORS, STATE_OF, STATES, WIDTHS
+from .style import LINES, PROVED, STATE_COLORS, STATE_OF, STATES, WIDTHS, mark_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -116,7 +116,7 @@ class Picture:
             px, py = measure_at(branch, point, self.x), measure_at(branch, point, self.y)
             if not (np.isfinite(px) and np.isfinite(py)):
                 continue  # such as B of a motion without impacts
-            mark = MARKS.get(point.kind, PLAIN)
+            mark = mark_of(point.kind, self.graph)
             tint = "0.15" if self.color == "stability" else self.tint[branch.label]
             self.axes.plot(
                 [px],
@@ -140,7 +140,7 @@ class Picture:
         """Say in the legend what the marks mean that can be seen."""
         for _, kind, px, py in self.spots:
             if self._inside(px, py):
-                mark = MARKS.get(kind, PLAIN)
+                mark = mark_of(kind, self.graph)
                 self.key.marks.setdefault(mark.name, mark)
 
     def refine(self) -> None:
@@ -173,7 +173,7 @@ class Picture:
             artist.remove()
         chosen = None if isinstance(labels, bool) else list(labels)
         size = self._text()
-        places = {kind: i for i, kind in enumerate(KINDS)}  # whose labels are named first
+        places = {kind: i for i, kind in enumerate(BY_NAME)}  # whose labels are named first
         wanted = [
             Label(self._named(label), px, py, "black", places.get(kind, len(places)), chosen is not None)
             for label, kind, px, py in self.spots

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..events.kinds import KINDS
+from ..bifurcation.kinds import BY_NAME
 
 # line styles of the states of an orbit; what nobody has asked for is drawn solid, and named
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
@@ -30,8 +30,14 @@ class Mark:
     filled: bool = False
 
 
-MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in KINDS.values()}
+MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in BY_NAME.values()}
 PLAIN = Mark("special point", "o")
+
+
+def mark_of(kind: str, graph: Any) -> Mark:
+    """How a kind of special point of a graph is drawn, one of the user's own included."""
+    own = graph.own_kinds.get(kind)
+    return Mark(own.text, own.marker, own.filled) if own else MARKS.get(kind, PLAIN)
 
 
 def axis_label(

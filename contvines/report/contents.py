@@ -9,7 +9,7 @@ import numpy as np
 from ..graph.measures import default_measure
 from ..graph.proving import mark, told
 from ..graph.shortening import motion_name, short_word
-from ..plots.style import MARKS, PLAIN, axis_label
+from ..plots.style import axis_label, mark_of
 from ..problems.abilities import Animated
 from .numbers import plain_label, rounded, shortened, told_of
 
@@ -59,7 +59,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
             for name in _measures(graph, y)
         },
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
-        "special": [_point(point, mark(graph, point.label)) for point in graph.special.values()],
+        "special": [_point(graph, point, mark(graph, point.label)) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],
         "attractors": [_attractor(about) for about in graph.attractors],
         "orbits": _orbits(graph),
@@ -94,8 +94,8 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
     }
 
 
-def _point(point: SpecialPoint, proof: str) -> dict[str, Any]:
-    look = MARKS.get(point.kind, PLAIN)
+def _point(graph: Graph, point: SpecialPoint, proof: str) -> dict[str, Any]:
+    look = mark_of(point.kind, graph)
     return point.to_dict() | {
         "name": look.name,
         "marker": look.marker,

@@ -12,7 +12,7 @@ from typing import Any
 
 from contvines.shared.near_names import did_you_mean
 
-from ..events.kinds import KINDS
+from ..bifurcation.kinds import BY_NAME
 from ..hints import hinting
 from ..problems.abilities import notation_of
 from . import pools
@@ -37,9 +37,9 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
     if said in known:
         return known[said]
     kind, _, argument = said.partition(":")
-    if kind == "first" and argument and argument not in KINDS:
+    if kind == "first" and argument and argument not in BY_NAME:
         raise PlanError(
-            f"[survey] outcomes: {said!r}: there are no points of this kind{did_you_mean(argument, KINDS)}; known are {', '.join(KINDS)}"
+            f"[survey] outcomes: {said!r}: there are no points of this kind{did_you_mean(argument, BY_NAME)}; known are {', '.join(BY_NAME)}"
         )
     if kind in MADE and argument:
         return partial(MADE[kind], **{ARGUMENTS[kind]: argument})

@@ -44,7 +44,7 @@ class WallLaw:
 
     def together(self, here: int, there: int) -> str:
         """The kind of border at which two consecutive events of this wall fall together."""
-        return "chatter"
+        return "vanishing-event"
 
     # ------------------------------------------------------------------ how the word changes
     def met(self, site: Site, j: int) -> list[Change]:

@@ -33,7 +33,7 @@ def dead_end(problem: DeclaredSystem, point: Any) -> str:
     place, column = divmod(index, per_node(len(contacts)))
     letter = orbit.word.letter(place) if len(orbit.word) else None
     own = column if column < len(contacts) else (0 if letter is None else letter.contact)
-    if border_kind(problem.word, index) == "chatter":
+    if border_kind(problem.word, index) == "vanishing-event":
         return PILING.format(contact=described(contacts[own]))
     near = _nearly_vanishing(orbit)
     if near:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.events.kinds import BORDERS
+from contvines.bifurcation.kinds import BORDERS, RENAMED
 
 VALUE = 1e-10
 ENDS = 1e-8  # of branches and of stable stretches: borders of both kinds are located from either side
@@ -22,6 +22,7 @@ MULTIPLIERS = 1e-5  # at a fold they move with the square root of the location e
 
 def differences(golden: dict[str, Any], today: dict[str, Any]) -> list[str]:
     """Sentences on all that differs between two graphs, or two charts, in the form of `compact`."""
+    golden = with_names_of_today(golden)
     found = list(_points(golden["points"], today["points"]))
     if "loci" in golden:
         return found + list(_loci(golden["loci"], today["loci"]))
@@ -33,6 +34,20 @@ def differences(golden: dict[str, Any], today: dict[str, Any]) -> list[str]:
     if golden["attractors"] != today["attractors"]:
         found.append(f"attractors {golden['attractors']} became {today['attractors']}")
     return found
+
+
+def with_names_of_today(golden: dict[str, Any]) -> dict[str, Any]:
+    """Borders at which an event vanishes were "chatter", labelled CH, when the files were written; see changes.md."""
+    points = golden["points"]
+    labels = {label: f"VE{label[2:]}" for label, point in points.items() if point["kind"] in RENAMED}
+    if not labels:
+        return golden
+    renamed = {
+        labels.get(label, label): point | {"kind": RENAMED.get(point["kind"], point["kind"])}
+        for label, point in points.items()
+    }
+    links = [[labels.get(point, point), *ends] for point, *ends in golden["links"]]
+    return golden | {"points": renamed, "links": links}
 
 
 def _size(value: Any) -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contvines.events.kinds import BORDERS
+from contvines.bifurcation.kinds import BORDERS
 from orbits.cycles.identity import canonical
 from orbits.starts.find import polish
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import contvines as cv
-from contvines.branches.later import Later
+from contvines.branches.lazy_field import Later
 from orbits import Absorber
 
 

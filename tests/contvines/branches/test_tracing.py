@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.bifurcation.detect import Detector
+from contvines.bifurcation.located import Located, Role
 from contvines.branches.tracing import trace_half
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.events.located import Located, Role
-from contvines.events.watch import Watch
 from contvines.journal import NullJournal
 
 BEND = 1e-3
 
 
-class Misled(Watch):
+class Misled(Detector):
     """Tells of a fold at some x, shortly before the meeting, as rounding may."""
 
     x = 0.0

@@ -8,6 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import contvines as cv
+from contvines.bifurcation.locate import locate
+from contvines.bifurcation.segment import Segment
 from contvines.continuation.aims import (
     FLOW,
     MAP,
@@ -22,8 +24,6 @@ from contvines.continuation.aims import (
 )
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.events.locate import locate
-from contvines.events.segment import Segment
 
 UNIT = st.floats(-3.0, 3.0)
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.bifurcation.segment import Segment
 from contvines.continuation.arrays import (
     Metric,
     compare,
@@ -20,7 +21,6 @@ from contvines.continuation.arrays import (
 from contvines.continuation.corrector import improve
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.events.segment import Segment
 
 ONES = np.ones(2)
 FLAT = Metric(ONES, ONES, 1.0, 1.0)

@@ -10,8 +10,8 @@ import pytest
 import contvines as cv
 from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
-from tests.contvines.forms.test_critical import Bend, polar
-from tests.contvines.forms.test_textbook_coefficients import Planar, lyapunov
+from tests.contvines.bifurcation.normal_forms.test_critical import Bend, polar
+from tests.contvines.bifurcation.normal_forms.test_textbook_coefficients import Planar, lyapunov
 from tests.contvines.loci.systems import R, generalized_henon
 
 

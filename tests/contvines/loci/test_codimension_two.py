@@ -176,8 +176,8 @@ def test_lorenz_84_zero_hopf():
 
 
 def test_first_lyapunov_coefficients_against_closed_forms():
-    from contvines.forms.coefficients import Forms
-    from contvines.forms.critical import normal_form
+    from contvines.bifurcation.normal_forms.coefficients import Forms
+    from contvines.bifurcation.normal_forms.critical import normal_form
 
     # delayed logistic map at r = 2: Kuznetsov's textbook example 4.? has theta0 = pi/3 and a negative coefficient;
     # the value follows from the same formula with B((x, y), (u, v)) = (-2 (x v + y u), 0), C = 0, in exact arithmetic

@@ -4,7 +4,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from contvines.events.kinds import PREFIXES
+from contvines.bifurcation.kinds import LABELS
 from contvines.plots import plot_diagram
 from contvines.plots.style import LINES, MARKS
 from contvines.problems.protocol import ProblemDefaults
@@ -116,7 +116,7 @@ def test_a_legend_that_would_cover_curves_stands_beside_them(graph):
 
 
 def test_every_kind_has_a_mark():
-    assert set(MARKS) == set(PREFIXES)
+    assert set(MARKS) == set(LABELS)
 
 
 def test_an_unfinished_graph_says_so():

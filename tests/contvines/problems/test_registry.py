@@ -104,7 +104,7 @@ def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
 
 def test_a_journal_that_names_a_function_does_not_call_it(folder):
     """What a killed run has kept of the far side of a border is rebuilt, too, when it goes on."""
-    from contvines.graph.leaving import _seeds  # the reader of such records
+    from contvines.graph.schedule_branches import _seeds  # the reader of such records
 
     class Far:
         def beyond(self, point):

@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from contvines.events.segment import Segment
+from contvines.bifurcation.segment import Segment
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
 from orbits.simulation.driver import machine as engine_of

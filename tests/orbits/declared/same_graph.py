@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import contvines as cv
-from contvines.events.kinds import BORDERS
+from contvines.bifurcation.kinds import BORDERS
 from orbits import Absorber, Coupled
 from tests.orbits.declared.pages import page
 from tests.orbits.fuzz.drawing import draw

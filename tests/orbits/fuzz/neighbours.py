@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.events.kinds import BORDERS
+from contvines.bifurcation.kinds import BORDERS
 from tests.orbits.fuzz.approached import comes_to, grow_without_bound
 from tests.orbits.fuzz.between import Between
 from tests.orbits.fuzz.many_digits import exact

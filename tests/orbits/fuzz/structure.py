@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.events.kinds import BORDERS
+from contvines.bifurcation.kinds import BORDERS
 from orbits.cycles.claim import REAL
 from orbits.starts.find import polish
 from tests.orbits.fuzz.many_digits import exact, rounds_apart

@@ -7,7 +7,7 @@ import pytest
 from mpmath import mp
 
 import contvines as cv
-from contvines.events.kinds import BORDERS
+from contvines.bifurcation.kinds import BORDERS
 from orbits.attractors import find_attractor
 from orbits.simulation import replay
 from tests.orbits.fuzz import neighbours, structure

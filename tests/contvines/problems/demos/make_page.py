@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from contvines.events.kinds import KINDS
+from contvines.bifurcation.kinds import BY_NAME
 
 from . import listed, maps
 from .make_table import TABLE
@@ -65,7 +65,7 @@ def render() -> str:
             found: dict[str, list[str]] = {}
             away: list[float] = []
             for row in table[demo.name]:
-                label = KINDS[row["kind"]].label + (f"^{row['cycle']}" if row["cycle"] > 1 else "")
+                label = BY_NAME[row["kind"]].label + (f"^{row['cycle']}" if row["cycle"] > 1 else "")
                 value = 0.0 if abs(row["value"]) < 1e-14 else row["value"]
                 found.setdefault(label, []).append(f"{value:.11g}")
                 away.append(abs(row["ours"] - row["value"]) / (demo.within[1] - demo.within[0]))

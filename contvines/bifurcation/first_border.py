@@ -1,0 +1,138 @@
+"""Borders: where on a segment a branch ceases to be real (or becomes so again), and which margin says so."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..continuation.aims import MARGINS, Aim
+from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
+from .kinds import BORDERS
+from .locate import Root, locate
+from .one_sided_limits import CLOSE
+from .segment import Segment
+
+TIED = 1e-9  # margins that differ by less vanish together
+BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
+SLOPED = CLOSE  # distance (in the metric) from which the slope of a margin can be told
+MARGIN_ROUNDING = 4e-16  # of margins, in units of the machine's own size
+TOLD = 10.0  # times that: a difference of margins which is no rounding
+ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
+
+
+class Border(NamedTuple):
+    """A border of a segment: where it is, and the margin that vanishes there."""
+
+    root: Root
+    index: int
+
+
+def find_border(segment: Segment, real: bool) -> Border | None:
+    """The border of a segment, or None.
+
+    Parameters
+    ----------
+    segment : Segment
+    real : bool
+        Whether its beginning has positive margins: the border is where the first one vanishes; else where all are positive again.
+    """
+    engine = segment.engine
+    a, b = (end.row[2 * engine.m :] < MARGIN for end in (segment.a, segment.b))  # not of what is no number
+    if real:
+        falling = (b & ~a).nonzero()[0]
+    else:
+        falling = np.arange(len(a) if a.any() and not b.any() else 0)
+    if not len(falling):
+        return None
+    root = first_zero(segment, falling, real)
+    if root is None:
+        return None
+    if len(falling) == 1:
+        return Border(root, int(falling[0]))
+    if real:
+        passing = _passing(segment, root, falling)
+        if len(passing) < len(falling):
+            again = first_zero(segment, passing, real)
+            if again is not None and engine.margins(again.point.row)[falling].min() >= MARGIN:
+                root, falling = again, passing
+    return Border(root, _which(engine, engine.margins(root.point.row), falling))
+
+
+def first_zero(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root | None:
+    """Where the smallest of the chosen margins passes zero."""
+    margin = Aim(MARGINS, 2 * segment.engine.m + chosen)
+    root = locate(segment, margin, fallback_zero=real)
+    if root is None or root.position > 0.0 or not margin(root.point) < 0.0:
+        return root
+    # the segment begins behind the border, by what counts as rounding: where the margin is flat that may be seen in the parameter
+    ahead = segment.at(min(1.0, max(BEHIND[0], SLOPED / segment.length)))
+    fall = 0.0 if ahead is None else margin(root.point) - margin(ahead)
+    if ahead is None or not fall > 0.0:
+        return root
+    return root._replace(error=abs(margin(root.point) / fall * (ahead.p - root.point.p)))
+
+
+def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Those of the margins that are negative just behind a border.
+
+    Of a cycle that repeats itself at the border, as where a stick vanishes in every other round, the margins of the other
+    rounds touch zero there, and come back; that they are negative at the end of the segment is another matter.
+    """
+    here = segment.engine.margins(root.point.row)[falling]
+    for step in BEHIND:
+        point = segment.at(root.position + step)
+        if point is not None:
+            there = segment.engine.margins(point.row)[falling]
+            passing = falling[(there < MARGIN) & (here <= here.min() + np.sqrt(TIED))]
+            if len(passing):
+                return passing
+    return falling
+
+
+def rounding(segment: Segment, root: Root, index: int, before: Solved | None) -> float:
+    """How far rounding of the margins that vanish at a border may move its parameter value.
+
+    Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
+    passes zero. The point `SLOPED` before the border may be known.
+    """
+    first, place, point = 2 * segment.engine.m, root.position, root.point
+    margins = point.row[first:]
+    flat = np.abs(margins) < TOLD * MARGIN_ROUNDING
+    flat[index] = True
+    flat = flat.nonzero()[0]
+    here, error = _finite(margins[flat]), 0.0
+    towards = -1.0 if place * segment.length > SLOPED else 1.0
+    room = place if towards < 0.0 else 1.0 - place
+    reach = min(SLOPED / segment.length, room)
+    aside = before if towards < 0.0 else None
+    while reach > 0.0 and (aside := aside or segment.at(place + towards * reach)) is not None:
+        rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - point.p)
+        told = rises > TOLD * MARGIN_ROUNDING
+        if told.any():
+            error = max(error, moved * MARGIN_ROUNDING / float(rises[told].min()))
+            flat, here = flat[~told], here[~told]
+        if not len(flat):
+            break
+        if reach == room:
+            error = max(error, moved)
+            break
+        reach, aside = min(30.0 * reach, room), None
+    return error
+
+
+def _finite(margins: np.ndarray) -> np.ndarray:
+    """Margins, those that do not apply or have no bound as large ones."""
+    return np.where(np.isfinite(margins), margins, 1.0)
+
+
+def _which(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> int:
+    """The margin that vanishes. Several may, as when a stick disappears: which one is smallest is then a matter of
+
+    rounding, so those that are as small as the smallest one count as equal, and the order of kinds decides.
+    """
+    tied = falling[margins[falling] <= margins[falling].min() + TIED]
+    kinds = [engine.problem.margin_kind(int(j)) for j in tied]
+    return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])

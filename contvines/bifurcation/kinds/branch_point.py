@@ -1,0 +1,159 @@
+"""Branch point: another branch crosses, where the bordered matrix [[F_u, F_p], [tangent]] is singular.
+
+A simple one is a change of the sign of its determinant, located on the regular function 1 / (c . M^-1 b) of
+:class:`~contvines.bifurcation.determinant_test.DeterminantTest`. Where multipliers are known each one that passes +1 is a test
+function of its own, so that an even number of branches at once is seen, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from ...continuation.aims import aim_at_multiplier
+from ...continuation.engine import Solved
+from ..determinant_sign import passes_for_certain
+from ..determinant_test import passes, turned
+from ..kind import Kind
+from ..locate import Root, locate, locate_singular
+from ..located import Located, Role
+from ..location_error import blurred
+from ..multiplier_counts import balance, counts_of
+from ..multiplier_tests import passing
+from ..refine_branch_point import by_elimination, by_sign
+from ..segment import Segment
+from ..singular import alone, singular
+
+REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
+SAME = 1e-4  # part of a segment: what is closer is one
+EXACT = (
+    1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
+)
+BESIDE = 1e-3  # part of a segment, either side of a place, by which signs are told
+
+
+def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
+    """The branch points of a segment whose folds and meetings are known."""
+    engine = segment.engine
+    folds = [e.position for e in found if e.kind == "fold"]
+    met = [e.position for e in found if e.role is Role.MEETING]
+    points = _sharpened(segment, _by_multipliers(segment, folds, met))
+    if not points and engine.exchanges and (double := _exchange(segment)) is not None:
+        points.append(double)
+    counted = sum(e.kind == "branch-point" for e in points)
+    if segment.a.sign * segment.b.sign < 0.0 and (counted + len(met)) % 2 == 0:
+        root = by_sign(segment)
+        if root is not None and not _near(root.position, met):
+            turning = _near(root.position, folds)
+            # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
+            if not turning or (root.point.residual <= EXACT and singular(engine, root.point)):
+                points.append(Located.at(root, _kind(segment, root)))
+    return points
+
+
+def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> list[Located]:
+    """Where multipliers pass +1 beside folds and meetings."""
+    engine = segment.engine
+    tests = passing(segment, "plus")
+    # machines have exact counts; a count of eigenvalues that are next to nothing beside others may be that of rounding
+    rounded = engine.scaled and engine.signed and len(tests) % 2 != turned(segment.a, segment.b)
+    if len(tests) == 1 and engine.scaled:
+        # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
+        one_fold = len(folds) == 1 and segment.a.sign * segment.b.sign > 0.0
+        if one_fold or (rounded and not passes(segment, 0.5, 0.5 + BESIDE)):
+            return []
+    points = []
+    for test in tests:
+        root = locate(segment, test.function, jump=test.jump)
+        if root is None or not root.continuous or _near(root.position, folds + met):
+            continue
+        if abs(test.function(root.point)) > REACHED or _complex(segment, root.point):
+            continue  # two real multipliers met and left the axis; none of them was at the boundary
+        if not passes_for_certain(segment, root.position):
+            continue
+        if alone(engine, root.point):
+            points.append(Located.at(root, "astray"))
+        elif not rounded or passes(segment, root.position):
+            points.append(Located.at(root, "branch-point", test.index))
+    return points
+
+
+def _complex(segment: Segment, point: Solved) -> bool:
+    """Whether it was a pair that passed the axis, where only branch points are looked for."""
+    engine = segment.engine
+    if engine.detection != "real":
+        return False
+    near, ends = (engine.spectrum(row) for row in (point.row, np.array([segment.a.row, segment.b.row])))
+    one = near[np.argmin(np.abs(near.real))]  # the one that passes; another may be next to nothing all along
+    unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
+    return bool(abs(one) > REACHED * unit)
+
+
+def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
+    """Branch points again, through interpolation; those at one and the same place from the mean of their tests."""
+    engine = segment.engine
+    result = [e for e in points if e.kind != "branch-point"]
+    points = [e for e in points if e.kind == "branch-point"]
+    aims = {test.index: test.function for test in passing(segment, "plus")}
+    while points:
+        group = [e for e in points if abs(e.position - points[0].position) <= 1e-6]
+        points = [e for e in points if e not in group]
+        gaps = [0.4 * abs(e.position - group[0].position) for e in points]
+        mean = partial(_mean, [aims[e.index] for e in group])
+        root = locate_singular(segment, mean, group[0].position, width=min([0.2, *gaps]))
+        if engine.detection == "real" and len(group) == 1:
+            root = by_elimination(segment, root)
+        for event in group:
+            found = event if root is None else Located.at(root, event.kind, event.index)
+            result.append(blurred(segment, found, aims[event.index]))
+    return result
+
+
+def _mean(tests: list, point: Solved) -> float:
+    return sum(test(point) for test in tests) / len(tests)
+
+
+def _exchange(segment: Segment) -> Located | None:
+    """A branch point where one multiplier leaves the circle while another enters; see :func:`balance`."""
+    engine = segment.engine
+
+    def test(point: Solved) -> float:
+        return float(balance(engine.spectrum(point.row)[None, :], engine.detection)[0])
+
+    if not test(segment.a) * test(segment.b) < 0.0:
+        return None
+    rough = locate(segment, test, tolerance=1e-6)
+    if rough is None:
+        return None
+    aim = aim_at_multiplier(engine.m, engine.detection, "plus", max(counts_of(engine, rough.point)[0], 1))
+    if abs(test(rough.point)) > REACHED or (engine.detection != "real" and abs(aim(rough.point)) > REACHED):
+        return None
+    if _complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
+        return None
+    return Located.at(locate_singular(segment, test, rough.position) or rough, "branch-point")
+
+
+def _kind(segment: Segment, root: Root) -> str:
+    """A branch point, or "astray" where it is none: the segment has led from one branch to another."""
+    engine = segment.engine
+    known = engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point)
+    return "branch-point" if known else "astray"
+
+
+def _near(position: float, others: list[float]) -> bool:
+    return any(abs(position - other) <= SAME for other in others)
+
+
+KIND = Kind(
+    "branch-point",
+    "BP",
+    text="branch point",
+    marker="o",
+    filled=False,
+    find=find,
+    locus="branch",
+    leaves="branch",
+    without="another branch crosses here; this problem has no equations for it",
+)

@@ -1,0 +1,47 @@
+"""Fold: the parameter turns back along the branch, where its part of the tangent passes zero."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...continuation.aims import NO_COLUMNS, SLOPE, Aim
+from ..kind import Classified, Kind, Test
+from ..located import Located
+from ..normal_forms.along_branch import fold_coefficient
+from ..point_on_branch import PointOnBranch
+from ..segment import Segment
+
+TURN = Aim(SLOPE, NO_COLUMNS)
+
+
+def tests(segment: Segment, found: Sequence[Located]) -> list[Test]:
+    """The parameter's part of the tangent, if it has another sign at the other end; on an upright branch it is rounding."""
+    one, other = float(segment.a.tangent[-1]), float(segment.b.tangent[-1])
+    upright = max(abs(one), abs(other)) <= segment.engine.upright(segment.a.p)
+    return [] if upright or (one >= 0.0) == (other >= 0.0) else [Test(TURN)]
+
+
+def turns_back(point: PointOnBranch) -> bool:
+    """Whether the parameter turns back by more than rounding and the noise of the equations."""
+    segment, engine = point.segment, point.engine
+    assert segment is not None
+    moved = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
+    return moved > engine.settled(point.value)
+
+
+def classify(point: PointOnBranch) -> Classified:
+    """Coefficient a of p = p0 + a s^2, s the amplitude along the critical vector."""
+    return Classified(None, fold_coefficient(point.engine, point.solved))
+
+
+KIND = Kind(
+    "fold",
+    "LP",
+    text="fold",
+    marker="s",
+    tests=tests,
+    verify=turns_back,
+    classify=classify,
+    locus="fold",
+    nothing="the branch turns at a fold; no other branch leaves it",
+)

@@ -1,0 +1,92 @@
+"""Normal forms: on which side a bifurcating branch lives, and how steeply.
+
+At a period doubling or symmetry breaking with critical multiplier m(p) the bifurcating branch is p = p0 + p2 s^2 with s the
+amplitude along the critical vector: the Lyapunov-Schmidt reduction, carried out numerically by solving at fixed small
+amplitudes and extrapolating to zero (:mod:`contvines.bifurcation.switching`). Comparing with the normal forms
+(Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 4.5 and 7.4). The critical vector q has q.q = 1 over
+the unknowns of an algebraic problem, over the first point of a cycle, of maps and of machines alike; the form is that of the return map:
+
+    flip        xi -> m xi + c xi^3,  m near -1:   c = p2 d|m|/dp     supercritical for c > 0
+    pitchfork   xi -> m xi + a xi^3,  m near +1:   a = -p2 dm/dp      supercritical for a < 0
+    flow        xi' = m xi + a xi^3,  m near 0:    a = -p2 dm/dp      supercritical for a < 0
+
+In words: supercritical when the bifurcating branch lives where the known one has lost the stability that it had.
+A fold has p = p0 + a s^2 with s the amplitude along q; its coefficient is a.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...continuation.aims import aim_at_multiplier
+from ...continuation.engine import Engine, Solved
+from ...continuation.solved import solved_points
+
+STEP = 1e-3
+LENGTH = (
+    16.0 * STEP
+)  # of the chord on which points beside a special point are placed: they may lie far off it, and are none of its ends
+PLACES = np.array([STEP, -STEP, 0.5 * STEP, -0.5 * STEP]) / LENGTH
+
+
+def _beside(engine: Engine, point: Solved) -> list[Solved] | None:
+    """Points of the branch ahead and back, at a step and at half of that; None if one of them is not found."""
+    z, along = engine.join(point.u, point.p), LENGTH * point.tangent
+    border = engine.weights * point.tangent
+    chord = np.array([z, along, z + along, along])
+    found = engine.on_chord(chord, PLACES, float(border @ z), LENGTH, border, point.tangent)
+    points = [near for near in solved_points(found) if near is not None]
+    return points if len(points) == len(PLACES) else None
+
+
+def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | None:
+    """d(log abs(m))/dp of the critical multiplier (dm/dp for flows) along the known branch; None if not to be had.
+
+    Parameters
+    ----------
+    engine : Engine
+    point : Solved
+        The special point, with the tangent of the known branch.
+    name, k
+        Which multiplier; see :func:`contvines.continuation.aims.aim_at_multiplier`.
+    """
+    kind = engine.problem.spectrum
+    if kind == "none" or abs(point.tangent[-1]) < 1e-9:
+        return None
+    aim = aim_at_multiplier(engine.m, kind, name, k)
+    ends = _beside(engine, point)
+    if ends is None:
+        return None
+    slopes = [
+        (aim(ahead) - aim(back)) / (ahead.p - back.p)
+        for ahead, back in zip(ends[::2], ends[1::2], strict=True)
+    ]
+    return float((4.0 * slopes[1] - slopes[0]) / 3.0) * engine.rate
+
+
+def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str | None, float | None]:
+    """("supercritical" or "subcritical", normal-form coefficient).
+
+    Parameters
+    ----------
+    curvature : float
+        p2 of the bifurcating branch.
+    speed : float or None
+        d(log abs(m))/dp on the known branch.
+    flip : bool
+        Critical multiplier -1.
+    """
+    if speed is None or not np.isfinite(speed) or speed == 0.0 or curvature == 0.0:
+        return None, None
+    product = curvature * speed
+    return ("supercritical" if product > 0.0 else "subcritical"), float(product if flip else -product)
+
+
+def fold_coefficient(engine: Engine, point: Solved) -> float | None:
+    """a in p = p0 + a s^2 along the branch through a fold, s the amplitude along the critical vector."""
+    ends = _beside(engine, point)
+    if ends is None:
+        return None
+    far, near = (ahead.p + back.p - 2.0 * point.p for ahead, back in zip(ends[::2], ends[1::2], strict=True))
+    # a of each, (ahead + back - 2 p) / (2 step^2), continued to no step at all
+    return float((16.0 * near - far) / (6.0 * STEP**2)) / engine.amplitude(point.tangent) ** 2

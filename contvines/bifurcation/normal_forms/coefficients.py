@@ -1,0 +1,316 @@
+"""Coefficients of normal forms at a special point, from derivatives of the equations there.
+
+A cycle (or half of it, closed by the mirror) is a map z -> m z + ... on the critical directions; an equilibrium a flow
+z' = l z + .... With J(m) the Jacobian whose closure is multiplied by m, K the part of J that belongs to the closure (-1 for a
+flow), B and C the second and third derivatives of the equations, whose arguments are closed by their own multipliers,
+
+    fold          z + a z^2      a = -w.B(v, v) / (2 w.K v)
+    pitchfork     z + a z^3      a = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(1) h = -B(v, v)
+    flip          -z + c z^3     the same with J(-1) v = 0
+    Neimark-Sacker  m z + c z^2 z*  c = -w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.K q),  m = exp(i theta),
+                                 J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);      d = Re(c / m)
+    Hopf          the same with J - i omega;                                        l1 = Re c / omega
+
+The critical vectors have unit length over the unknowns, of a cycle over its first point, as the textbook has them for the return map.
+Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7; Kuznetsov and Meijer, SIAM J. Sci. Comput. 26 (2005)
+1932, for maps; the form for cycles follows from the same expansion of the block-cyclic system.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problems.abilities import Evaluable
+from ...problems.protocol import Problem
+from .taylor import Line, along_line
+
+NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
+
+
+def _size(vector: Any) -> float:
+    """Largest entry."""
+    return float(np.abs(vector).max())
+
+
+class Coefficient(NamedTuple):
+    """A normal-form coefficient with an estimate of its error; `size` is the sum of the magnitudes of its terms."""
+
+    value: float
+    error: float
+    size: float = np.inf
+
+
+class Pair(NamedTuple):
+    """The critical vector of a pair with open ends, the left one, derivatives along real and imaginary part, h20, w.K q."""
+
+    vector: Any
+    left: np.ndarray
+    a: Line
+    b: Line
+    h20: np.ndarray
+    weight: complex
+
+
+class Forms:
+    """Normal forms of a problem at one point.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its ``kernels`` have ``matrix``; for maps ``offspring`` gives the cycle written twice.
+    u, p
+        The special point.
+    rough : bool
+        A few digits only, for scanning.
+
+    Attributes
+    ----------
+    units : ndarray, shape (N,)
+        Typical sizes, in which the unknowns are counted inside: vectors that go in and out of `null`, `chain`, `line` and `rest` are in these
+        units, and so are J and K.
+    rate : float
+        Typical size of an eigenvalue; time is counted in its inverse.
+    """
+
+    def __init__(self, problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> None:
+        self.rough = rough
+        self.problem, self.p, self.n = problem, float(p), len(u)
+        self.flow = problem.spectrum != "map"
+        scales = problem.scales
+        known = scales is not None and len(scales.unknowns) == self.n
+        self.units = (
+            np.asarray(scales.unknowns, dtype=float) if known and scales is not None else np.ones(self.n)
+        )
+        self.rate = float(scales.rate) if scales is not None and self.flow else 1.0
+        self._twice = np.tile(self.units, 2)
+        self._plain = not known and self.rate == 1.0
+        self.u = np.array(u, dtype=float) / self.units
+        self.reach = max(float(np.sqrt(np.mean(self.u**2))), 1.0)
+        self.work = problem.workspace()
+        here = self._jacobian((problem.kernels, problem.data, self.work), self.u)
+        if here is None:
+            raise ValueError("the equations cannot be evaluated here")
+        self.J = here
+        if self.flow:
+            self.K = -np.eye(self.n)
+            self.open, self.open_work, self.whole = problem, self.work, self.u
+        else:
+            here = self.u * self.units
+            problem.kernels.linearise(problem.data, here, self.p, self.work)
+            problem.kernels.flip(problem.data, self.work, -1.0)
+            self.K = 0.5 * (self.J - self._in_units(problem.kernels.matrix(problem.data, self.work)))
+            embedding = problem.offspring(problem.flip_kind, here, self.p, np.zeros(self.n + 1), -1.0 + 0.0j)[
+                0
+            ]
+            self.open = embedding.problem
+            self.open_work = self.open.workspace()
+            self.whole = np.array(embedding.u, dtype=float) / self._twice
+        self.open_calls = (self.open.kernels, self.open.data, self.open_work)
+        self.lines: dict[bytes, Line] = {}
+        self._nulls: dict[complex, tuple[np.ndarray, np.ndarray]] = {}
+
+    @property
+    def eigenvalues(self) -> NDArray[np.complex128]:
+        """Of an equilibrium, in the user's own unit of time."""
+        return np.asarray(self.rate * np.linalg.eigvals(self.J), dtype=complex)
+
+    def _in_units(self, matrix: np.ndarray) -> np.ndarray:
+        """A Jacobian of one period, or of two, in units of the unknowns and of time."""
+        if self._plain:
+            return matrix
+        units = self._units_of(matrix.shape[0])
+        return matrix * units / (self.rate * units[:, None])
+
+    def _units_of(self, count: int) -> np.ndarray:
+        """Of the unknowns of one period, or of two."""
+        return self.units if count == self.n else self._twice
+
+    def _jacobian(self, calls: tuple[Any, Any, Any], u: np.ndarray) -> np.ndarray | None:
+        """The Jacobian of a problem, given by its kernels, data and workspace."""
+        kernels, data, work = calls
+        here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
+        if not kernels.linearise(data, here, self.p, work) < 1e300:
+            return None
+        return self._in_units(kernels.matrix(data, work))
+
+    # ------------------------------------------------------------------ open ends
+    def closed_by(self, factor: complex) -> np.ndarray:
+        """J with its closure multiplied (maps), or J - factor (flows)."""
+        if self.flow:
+            return self.J - factor * np.eye(self.n)
+        return self.J + (factor - 1.0) * self.K
+
+    def extended(self, x: np.ndarray, factor: complex) -> np.ndarray:
+        """A perturbation of one period followed by itself times its multiplier, in the unknowns of the doubled cycle."""
+        if self.flow:
+            return x
+        parts = [self._continued(part) for part in (np.real(x), np.imag(x))]
+        return np.concatenate([x, factor * (parts[0] + 1j * parts[1] if np.iscomplexobj(x) else parts[0])])
+
+    def _continued(self, x: np.ndarray) -> np.ndarray:
+        """What the doubled cycle has in its second half if the perturbation goes on with multiplier one."""
+        if not x.any():
+            return np.zeros(self.n)
+        here, tangent = self.u * self.units, np.append(x * self.units, 0.0)
+        embedding = self.problem.offspring(self.problem.flip_kind, here, self.p, tangent, -1.0 + 0.0j)[0]
+        return np.asarray(embedding.tangent, dtype=float)[self.n : 2 * self.n] / self.units
+
+    def line(self, x: np.ndarray, factor: complex) -> Line:
+        """Derivatives of the rows of one period along a real perturbation whose closure is multiplied."""
+        return self.line_of(self.extended(x, factor))
+
+    def line_of(self, direction: np.ndarray) -> Line:
+        """The same for a direction of the doubled cycle."""
+        direction = np.ascontiguousarray(np.real(direction))
+        key = direction.tobytes()
+        if key not in self.lines:
+
+            def rows(points: np.ndarray) -> np.ndarray | None:
+                found = []
+                for u in points:
+                    here = self._jacobian(self.open_calls, u)
+                    if here is None:
+                        return None
+                    found.append(here[: self.n])
+                return np.array(found)
+
+            found = along_line(rows, self.whole, direction, self.reach, self.rough)
+            if found is None:
+                raise ValueError("the equations cannot be evaluated near the special point")
+            self.lines[key] = found
+        return self.lines[key]
+
+    # ------------------------------------------------------------------ one real critical direction
+    def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:
+        """Right null vector of J closed by a multiplier, of length one as normal forms measure it, and the left one."""
+        if factor not in self._nulls:
+            left, _, right = np.linalg.svd(self.closed_by(factor))
+            self._nulls[factor] = self.unit(right[-1].conj()), left[:, -1].conj()
+        return self._nulls[factor]
+
+    def unit(self, vector: np.ndarray) -> np.ndarray:
+        """A direction with length one over the user's unknowns, of a cycle over its first point."""
+        return vector / (self.problem.amplitude(vector * self.units) or np.nan)
+
+    def chain(self, factor: float) -> np.ndarray:
+        """The null vector and the next one of a double multiplier's Jordan chain, shape (N, 2)."""
+        first = np.real(self.null(factor)[0])
+        if first[np.argmax(np.abs(first))] < 0.0:  # quadratic coefficients change their signs with it
+            first = -first
+        second = self._solve(self.closed_by(factor), -(self.K @ first))
+        return np.column_stack([first, second - (first @ second) / (first @ first) * first])
+
+    def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+        """``rest`` at many displacements, shape (k, N)."""
+        after = [None] * len(here) if following is None else following
+        return np.array([self.rest(x, y) for x, y in zip(here, after, strict=True)])
+
+    def rest(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+        """The equations of one period at a displacement whose next period begins with another one; F for a flow.
+
+        NaN where they cannot be evaluated.
+        """
+        moved = self.whole + (here if following is None else np.append(here, self._carrier @ following))
+        moved, rows = moved * self._units_of(len(moved)), self.rate * self.units
+        if isinstance(self.open, Evaluable):  # no derivatives are asked for
+            with np.errstate(all="ignore"):
+                try:
+                    return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n] / rows
+                except (ValueError, ArithmeticError):
+                    return np.full(self.n, np.nan)
+        kernels, data, work = self.open_calls
+        if not kernels.linearise(data, moved, self.p, work) < 1e300:
+            return np.full(self.n, np.nan)
+        return np.array(work[0].reshape(-1)[: self.n]) / rows
+
+    @cached_property
+    def _carrier(self) -> np.ndarray:
+        return np.column_stack([self._continued(unit) for unit in np.eye(self.n)])
+
+    def quadratic(self, along: np.ndarray | None = None) -> Coefficient:
+        """a at a fold: z + a z^2, or z' = a z^2; its sign is that along a direction, if one is given."""
+        v, w = (np.real(x) for x in self.null(0.0 if self.flow else 1.0))
+        if along is not None and v @ (along / self.units) < 0.0:
+            v = -v
+        line, weight, x = self.line(v, 1.0), float(w @ self.K @ v) or np.nan, self.extended(v, 1.0)
+        value = -0.5 * float(w @ line.second @ x) / weight
+        # as if the second derivative pointed along the left null vector: at a cusp it may vanish, then the third one counts
+        size = float(np.linalg.norm(line.second @ x) + NEAR * np.linalg.norm(line.third @ x))
+        return self._timed(
+            value, abs(0.5 * self.n * line.second_error * _size(v) / weight), 0.5 * size / abs(weight)
+        )
+
+    def _timed(self, value: float, error: float, size: float) -> Coefficient:
+        """A coefficient of a rate of change, in the user's own unit of time."""
+        return Coefficient(self.rate * value, self.rate * error, self.rate * size)
+
+    def cubic(self, factor: float) -> Coefficient:
+        """The cubic coefficient at a flip (factor -1) or pitchfork (factor 1; flows 0)."""
+        v, w = self.null(factor)
+        v, w = np.real(v), np.real(w)
+        closure = factor if not self.flow else 1.0
+        line, weight = self.line(v, closure), float(w @ self.K @ v) or np.nan
+        x = self.extended(v, closure)
+        regular = self.closed_by(0.0 if self.flow else 1.0)
+        if factor == (0.0 if self.flow else 1.0):  # singular itself
+            bordered = np.block([[regular, w[:, None]], [v[None, :], np.zeros((1, 1))]])
+            h = np.linalg.solve(bordered, np.append(-(line.second @ x), 0.0))[:-1]
+        else:
+            h = self._solve(regular, -(line.second @ x))
+        terms = np.array([w @ (line.third @ x), 3.0 * w @ (line.second @ self.extended(h, 1.0))])
+        missed = line.third_error * _size(x) + 3.0 * line.second_error * _size(h)
+        error = abs(self.n * missed / (6.0 * weight))
+        return self._timed(
+            -float(terms.sum()) / (6.0 * weight), error, float(np.abs(terms).sum() / abs(6.0 * weight))
+        )
+
+    @staticmethod
+    def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
+        """A solution, of least length where the matrix is singular."""
+        return np.linalg.lstsq(matrix, side, rcond=1e-10)[0]
+
+    # ------------------------------------------------------------------ a pair
+    def lyapunov(self, multiplier: complex) -> tuple[Coefficient, complex]:
+        """(first Lyapunov coefficient, c) of a pair: d = Re(c / m) for maps, l1 = Re(c) / omega for flows.
+
+        Parameters
+        ----------
+        multiplier : complex
+            m on the unit circle (i omega for flows); the raw one of the problem's own period.
+        """
+        multiplier = 1j * multiplier.imag / self.rate if self.flow else multiplier / abs(multiplier)
+        pair = self._pair(multiplier)
+        one, first = pair.vector, pair.a.second + 1j * pair.b.second
+        mixed = 0.0 if self.flow else 1.0
+        h11 = np.linalg.solve(self.closed_by(mixed), -np.real(first @ one.conj()))
+        terms = pair.left @ np.column_stack(
+            [
+                (pair.a.third + pair.b.third) @ one,  # q q q* = (a^2 + b^2) q
+                2.0 * first @ self.extended(h11, 1.0),
+                first.conj() @ self.extended(pair.h20, multiplier**2),
+            ]
+        )
+        c = complex(-0.5 * terms.sum() / pair.weight)
+        size = float(0.5 * np.abs(terms).sum() / abs(pair.weight))
+        bent = 2.0 * _size(h11) + _size(pair.h20)
+        missed = pair.a.third_error * _size(one) + pair.a.second_error * bent
+        error = float(abs(self.n * missed / pair.weight))
+        if self.flow:
+            omega = abs(multiplier.imag)
+            return Coefficient(c.real / omega, error / omega, size / omega), self.rate * c
+        return Coefficient(float((c / multiplier).real), error, size), c
+
+    def _pair(self, multiplier: complex) -> Pair:
+        q, w = self.null(multiplier)
+        # the phase in which real and imaginary parts are orthogonal
+        square = np.sum(q * q)
+        q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > 1e-300 else q
+        one: Any = self.extended(q, multiplier)
+        a, b = self.line_of(one.real), self.line_of(one.imag)
+        twice = 2.0 * multiplier if self.flow else multiplier**2
+        h20 = np.linalg.solve(self.closed_by(twice), -((a.second + 1j * b.second) @ one))
+        return Pair(one, w, a, b, h20, complex(w @ self.K @ q))

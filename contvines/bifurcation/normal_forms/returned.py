@@ -1,0 +1,79 @@
+"""Normal forms of a cycle of a flow, by its return map: those of a map of few unknowns, whatever the mesh of the cycle."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problems.abilities import Returning
+from ...problems.protocol import Problem
+from .coefficients import Forms
+from .taylor import Line, along_line
+
+
+def forms_at(problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> Forms:
+    """Normal forms of a problem at a point: of cycles of flows those of the return map.
+
+    Raises
+    ------
+    ValueError
+        If the equations cannot be evaluated there.
+    """
+    if isinstance(problem, Returning):
+        return ReturnForms(problem, u, p, rough)
+    return Forms(problem, u, p, rough)
+
+
+class ReturnForms(Forms):
+    """Normal forms of x -> P(x) at x = 0, P being the return map of a cycle. Equations are P(x) - x' = 0, x' the next return.
+
+    Critical vectors have unit length as states.
+    """
+
+    def __init__(self, problem: Any, u: np.ndarray, p: float, rough: bool = False) -> None:
+        self.problem, self.p, self.rough = problem, float(p), rough
+        self.returns = problem.return_map(u, p)
+        self.n = self.returns.basis.shape[1]
+        self.flow, self.rate, self.reach = False, 1.0, 1.0
+        self.units, self.u, self.whole = np.ones(self.n), np.zeros(self.n), np.zeros(self.n)
+        matrix = self.returns.varied(np.zeros((1, self.n)))[1][0]
+        if not np.isfinite(matrix).all():
+            raise ValueError("the motions beside the cycle cannot be followed for a period")
+        self.J, self.K = matrix - np.eye(self.n), -np.eye(self.n)
+        self.lines: dict[bytes, Line] = {}
+        self._nulls: dict[complex, tuple[np.ndarray, np.ndarray]] = {}
+
+    def along(self, direction: np.ndarray) -> np.ndarray:
+        """A direction of the cycle's unknowns as one of the section."""
+        return self.returns.inverse @ direction[: self.returns.node]
+
+    def spectrum(self) -> NDArray[np.complex128]:
+        """Multipliers."""
+        return np.asarray(np.linalg.eigvals(self.J + np.eye(self.n)), dtype=complex)
+
+    def extended(self, x: np.ndarray, factor: complex) -> np.ndarray:
+        return x
+
+    def unit(self, vector: np.ndarray) -> np.ndarray:
+        return vector / (np.linalg.norm(self.returns.basis @ vector) or np.nan)
+
+    def line_of(self, direction: np.ndarray) -> Line:
+        direction = np.ascontiguousarray(np.real(direction))
+        key = direction.tobytes()
+        if key not in self.lines:
+
+            def rows(points: np.ndarray) -> np.ndarray | None:
+                found = self.returns.varied(points)[1]
+                return found if np.isfinite(found).all() else None
+
+            found = along_line(rows, self.whole, direction, self.reach, self.rough)
+            if found is None:
+                raise ValueError("the motions beside the cycle cannot be followed for a period")
+            self.lines[key] = found
+        return self.lines[key]
+
+    def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
+        assert following is not None
+        return self.returns(here) - following

@@ -1,0 +1,327 @@
+"""Marking: from located events to labelled special points, each listed once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from ..bifurcation.kind import Classified
+from ..bifurcation.kinds import BORDERS
+from ..bifurcation.located import Located, Role
+from ..bifurcation.location_error import missed, singular_within
+from ..bifurcation.point_on_branch import PointOnBranch
+from ..bifurcation.switching import null_vectors
+from ..branches.assembly import a_sliver, stability
+from ..branches.branch import Branch
+from ..branches.ending import Ending, Reason
+from ..branches.half_branch import HalfBranch
+from ..branches.special_point import SpecialPoint
+from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
+from ..interrupts import OPEN
+from ..problems.abilities import Adaptive
+from ..problems.protocol import Problem
+from .identity import same_form
+from .match_borders import is_border
+from .queue import Origin, Pending
+from .run import Run
+
+TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
+TURNING_KINDS = ("branch-point", "symmetry-breaking")
+BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
+LAST_PLACES = 8  # units in the last place of the parameter by which two values may differ by rounding alone
+SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
+
+
+def mark(
+    run: Run, engine: Engine, branch: Branch, half: HalfBranch, pending: Pending, origin: int | None
+) -> list[SpecialPoint]:
+    """Label the events and interval ends of a branch in order along it, `origin` among them; returns what is new on it."""
+    marks: list[tuple[int, str]] = []
+    fresh: list[SpecialPoint] = []
+    ends: dict[int, Ending] = {}
+    last = len(branch) - 1
+    events = _without_turnings(run, engine, half.events)
+    if not branch.closed:
+        for index, side in ((0, 0), (last, 1)):
+            if branch.endings[side].reason is Reason.LEFT_INTERVAL:
+                events.append((index, _end(run, engine, half, index)))
+    reached = pending.kind in (Origin.SWITCH, Origin.REST) and not branch.closed
+    if reached and origin is not None and pending.point is not None:
+        marks.append((origin, pending.point))
+    events.sort(key=lambda pair: pair[0])
+    for index, event in events:
+        meets = event.role is Role.MEETING
+        kind = _kind(run, engine, event)
+        label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
+        if label is None:
+            label = run.new_label(run.kind(kind).label)
+            point = _special(run, label, kind, engine, branch, event, index)
+            run.graph.special[label] = point
+            fresh.append(point)
+        else:
+            known = run.graph.special[label]
+            if known in fresh and abs(known.index - index) <= 1:
+                run.remark(label, "two multipliers cross at once")
+                known.index = min(index, known.index)
+                continue
+            if meets:
+                run.connect(label, known.branch, branch.label)
+            elif known.kind in BORDERS:
+                if known.multipliers_beyond is None and label == pending.point:
+                    known.multipliers_beyond = engine.multipliers(event.point.row)
+                if known.branch != branch.label:
+                    run.connect(label, known.branch, branch.label)
+            elif known.met_from is not None:
+                # now seen on the branch of the more symmetric solutions: that one owns it
+                point = _special(run, label, kind, engine, branch, event, index)
+                point.met_from, point.remarks = known.met_from, known.remarks
+                for other in run.graph.branches.values():
+                    first, last = (_met(ending, label, branch.label) for ending in other.endings)
+                    other.endings = (first, last)
+                run.graph.special[label] = point
+                fresh.append(point)
+            elif known.branch != branch.label:
+                run.connect(label, known.branch, branch.label)
+        marks.append((index, label))
+        if index in (0, last) and event.ends_branch:
+            ending = _ending(run, label, kind, branch, meets)
+            if event.role is Role.STOP:
+                ending = replace(ending, reason=Reason.STOPS, text=event.name)
+            ends[0 if index == 0 else 1] = ending
+    branch.marks = tuple(sorted(marks))
+    # a fold that is a branch point, or a second one that is the first, is no place at which stability changes
+    places = {i for i, _ in marks} | ({origin} if origin is not None else set())
+    twins = {i for i, _ in half.events} - places
+    branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
+    _unresolved(run, branch)
+    branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
+    return fresh
+
+
+def _unresolved(run: Run, branch: Branch) -> None:
+    """Say where two changes of stability lie so close together that solutions between them are not resolved; these count as unstable.
+
+    Either no solution could be put between them, or their parameter values are one as far as these are known.
+    """
+    special = run.graph.special
+    for (i, one), (j, other) in pairwise(branch.marks):
+        here, there = (special[label] for label in (one, other))
+        if not a_sliver((here.kind,), (there.kind,)):
+            continue
+        apart = abs(here.value - there.value)
+        rounding = LAST_PLACES * float(np.spacing(run.unit(here.value)))
+        if j - i > 1 and apart > here.location_error + there.location_error + rounding:
+            continue
+        for label, neighbour in ((one, other), (other, one)):
+            run.remark(label, f"{apart:.1e} from {neighbour}: solutions between the two are not resolved")
+        beside = [k for k in (i - 1, j + 1) if 0 <= k < len(branch)]
+        if branch.stable is not None and not branch.stable[beside].any():
+            branch.stable[i : j + 1] = False
+
+
+def origin_index(half: HalfBranch, pending: Pending) -> int | None:
+    """Index of the special point from which the branch was reached, if it is one of its points."""
+    if pending.origin is None:
+        return None
+    whole = half.joined()
+    for i in np.flatnonzero(whole.values == pending.origin.p):
+        if np.array_equal(whole.points[i], pending.origin.u):
+            return int(i)
+    return None
+
+
+def _end(run: Run, engine: Engine, half: HalfBranch, index: int) -> Located:
+    u, p, tangent = half.at(index)
+    bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
+    point = engine.polish(u, p, engine.at_parameter, p, tangent)
+    if point is None:  # by chance the equations end just there, and cannot be differentiated
+        row = np.full(engine.row_size, np.nan)
+        row[: 2 * engine.m] = half.joined().spectrum[index]
+        point = Solved(u, p, tangent, row, 1.0, 0.0, 0.0)
+    return Located(float(index), "end", 0, point, (bound, bound), 0.0)
+
+
+def _kind(run: Run, engine: Engine, event: Located) -> str:
+    """The kind of an event; a branch point is classed by the symmetry of its null vector."""
+    if event.kind != "branch-point":
+        return event.kind
+    for test in run.engine(engine.problem)[1].symmetries:
+        if np.abs(test.part(event.point.u[None, :])).max() > 1e-6:
+            continue
+        for vector in null_vectors(engine, event.point.u, event.point.p, event.point.tangent):
+            u = vector[:-1]
+            image = test.image_direction(event.point.u, u)
+            if np.abs(image + u).max() < 1e-3 * np.abs(u).max():
+                return test.kind
+    return event.kind
+
+
+def _known(
+    run: Run,
+    engine: Engine,
+    branch: Branch,
+    event: Located,
+    kind: str,
+    pending: Pending,
+    meets: bool,
+    at_end: bool,
+) -> str | None:
+    problem, point = engine.problem, event.point
+    if kind == "end":
+        return None
+    if kind in BORDERS and at_end and pending.kind is Origin.BORDER and pending.point is not None:
+        source = run.graph.special[pending.point]
+        gaps = np.abs(branch.values[[0, -1]] - source.value)
+        home = abs(source.value - point.p) <= gaps.min()  # the other end is a border of its own, however near
+        if home and is_border(run, problem, event, source.label):
+            return source.label
+    if kind in BORDERS and at_end:
+        for other in run.queue:
+            if other.kind is not Origin.BORDER or other.point is None:
+                continue
+            if not is_border(run, problem, event, other.point):
+                continue
+            found = run.register.find(other.problem, other.u, other.p)
+            if found is not None and found.label == branch.label:
+                other.reached = branch.real
+                return other.point
+    form, beside = None, []
+    if kind == "fold":
+        turning = _turning_at(run, engine, event)
+        if turning is not None:
+            return turning
+    for known in run.graph.special.values():
+        if (
+            known.kind != kind
+            or abs(known.value - point.p) > SAME_VALUE * run.unit(point.p)
+            or known.problem is None
+        ):
+            continue
+        if kind == "user" and known.name != event.name:
+            continue
+        form = problem.canonical(point.u, point.p) if form is None else form
+        if same_form(form, run.form(known), engine.scale):
+            return known.label
+        if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
+            beside.append((abs(known.value - point.p), known.label))
+    # one point seen in two problems, whose forms need not agree: the nearest, where others are near
+    return min(beside)[1] if beside else None
+
+
+def _without_turnings(
+    run: Run, engine: Engine, events: list[tuple[int, Located]]
+) -> list[tuple[int, Located]]:
+    """Events of one branch without folds that are its own branch points: a side branch only turns there."""
+    places = [event.point for _, event in events if event.kind in TURNING_KINDS]
+    return [
+        (index, event)
+        for index, event in events
+        if event.kind != "fold"
+        or not any(_turns(run, engine, event.point, place.u, place.p) for place in places)
+    ]
+
+
+def _turns(run: Run, engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
+    """Whether a fold is so close to a point that it is that point."""
+    if u.shape != fold.u.shape:
+        return False
+    gap = engine.join(u - fold.u, p - fold.p)
+    return abs(gap[-1]) <= TURNING * run.unit(fold.p) and engine.norm(gap) <= BESIDE
+
+
+def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
+    """Label of a branch point at which a side branch only turns: the parameter is stationary there, but it is no fold."""
+    for known in run.graph.special.values():
+        if known.kind in TURNING_KINDS and _turns(run, engine, event.point, known.u, known.value):
+            return known.label
+    return None
+
+
+def _doubt(engine: Engine, special: SpecialPoint) -> None:
+    """Carry the accuracy of the equations into that of the location, and look whether given derivatives are right here."""
+    problem = engine.problem
+    if special.kind == "end":
+        return
+    special.location_error = max(
+        special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
+    )
+    if isinstance(problem, Adaptive):
+        own = problem.accuracy(special.u, special.value) * engine.parameter_unit(special.value)
+        special.location_error = max(special.location_error, own)
+        if special.kind == "homoclinic":
+            special.location_error = max(
+                special.location_error, problem.remaining(special.u, special.tangent)
+            )
+    if special.kind == "branch-point":
+        where = engine, special.u, special.value, special.tangent
+        within = max(singular_within(*where), 2.0 * missed(*where))
+        special.location_error = max(special.location_error, within)
+    wrong = problem.check(special.u, special.value)
+    if wrong is not None:
+        special.remarks = (*special.remarks, str(wrong))
+        special.location_error = float("inf")
+
+
+def _special(
+    run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
+) -> SpecialPoint:
+    point = event.point
+    margins = float(engine.smallest_margin(point.row))
+    special = SpecialPoint(
+        label=label,
+        kind=kind,
+        branch=branch.label,
+        value=float(point.p),
+        parameter=branch.parameter,
+        u=np.array(point.u),
+        tangent=np.array(point.tangent),
+        multipliers=engine.multipliers(point.row),
+        margins=margins,
+        bracket=event.bracket,
+        residual=float(point.residual),
+        location_error=float(event.error),
+        real=branch.real or margins >= MARGIN,
+        name=event.name,
+        margin_index=int(event.index) if kind in BORDERS else None,
+        index=index,
+        problem=engine.problem,
+    )
+    special.replay = partial(_replay, special.problem, special.u, special.value) if special.real else None
+    _doubt(engine, special)
+    if event.role is Role.MEETING:
+        special.met_from = branch.label
+    if classify := run.kind(kind).classify:
+        special.criticality, special.coefficient, remarks = Classified(
+            *classify(PointOnBranch(engine, point))
+        )
+        special.remarks = (*special.remarks, *remarks)
+    run.events[label] = event
+    return special
+
+
+def _replay(problem: Problem, u: np.ndarray, p: float) -> float | None:
+    """Deviation of a simulation from the solution; None where there is none."""
+    with OPEN:
+        error = problem.replay(u, p)
+    return None if error is None else float(error)
+
+
+def _ending(run: Run, label: str, kind: str, branch: Branch, meets: bool) -> Ending:
+    known = run.graph.special[label]
+    own = known.branch == branch.label
+    if meets:
+        reason = Reason.COMES_BACK if own else Reason.MEETS_SYMMETRIC
+    else:
+        reason = Reason.REACHES if own else Reason.MEETS
+    return Ending(reason, known.value, label, None if own else known.branch, kind)
+
+
+def _met(ending: Ending, label: str, owner: str) -> Ending:
+    """An ending at a point of more symmetric solutions, whose branch is known now."""
+    if ending.reason is Reason.COMES_BACK and ending.point == label:
+        return replace(ending, reason=Reason.MEETS_SYMMETRIC, other=owner)
+    return ending

@@ -1,0 +1,424 @@
+"""Leaving: what to trace next from a special point."""
+
+from __future__ import annotations
+
+import copy
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..bifurcation.kinds import BORDERS
+from ..bifurcation.located import Role
+from ..bifurcation.normal_forms.along_branch import criticality, crossing_speed, fold_coefficient
+from ..bifurcation.normal_forms.criticality import cubic_form
+from ..bifurcation.switching import departures
+from ..branches.branch import Branch
+from ..branches.special_point import TRANSCRITICAL, SpecialPoint
+from ..continuation.engine import Engine, Solved
+from ..interrupts import OPEN
+from ..journal import NullJournal
+from ..problems.abilities import Adaptive, Onward, everything
+from ..problems.protocol import Problem
+from ..problems.registry import UnknownFactory, rebuild
+from .graph import Graph
+from .queue import Origin, Pending
+from .run import Run
+
+DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
+CRITICAL = 1e-3  # distance from the boundary within which multipliers cross there, double ones included
+SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there
+OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
+
+FAMILY = (
+    "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
+    "give the problem conditions= that pick one of them"
+)
+VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
+SEED = ("problem", "u", "p", "tangent", "note", "persistence")
+SWITCHING, CROSSING = "the search for branches that leave here", "the search for solutions beyond the border"
+DEEPER = "the solutions found beyond are not followed: depth = {depth}"
+
+
+def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """Queue the branches that leave a special point, as far as the depth allows."""
+    leaves = run.kind(point.kind).leaves
+    if point.kind in BORDERS:
+        _cross(run, point, branch, depth)
+    elif point.met_from is not None and point.branch == branch.label and _from_side(run, point):
+        run.attempt(point.label, SWITCHING, partial(_root, run, point, branch, depth), None)
+    elif leaves in ("branch", "doubled"):
+        run.attempt(point.label, SWITCHING, partial(_switch, run, point, branch, depth), None)
+    elif leaves == "cycles":
+        run.attempt(point.label, SWITCHING, partial(_cycles, run, point, branch, depth), None)
+
+
+def why_nothing_leaves(graph: Graph, label: str) -> str:
+    """A sentence on a special point from which no new branch leaves."""
+    point = graph.special[label]
+    if nothing := graph.kind(point.kind).nothing:
+        return nothing
+    known = [
+        end for s in graph.switches if s.point == label for end in (s.source, s.target) if end != point.branch
+    ]
+    if known:
+        return "the graph has the branches that leave here already: " + ", ".join(dict.fromkeys(known))
+    return "; ".join(point.remarks) or "no branch that leaves here was found"
+
+
+def _from_side(run: Run, point: SpecialPoint) -> bool:
+    event = run.events.get(point.label)
+    return event is None or event.role is Role.MEETING
+
+
+def _solved(run: Run, engine: Engine, point: SpecialPoint) -> Solved:
+    row = np.zeros(engine.row_size)
+    return Solved(point.u, point.value, point.tangent, row, 0.0, point.residual, point.location_error)
+
+
+# ------------------------------------------------------------------ bifurcations
+
+
+def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    problem = point.problem
+    engine, detector = run.engine(problem)
+    here = _solved(run, engine, point)
+    spectrum = engine.spectrum(_row(run, engine, point))
+    generic = run.kind(point.kind).leaves == "branch"
+    inside = (
+        any(
+            test.kind == point.kind and _is_image(test.part(point.u[None, :])) for test in detector.symmetries
+        )
+        and problem.flip_kind != point.kind
+    )
+    if generic or inside:
+        name, critical = "plus", 1.0 + 0.0j
+        children: list[Any] = [_Same(problem, point.u, point.tangent, point.kind)]
+    else:
+        name, critical = "minus", -1.0 + 0.0j
+        children = list(problem.offspring(point.kind, point.u, point.value, point.tangent, critical))
+    if not children:
+        run.remark(point.label, run.kind(point.kind).without)
+        return
+    k = _which(run, engine, point, name, spectrum)
+    speed = crossing_speed(engine, here, name, k) if engine.m else None
+    point.mirror = point.kind == "symmetry-breaking"
+    for child in children:
+        target, _ = run.engine(child.problem)
+        found = departures(
+            target,
+            np.asarray(child.u, dtype=float),
+            point.value,
+            target.unit(np.asarray(child.tangent, dtype=float)),
+            run.settings.amplitude,
+            one_sided=not generic,
+            most=_critical(engine, spectrum, critical),
+        )
+        if not found:
+            run.remark(point.label, "no branch that leaves here was found")
+        for departure in found:
+            unit = run.unit(point.value)
+            transcritical = abs(departure.slope) > SLANTED * unit * departure.amplitude
+            turns = abs(point.tangent[-1]) <= SLANTED * unit * engine.amplitude(point.tangent)
+            if departure.upright(unit):
+                run.remark(point.label, VERTICAL)
+            elif generic and transcritical and turns:  # a pitchfork: the known branch is the one that bends
+                curvature = fold_coefficient(engine, here)
+                along = crossing_speed(engine, departure.origin, name, k) if engine.m else None
+                if point.criticality is None and curvature is not None:
+                    point.criticality, point.coefficient = criticality(curvature, along, flip=False)
+            elif point.criticality is None and not transcritical:
+                curvature = departure.curvature / target.amplitude(departure.direction) ** 2
+                point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
+                exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)
+                point.coefficient = rough if point.criticality is None else exactly
+            elif transcritical:
+                run.remark(point.label, TRANSCRITICAL)
+            if departure.family:
+                run.remark(point.label, FAMILY)
+                continue
+            if depth + 1 > run.depth:
+                continue
+            run.queue.append(
+                Pending(
+                    departure.problem,
+                    departure.origin.u,
+                    departure.origin.p,
+                    kind=Origin.SWITCH,
+                    depth=depth + 1,
+                    source=branch.label,
+                    point=point.label,
+                    note="mirror image not traced" if point.mirror else "",
+                    origin=departure.origin,
+                    ahead=departure.ahead,
+                    back=departure.back,
+                    first_step=min(run.settings.first_step, departure.amplitude),
+                )
+            )
+
+
+def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """The cycles that are born at a Hopf point, of problems that have cycles."""
+    if depth + 1 > run.depth:
+        return
+    problem = point.problem
+    for child in problem.offspring("hopf", point.u, point.value, point.tangent, 1j):
+        target, _ = run.engine(child.problem)
+        direction = target.unit(np.asarray(child.tangent, dtype=float))
+        found = departures(
+            target,
+            np.asarray(child.u, dtype=float),
+            point.value,
+            np.zeros(target.n + 1),
+            run.settings.amplitude,
+            one_sided=True,
+            directions=[direction],
+        )
+        if not found:
+            run.remark(point.label, "no cycle that leaves here was found")
+        for departure in found:
+            if departure.upright(run.unit(point.value)):
+                run.remark(point.label, VERTICAL)
+            run.queue.append(
+                Pending(
+                    departure.problem,
+                    departure.origin.u,
+                    departure.origin.p,
+                    kind=Origin.SWITCH,
+                    depth=depth + 1,
+                    source=branch.label,
+                    point=point.label,
+                    origin=departure.origin,
+                    ahead=departure.ahead,
+                    first_step=min(run.settings.first_step, departure.amplitude),
+                )
+            )
+
+
+def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
+    """How many multipliers are critical, and so how many null vectors there may be; None where the multipliers do not tell."""
+    if engine.problem.spectrum != "map":
+        return None
+    return int((np.abs(spectrum - critical) < CRITICAL).sum()) or None
+
+
+def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
+    """The coefficient from derivatives of the equations, where these can be had; else the one of the branch that leaves."""
+    if isinstance(problem, Adaptive) and name == "minus":
+        return problem.normal_form("period-doubling", u, p)
+    if len(u) > DERIVATIVES:
+        return rough
+    with OPEN:
+        exact = cubic_form(problem, u, p, flip=name == "minus")
+    return rough if exact is None else exact
+
+
+def _is_image(part: np.ndarray) -> bool:
+    """Whether a solution is its own image: the part that the symmetry changes is rounding."""
+    return bool(np.abs(part).max() <= OWN_IMAGE)
+
+
+def _row(run: Run, engine: Engine, point: SpecialPoint) -> np.ndarray:
+    event = run.events.get(point.label)
+    if event is not None:  # else the graph was loaded
+        return event.point.row
+    border = engine.weights * point.tangent
+    solved = engine.polish(
+        point.u, point.value, border, float(border @ engine.join(point.u, point.value)), point.tangent
+    )
+    return np.zeros(engine.row_size) if solved is None else solved.row
+
+
+def _which(run: Run, engine: Engine, point: SpecialPoint, name: str, spectrum: Any) -> int:
+    """Rank of the critical multiplier among those of its sort."""
+    event = run.events.get(point.label)
+    if event is not None and event.index > 0:
+        return event.index
+    real = np.sort(spectrum[spectrum.imag == 0.0].real * (-1.0 if name == "minus" else 1.0))[::-1]
+    aim = 0.0 if engine.problem.spectrum == "flow" else 1.0
+    return int(np.argmin(np.abs(real - aim))) + 1 if len(real) else 1
+
+
+def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """A side branch has come back to the more symmetric solutions before they were known."""
+    if depth + 1 > run.depth:
+        return
+    _, detector = run.engine(point.problem)
+    event = run.events.get(point.label)
+    if event is None:  # of a graph that was loaded
+        met = [t for t in detector.symmetries if t.kind == point.kind and _is_image(t.part(point.u[None, :]))]
+        if not met:
+            run.remark(point.label, "the problem has no symmetry that this point has")
+            return
+    else:
+        met = [detector.symmetries[event.index]]
+    symmetry = met[0].symmetry
+    if symmetry.root is not None:
+        problem, u = symmetry.root(point.u)
+        # it may be a shorter solution's still: asked here, as singular equations, once solved, repeat nothing exactly
+        problem, u = problem.root(u, point.value) or (problem, u)
+        run.queue.append(
+            Pending(
+                problem,
+                np.asarray(u, dtype=float),
+                point.value,
+                kind=Origin.ROOT,
+                depth=depth + 1,
+                source=branch.label,
+                point=point.label,
+            )
+        )
+        return
+    # in the same problem: both ways from a point on the other branch, through the special point
+    engine, _ = run.engine(point.problem)
+    for departure in departures(
+        engine, point.u, point.value, point.tangent, run.settings.amplitude, one_sided=False
+    ):
+        start = departure.ahead
+        if not engine.lower <= start.p <= engine.upper and departure.back is not None:
+            start = departure.back
+        run.queue.append(
+            Pending(
+                departure.problem,
+                start.u,
+                start.p,
+                start.tangent,
+                kind=Origin.ROOT,
+                depth=depth + 1,
+                source=branch.label,
+                point=point.label,
+            )
+        )
+
+
+# ------------------------------------------------------------------ borders
+
+
+def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """At a border: the solutions on the other side, and with ``virtual`` the rest of the branch itself."""
+    leaving = point
+    if point.index == 0:
+        leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
+        leaving.tangent = -point.tangent
+    outward = leaving.tangent
+    if branch.real:
+        seeds = _seeds(run, leaving, depth < run.depth)
+        if not seeds:
+            tell_dead_end(run, leaving)
+        elif all(_cost(seed) + depth > run.depth for seed in seeds):
+            run.remark(point.label, DEEPER.format(depth=run.depth))
+        for seed in seeds:
+            persistence = bool(seed["persistence"])
+            note = str(seed["note"]) or ("persistence" if persistence else "nonsmooth fold")
+            cost = _cost(seed)
+            if depth + cost > run.depth:
+                continue
+            run.queue.append(
+                Pending(
+                    seed["problem"],
+                    np.asarray(seed["u"], dtype=float),
+                    float(seed["p"]),
+                    None if seed["tangent"] is None else np.asarray(seed["tangent"], dtype=float),
+                    kind=Origin.BORDER,
+                    depth=depth + cost,
+                    source=branch.label,
+                    point=point.label,
+                    note=note,
+                )
+            )
+    if run.virtual:
+        engine, _ = run.engine(point.problem)
+        origin = engine.polish(
+            point.u,
+            point.value,
+            engine.weights * outward,
+            float(engine.weights * outward @ engine.join(point.u, point.value)),
+            outward,
+        )
+        if origin is not None:
+            origin = origin._replace(tangent=engine.unit(outward))  # solved for, it may be rounding
+        run.queue.append(
+            Pending(
+                point.problem,
+                point.u,
+                point.value,
+                outward,
+                kind=Origin.REST,
+                depth=depth,
+                source=branch.label,
+                point=point.label,
+                note="virtual" if branch.real else "real again",
+                real=not branch.real,
+                origin=origin,
+            )
+        )
+
+
+def tell_dead_end(run: Run, point: SpecialPoint) -> None:
+    """Say why nothing goes on at a border."""
+    run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.problem.dead_end, point), ""))
+
+
+def _cost(seed: dict[str, Any]) -> int:
+    """How many switches deeper a branch beyond a border is: one that goes on in the same direction is as deep."""
+    return 0 if seed["persistence"] else 1
+
+
+def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, Any]]:
+    """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
+    problem, brief = point.problem, not every and isinstance(point.problem, Onward)
+    key = f"{run.serial}/{'onward' if brief else 'beyond'}/{point.label}"
+    known = run.journal.recall(key)
+    problems = _rebuilt(known)
+    if known is not None and problems is not None:
+        return [
+            {
+                "problem": problems[i],
+                "u": known[f"u{i}"],
+                "p": known["p"][i],
+                "tangent": known.get(f"tangent{i}"),
+                "note": known["note"][i],
+                "persistence": known["persistence"][i],
+            }
+            for i in range(len(problems))
+        ]
+    with everything(problem, not brief):
+        seeds = run.attempt(point.label, CROSSING, lambda: list(problem.beyond(point)), None)
+    if seeds is None:
+        return []
+    if known is None and not isinstance(run.journal, NullJournal):
+        run.journal.record(key, _recorded(seeds))
+    return [{name: getattr(seed, name) for name in SEED} for seed in seeds]
+
+
+def _recorded(seeds: list[Any]) -> dict[str, Any]:
+    """Seeds as a journal keeps them."""
+    record: dict[str, Any] = {
+        "problems": [dict(seed.problem.describe()) for seed in seeds],
+        "p": [float(seed.p) for seed in seeds],
+        "note": [str(seed.note) for seed in seeds],
+        "persistence": [bool(seed.persistence) for seed in seeds],
+    }
+    for i, seed in enumerate(seeds):
+        record[f"u{i}"] = np.asarray(seed.u, dtype=float)
+        if seed.tangent is not None:
+            record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
+    return record
+
+
+def _rebuilt(record: Any) -> list[Any] | None:
+    """The problems of a journal's record; None where one of them cannot be had from it, and is asked for again."""
+    if record is None:
+        return None
+    try:
+        problems = [rebuild(entry) for entry in record["problems"]]
+    except UnknownFactory:
+        return None
+    return None if any(problem is None for problem in problems) else problems
+
+
+class _Same:
+    """The point in its own problem."""
+
+    def __init__(self, problem: Problem, u: np.ndarray, tangent: np.ndarray, kind: str) -> None:
+        self.problem, self.u, self.tangent, self.kind = problem, u, tangent, kind

@@ -1,0 +1,87 @@
+"""Coefficients of normal forms that can be worked out by hand."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.bifurcation.normal_forms.coefficients import Forms
+from contvines.bifurcation.normal_forms.criticality import pair_form
+
+
+def flow(function, size):
+    return Forms(
+        cv.AlgebraicProblem(function, np.zeros(size), 0.0, spectrum="flow", scale=1.0), np.zeros(size), 0.0
+    )
+
+
+@pytest.mark.parametrize("a", [0.7, -1.3])
+def test_folds(a):
+    """z' = p + a z^2, and z -> z + p + a z^2; the sign is that along the direction given."""
+    up = np.array([1.0])
+    assert flow(lambda u, p: p + a * u**2, 1).quadratic(up).value == pytest.approx(a, rel=1e-6)
+    fold = cv.MapProblem(lambda x, p: x + p + a * x**2, [0.0], 0.0, scale=1.0)
+    assert Forms(fold, np.zeros(1), 0.0).quadratic(up).value == pytest.approx(a, rel=1e-6)
+
+
+@pytest.mark.parametrize(("slaved", "own"), [(0.0, -1.0), (0.5, 0.0), (-0.8, 0.3)])
+def test_a_pitchfork_with_a_slaved_unknown(slaved, own):
+    """x' = p x + x w + c x^3, w' = -w + b x^2: on the centre manifold w = b x^2, so x' = (b + c) x^3."""
+    forms = flow(
+        lambda u, p: np.array([p * u[0] + u[0] * u[1] + own * u[0] ** 3, -u[1] + slaved * u[0] ** 2]), 2
+    )
+    assert forms.cubic(0.0).value == pytest.approx(slaved + own, rel=1e-5)
+
+
+@pytest.mark.parametrize(("a", "b"), [(0.0, 0.5), (0.6, 0.0), (0.9, -0.4)])
+def test_a_flip(a, b):
+    """x -> -x + a x^2 + b x^3 has the coefficient a^2 + b (Kuznetsov, Elements of Applied Bifurcation Theory, 4.5)."""
+    problem = cv.MapProblem(lambda x, p: -x + a * x**2 + b * x**3, [0.0], 0.0, scale=1.0)
+    assert Forms(problem, np.zeros(1), 0.0).cubic(-1.0).value == pytest.approx(a * a + b, rel=1e-5)
+
+
+OMEGA = 1.4
+
+
+def planar(f, g):
+    """x' = -omega y + f, y' = omega x + g, f and g by their monomials {(i, j): coefficient of x^i y^j}."""
+
+    def F(u, p):
+        x, y = u
+        return np.array(
+            [
+                -OMEGA * y + sum(c * x**i * y**j for (i, j), c in f.items()),
+                OMEGA * x + sum(c * x**i * y**j for (i, j), c in g.items()),
+            ]
+        )
+
+    return F
+
+
+def by_hand(f, g):
+    """16 a of Guckenheimer and Holmes, (3.4.11): third derivatives, and products of second ones over omega."""
+
+    def d(part, i, j):
+        return part.get((i, j), 0.0) * np.prod(np.arange(1, i + 1)) * np.prod(np.arange(1, j + 1))
+
+    third = d(f, 3, 0) + d(f, 1, 2) + d(g, 2, 1) + d(g, 0, 3)
+    second = d(f, 1, 1) * (d(f, 2, 0) + d(f, 0, 2)) - d(g, 1, 1) * (d(g, 2, 0) + d(g, 0, 2))
+    return third + (second - d(f, 2, 0) * d(g, 2, 0) + d(f, 0, 2) * d(g, 0, 2)) / OMEGA
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_hopf_point_of_any_plane_system(seed):
+    """Up to the length of the critical vector, which the radial cubic -x (x^2 + y^2) tells."""
+    radial = ({(3, 0): -1.0, (1, 2): -1.0}, {(2, 1): -1.0, (0, 3): -1.0})
+    draw = np.random.default_rng(seed)
+    powers = [(i, j) for i in range(4) for j in range(4) if 2 <= i + j <= 3]
+    drawn = tuple({power: float(draw.uniform(-1.0, 1.0)) for power in powers} for _ in range(2))
+    unit, found = (flow(planar(*parts), 2).lyapunov(1j * OMEGA)[0].value for parts in (radial, drawn))
+    assert unit < 0.0
+    assert found / unit == pytest.approx(by_hand(*drawn) / by_hand(*radial), rel=1e-5)
+
+
+@pytest.mark.parametrize(("sign", "said"), [(-1.0, "supercritical"), (1.0, "subcritical")])
+def test_the_side_of_a_hopf_point(sign, said):
+    parts = ({(3, 0): sign, (1, 2): sign}, {(2, 1): sign, (0, 3): sign})
+    problem = cv.AlgebraicProblem(planar(*parts), np.zeros(2), 0.0, spectrum="flow", scale=1.0)
+    assert pair_form(problem, np.zeros(2), 0.0, np.array([1j, -1j]) * OMEGA).criticality == said

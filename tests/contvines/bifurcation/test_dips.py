@@ -1,0 +1,237 @@
+"""Narrow windows between two points: nothing changes sign at the points, and still nothing is missed."""
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+import contvines as cv
+from contvines.bifurcation.detect import changes
+from contvines.bifurcation.multiplier_counts import counts
+from contvines.bifurcation.scan import Scanner, dips, in_native
+from contvines.bifurcation.symmetry_test import SymmetryTest
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
+from contvines.core.library import native
+from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.protocol import Kernels, ProblemDefaults, Symmetry
+
+
+def inspect(data, u, p, work, row):
+    row[0], row[1] = data.multiplier(p), 0.0
+    row[2] = data.margin(p)
+
+
+class Line(ProblemDefaults):
+    """u = p with a margin and a multiplier that are given functions of p."""
+
+    dimension, n_multipliers, n_margins, spectrum, parameter = 1, 1, 1, "map", "p"
+    kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect)
+    u0, p0 = np.array([-0.95]), -0.95
+
+    def __init__(self, margin=lambda p: 1.0, multiplier=lambda p: 0.5):
+        self.margin, self.multiplier, self.data = margin, multiplier, self
+
+    def workspace(self):
+        return dense_workspace(1)
+
+    def equations(self, u, p):
+        return u - p, np.eye(1), np.array([-1.0])
+
+    def margin_kind(self, j):
+        return "velocity-graze"
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
+def test_short_loss_of_a_margin(centre, half):
+    graph = cv.diagram(Line(margin=lambda p: (p - centre) ** 2 - half**2), within=(-1.0, 1.0))
+    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
+    assert graph["B1"].values[-1] == graph["VG1"].value
+
+
+class TwoMargins(Line):
+    """u = p with a margin that dips, and one that is lost for good a little later."""
+
+    n_margins = 2
+
+    def __init__(self, centre, half, later):
+        def inspect_both(data, u, p, work, row):
+            row[:] = 0.5, 0.0, (p - centre) ** 2 - half**2, centre + half + later - p
+
+        super().__init__()
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_both)
+
+    def margin_kind(self, j):
+        return ("velocity-graze", "wall-graze")[j]
+
+
+@settings(max_examples=80, deadline=None)
+@example(
+    -0.1875, 0.0078125, 0.015625
+)  # between the ends of two chunks, another margin is lost in the next segment
+@example(
+    0.289122949011563, 0.00390625, 0.0078125
+)  # a margin that is nearly zero at a point, lost right behind it
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.02), st.floats(1e-3, 0.02))
+def test_short_loss_of_a_margin_before_another_one_is_lost(centre, half, later):
+    """The branch ends where the first of them is lost, though the next point lies beyond the other one."""
+    graph = cv.diagram(TwoMargins(centre, half, later), within=(-1.0, 1.0))
+    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
+    assert graph["B1"].values[-1] == graph["VG1"].value
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.02), st.floats(1e-9, 1e-2))
+def test_short_loss_of_a_margin_that_is_not_the_smallest(centre, half, level):
+    """Another margin is smaller nearly everywhere, and does not vanish."""
+
+    def inspect_both(data, u, p, work, row):
+        row[:] = 0.5, 0.0, (p - centre) ** 2 - half**2, level
+
+    problem = TwoMargins(centre, half, 0.0)
+    problem.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_both)
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
+def test_short_loss_of_stability(centre, half):
+    graph = cv.diagram(
+        Line(multiplier=lambda p: -1.0 + 0.5 * ((p - centre) ** 2 - half**2)), within=(-1.0, 1.0)
+    )
+    found = sorted(point.value for point in graph.of_kind("period-doubling"))
+    assert found == pytest.approx([centre - half, centre + half], abs=1e-12)
+    np.testing.assert_allclose(
+        graph["B1"].stable_intervals(), [(-1.0, centre - half), (centre + half, 1.0)], atol=1e-12
+    )
+
+
+def test_a_touch_from_above_is_no_event():
+    graph = cv.diagram(Line(margin=lambda p: (p - 0.1234) ** 2 + 1e-9), within=(-1.0, 1.0))
+    assert len(graph) == 1 and not graph.of_kind("velocity-graze")
+
+
+def test_dips_of_parabolas():
+    x, above = np.array([0.0, 0.1, 0.2, 0.3]), (0.0, 0.1, 0.3)
+    for lowest, expected in ((-(0.01**2), [True, True]), (0.01**2, [False, False])):
+        values = (x - 0.13) ** 2 + lowest
+        assert [dips(*values[i : i + 3], 0.1, 0.1) for i in (0, 1)] == expected
+    uneven = [(t - 0.2) ** 2 - 1e-4 for t in above]
+    assert dips(*uneven, 0.1, 0.2) and not dips(*uneven, 0.2, 0.1)  # wrong lengths: no dip
+    assert not dips(1.0, np.inf, 1.0, 0.1, 0.1) and not dips(1.0, -0.1, 1.0, 0.1, 0.1)
+
+
+class Scanned(cv.AlgebraicProblem):
+    """Made-up points: two multipliers, five margins, the mirror u -> -u."""
+
+    def __init__(self):
+        super().__init__(lambda u, p: u - p, [0.0, 0.0], 0.0, scale=1.0)
+        self.n_multipliers, self.n_margins, self.spectrum = 2, 5, "map"
+        self.detection = ""
+        self.symmetries = (Symmetry("symmetry-breaking", lambda u: -u),)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_a_scan_is_what_numpy_says(seed, real):
+    """Both cores, against whole-array operations."""
+    draw = np.random.default_rng(seed)
+    n = int(draw.integers(2, 40))
+    points, values = draw.normal(size=(n, 2)), np.cumsum(draw.uniform(0.1, 1.0, n))
+    tangents, signs = draw.normal(size=(n, 3)), draw.choice([-1.0, 1.0], n)
+    rows = draw.normal(size=(n, 9)) + 1.0
+    rows[:, 3] = -rows[:, 1]
+    paired = draw.random(n) < 0.5
+    rows[paired, 2] = rows[paired, 0]
+    rows[~paired, 1] = rows[~paired, 3] = 0.0
+    rows[draw.random((n, 9)) < np.r_[np.zeros(4), np.full(5, 0.1)]] = np.nan
+    engine = Engine(Scanned(), (-100.0, 100.0), Settings())
+    scanner = Scanner(engine, [SymmetryTest(s, 2, None) for s in engine.problem.symmetries])
+    found = [scanner(points, values, tangents, rows, signs, real)]
+    if native():
+        scanner.mark = in_native
+        found.append(scanner(points, values, tangents, rows, signs, real))
+    smallest = np.fmin(np.fmin.reduce(rows[:, 4:], axis=1), np.inf)
+    numbers = counts(rows[:, 0:4:2] + 1j * rows[:, 1:4:2], "map")
+    negative = smallest < 0.0
+    for flags, least in found:
+        np.testing.assert_array_equal(least, smallest)
+        np.testing.assert_array_equal((flags & 1) > 0, changes(tangents[:, -1]))
+        np.testing.assert_array_equal((flags & 2) > 0, changes(signs))
+        np.testing.assert_array_equal((flags & 4) > 0, (numbers[1:] != numbers[:-1]).any(axis=1))
+        np.testing.assert_array_equal(
+            (flags & 8) > 0, (negative[1:] & ~negative[:-1]) if real else (negative[:-1] & ~negative[1:])
+        )
+        np.testing.assert_array_equal((flags & 16) > 0, (points[1:] * points[:-1]).sum(axis=1) < 0.0)
+    np.testing.assert_array_equal(found[0].flags, found[-1].flags)
+
+
+def test_points_that_hit_a_special_point_exactly():
+    """The start itself is the fold, the branch point, the zero of a user function."""
+    fold = cv.diagram(cv.AlgebraicProblem(lambda u, p: p - u**2, [0.0], 0.0), within=(-1.0, 1.0))
+    assert [p.value for p in fold.of_kind("fold")] == pytest.approx([0.0], abs=1e-14)
+    for spectrum in ("none", "flow"):
+        problem = cv.AlgebraicProblem(lambda x, p: p * x - x**2, [0.0], -0.5, spectrum=spectrum)
+        graph = cv.diagram(problem, within=(-0.5, 0.5), settings={"first_step": 0.5, "max_step": 0.5})
+        assert [p.value for p in graph.of_kind("branch-point")] == pytest.approx([0.0], abs=1e-14)
+        assert len(graph) == 2
+    line = cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0)
+    graph = cv.diagram(line, within=(-1.0, 1.0), user_functions={"zero": lambda u, p: u[0]})
+    assert [p.value for p in graph.of_kind("user")] == pytest.approx([0.0], abs=1e-15)
+
+
+def test_a_vertical_branch_has_no_folds():
+    """(p - 1/3) u = 0 and more: along p = 1/3 the parameter stands still."""
+    problem = cv.AlgebraicProblem(lambda u, p: (p - 1.0 / 3.0) * (1.0 + u**2), [0.2], 1.0 / 3.0)
+    graph = cv.diagram(problem, within=(-1.0, 1.0))
+    assert not graph.of_kind("fold") and "run away" in graph["B1"].ended[0]
+
+
+class Pair(Line):
+    """u = p; two real multipliers meet, as a pair pass the circle and come back, x = (p - centre) / half: their product is D(x), their sum T(x)."""
+
+    n_multipliers, n_margins = 3, 0
+
+    def __init__(self, centre, half):
+        def inspect_pair(data, u, p, work, row):
+            x = (p - centre) / half
+            product, mean = (
+                0.3 + 0.9 * np.exp(-(x**2)),
+                0.5 * (0.825 - 0.325 * np.tanh(2.0 * (x + 1.2))),
+            )
+            root = np.sqrt(complex(mean**2 - product))
+            pair = sorted((mean + root, mean - root), key=lambda z: (-abs(z), -z.imag))
+            row[:] = pair[0].real, pair[0].imag, pair[1].real, pair[1].imag, 0.1, 0.0
+
+        super().__init__()
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_pair)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(6e-3, 0.03))
+def test_a_pair_that_passes_the_circle_and_comes_back_in_the_step_in_which_it_comes_about(centre, half):
+    """D = 1 at x^2 = ln(9/7)."""
+    graph = cv.diagram(Pair(centre, half), within=(-1.0, 1.0))
+    off = half * np.sqrt(np.log(9.0 / 7.0))
+    found = sorted(point.value for point in graph.of_kind("neimark-sacker"))
+    assert found == pytest.approx([centre - off, centre + off], abs=1e-9)
+
+
+def test_multipliers_that_are_rounding_where_a_branch_begins_at_a_border_cross_nothing():
+    """At the border itself something has no length, and its multiplier is -1.002 by rounding; next to it, and in the limit, -0.992."""
+    forged = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -1.002 if p + 0.95 < 1e-14 else -0.992)
+    assert not cv.diagram(forged, within=(-1.0, 1.0)).of_kind("period-doubling")
+    crossing = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -0.9999 - (p + 0.95))
+    doubling = cv.diagram(crossing, within=(-1.0, 1.0)).of_kind("period-doubling")  # just beside the border
+    assert [point.value for point in doubling] == pytest.approx([-0.9499], abs=1e-12)
+
+
+@pytest.mark.parametrize("slope", [1.0, 1e-4, 1e-8])
+def test_told_errors_of_borders_cover_the_rounding_of_flat_margins(slope):
+    """A margin that comes from 1 - (1 - m), so that it is known to 1.1e-16, passes zero at 0.3."""
+    flat = Line(margin=lambda p: 1.0 - (1.0 - slope * (0.3 - p)), multiplier=lambda p: 0.5)
+    border = cv.diagram(flat, within=(-1.0, 1.0))["VG1"]
+    assert abs(border.value - 0.3) <= border.location_error
+    assert 1e-16 / slope < border.location_error < 1e-15 / slope + 1e-15

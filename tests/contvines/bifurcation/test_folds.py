@@ -1,0 +1,105 @@
+"""Folds that a step may pass over: two of them between neighbouring points, and one beside a border."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import fsolve
+
+import contvines as cv
+from contvines.bifurcation.scan import turns_twice
+from orbits import Absorber
+
+
+@pytest.mark.parametrize("e", [2e-2, 1e-2, 5e-3, 2e-3, 1e-3])
+@pytest.mark.parametrize("start", [-0.50, -0.493, -0.487])
+def test_two_folds_in_one_step(e, start):
+    """p = x^3 - 3 e^2 x turns at x = -e and x = e, where p = 2 e^3 and -2 e^3; the eigenvalue is 3 (e^2 - x^2)."""
+    problem = cv.AlgebraicProblem(
+        lambda x, p: p - x**3 + 3 * e**2 * x, [start], start**3 - 3 * e**2 * start, spectrum="flow"
+    )
+    graph = cv.diagram(problem, within=(-0.2, 0.2))
+    folds = graph.of_kind("fold")
+    assert [f.value for f in folds] == pytest.approx([2 * e**3, -2 * e**3], rel=1e-9)
+    assert [f.u[0] for f in folds] == pytest.approx([-e, e], rel=1e-7)
+    assert not graph.of_kind("branch-point") and len(graph) == 1
+    between = graph["B1"].points[~graph["B1"].stable][:, 0]
+    assert len(between) and np.all(np.abs(between) <= e * (1 + 1e-6))
+
+
+def test_an_inflection_is_no_pair_of_folds():
+    """p = x^3 + 3 e^2 x is monotonic, however small e."""
+    for e in (1e-2, 1e-3, 1e-4):
+        problem = cv.AlgebraicProblem(lambda x, p, e=e: p - x**3 - 3 * e**2 * x, [-0.5], -0.125 - 1.5 * e**2)
+        assert not cv.diagram(problem, within=(-0.2, 0.2)).of_kind("fold")
+
+
+@given(st.floats(0.01, 10), st.floats(0.01, 10), st.floats(-10, 10))
+@settings(deadline=None)
+def test_the_cubic_with_given_slopes(here, there, mean):
+    """Whether c' is negative somewhere on [0, 1], c the cubic with c'(0), c'(1) and c(1) - c(0), by looking everywhere."""
+    a = np.linalg.solve([[1, 0, 0], [1, 2, 3], [1, 1, 1]], [here, there, mean])
+    smallest = np.polyval([3 * a[2], 2 * a[1], a[0]], np.linspace(0, 1, 20001)).min()
+    if abs(smallest) > 1e-5:
+        assert turns_twice(here, there, mean) == (smallest < 0.0)
+
+
+def test_folds_beside_borders_of_a_machine():
+    """RLts has two folds within one step, RsLtt one right before its border (found missing, and taken for a branch point).
+
+    That they are folds is seen without continuation: the equations are solved with one unknown held, and the amplitude
+    has an extremum there.
+    """
+    machine = Absorber(
+        restitution=0.4568919355326183,
+        friction=0.873452076725605,
+        gravity=0.15461715433738688,
+        mass_ratio=0.0,
+        frequency=1.0903929085904416,
+    )
+    start = machine.orbit("RsLs", 1, amplitude=1.5763)
+    graph = cv.diagram(start, over="amplitude", within=(1.1035, 2.207), depth=2)
+    assert not graph.of_kind("branch-point")
+    by_word = {b.description["word"]: b for b in graph.branches.values()}
+    folds = {word: [p for p in graph.on(by_word[word].label) if p.kind == "fold"] for word in by_word}
+    assert len(folds["LRts"]) == 2 and len(folds["LsRtt"]) == 1
+    assert by_word["LRts"].stable_intervals() == [
+        pytest.approx(sorted(p.value for p in folds["LRts"]), abs=1e-12)
+    ]
+    for fold in folds["LRts"] + folds["LsRtt"]:
+        problem, work = fold.problem, fold.problem.workspace()
+        held = int(np.argmax(np.abs(fold.tangent[:-1])))
+
+        def value(shift, fold=fold, problem=problem, work=work, held=held):
+            def residual(z):
+                u = np.insert(z[:-1], held, fold.u[held] + shift)
+                problem.kernels.linearise(problem.data, u, z[-1], work)
+                return work[0].ravel().copy()
+
+            z, _, good, _ = fsolve(
+                residual, np.append(np.delete(fold.u, held), fold.value), xtol=1e-14, full_output=True
+            )
+            assert np.abs(residual(z)).max() < 1e-12
+            return z[-1]
+
+        step = 1e-4
+        changes = np.array([value(step), value(-step)]) - fold.value
+        assert np.all(changes < 0.0) or np.all(changes > 0.0)
+        assert abs(changes[0] - changes[1]) < 0.1 * abs(changes).min()
+
+
+@pytest.mark.parametrize(
+    "name", ["border", "leap", "meets", "fold", "astray", "branch-point", "end", "plain"]
+)
+def test_a_user_function_may_have_any_name(name):
+    """The circle x^2 + p^2 = 1 closes, folds at p = -1 and 1, and has x = 0.3 at p = -+sqrt(0.91), whatever that is called."""
+    problem = cv.AlgebraicProblem(lambda u, p: [u[0] ** 2 + p**2 - 1.0], [1.0], 0.0)
+    graph = cv.diagram(problem, within=(-2.0, 2.0), user_functions={name: lambda u, p: u[0] - 0.3})
+    (branch,) = graph
+    assert branch.closed
+    folds = sorted(point.value for point in graph.of_kind("fold"))
+    assert folds == pytest.approx([-1.0, 1.0], abs=1e-10)
+    mine = graph.of_kind("user")
+    assert [point.name for point in mine] == [name, name]
+    assert sorted(point.value for point in mine) == pytest.approx([-np.sqrt(0.91), np.sqrt(0.91)], abs=1e-10)
+    assert len(graph.special) == 4

@@ -1,0 +1,46 @@
+"""Entries of files in which the border at which an event vanishes was called chatter and labelled CH."""
+
+from contvines.graph.old_names import renamed
+
+
+def test_kinds_and_labels_of_a_graph():
+    entries = {
+        "branch": {
+            "B1": {"label": "B1", "seed": "CH1", "marks": [[3, "CH1"]], "endings": [{"point": "CH1", "kind": "chatter"}]}
+        },
+        "special": {
+            "CH1": {"label": "CH1", "kind": "chatter", "branch": "B1"},
+            "LP1": {"label": "LP1", "kind": "fold", "branch": "B1"},
+        },
+        "switch": {"0": {"point": "CH1", "source": "B1", "target": "B2", "kind": "chatter"}},
+        "proof": {"CH1": {"existence": True}},
+        "attractor": {"0": {"kind": "chatter", "word": ""}},
+    }  # fmt: skip
+    assert renamed(entries) == {
+        "branch": {
+            "B1": {"label": "B1", "seed": "VE1", "marks": [[3, "VE1"]], "endings": [{"point": "VE1", "kind": "vanishing-event"}]}
+        },
+        "special": {
+            "VE1": {"label": "VE1", "kind": "vanishing-event", "branch": "B1"},
+            "LP1": {"label": "LP1", "kind": "fold", "branch": "B1"},
+        },
+        "switch": {"0": {"point": "VE1", "source": "B1", "target": "B2", "kind": "vanishing-event"}},
+        "proof": {"VE1": {"existence": True}},
+        "attractor": {"0": {"kind": "chatter", "word": ""}},
+    }  # fmt: skip
+
+
+def test_chenciner_points_of_a_chart_keep_their_label():
+    entries = {
+        "locus": {"CH2": {"label": "CH2", "kind": "chatter", "seed": "CH2", "marks": [[1, "CH1"]]}},
+        "plane-point": {"CH1": {"label": "CH1", "kind": "chenciner", "on": ["CH2"]}},
+    }
+    assert renamed(entries) == {
+        "locus": {"VE2": {"label": "VE2", "kind": "vanishing-event", "seed": "VE2", "marks": [[1, "CH1"]]}},
+        "plane-point": {"CH1": {"label": "CH1", "kind": "chenciner", "on": ["VE2"]}},
+    }
+
+
+def test_entries_of_today_are_handed_on():
+    entries = {"special": {"LP1": {"label": "LP1", "kind": "fold"}}}
+    assert renamed(entries) is entries
