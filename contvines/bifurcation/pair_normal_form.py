@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from ..problems.abilities import Adaptive
 from .kind import Classified
 from .normal_forms.criticality import pair_form, strong_resonance
 from .point_on_branch import PointOnBranch
@@ -12,8 +13,8 @@ from .point_on_branch import PointOnBranch
 
 def classify(point: PointOnBranch) -> Classified:
     """From derivatives of the equations; of cycles on a mesh, whose unknowns are more than the states of a map, from the problem's own form."""
-    problem = point.problem
-    if isinstance(problem, Adaptive) and problem.spectrum == "map":
+    problem: Any = point.problem
+    if point.engine.adaptive and problem.spectrum == "map":
         return _of_cycle(problem, point)
     if problem.spectrum not in ("map", "flow"):
         return Classified()
@@ -21,7 +22,7 @@ def classify(point: PointOnBranch) -> Classified:
     return Classified(form.criticality, form.coefficient, (form.note,) if form.note else ())
 
 
-def _of_cycle(problem: Adaptive, point: PointOnBranch) -> Classified:
+def _of_cycle(problem: Any, point: PointOnBranch) -> Classified:
     upper = point.multipliers[np.imag(point.multipliers) > 0.0]
     if not len(upper):
         return Classified()

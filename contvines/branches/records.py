@@ -44,7 +44,7 @@ def unpack(record: dict[str, Any]) -> list[Located]:
     """Located events from a journal."""
     events = []
     for i, name in enumerate(record["kind"]):
-        kind = RENAMED.get(name, name)
+        kind = RENAMED.get(str(name), str(name))
         position, error, low, high, p, sign, residual, correction = (float(x) for x in record["numbers"][i])
         point = Solved(
             np.array(record["u"][i]),
