@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.bifurcation.segment import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from contvines.bifurcation.segment import Segment
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
 from orbits.simulation.driver import machine as engine_of

@@ -38,7 +38,8 @@ def test_without_friction_flights_have_walls():
     word = Word.parse("LLR", frictionless=True)
     assert margin_name(word, 4 * 2 + FLIGHT) == "wall" and border_kind(word, 4 * 2 + FLIGHT) == "wall-graze"
     assert (
-        border_kind(word, 4 * 0 + EVENT) == "wall-graze" and border_kind(word, 4 * 0 + DURATION) == "vanishing-event"
+        border_kind(word, 4 * 0 + EVENT) == "wall-graze"
+        and border_kind(word, 4 * 0 + DURATION) == "vanishing-event"
     )
 
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from contvines.bifurcation.segment import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from contvines.bifurcation.segment import Segment
 
 FAR = 1e-2  # in the metric of the continuation, in which the interval has length 1
 
