@@ -4,6 +4,7 @@ import csv
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -108,15 +109,32 @@ def _json(graph: "Graph", path: Path) -> None:
 
 
 def _graphml(graph: "Graph", path: Path) -> None:
-    import networkx
+    """GraphML (graphml.graphdrawing.org): a `key` for each attribute of nodes or edges, then the graph with its data."""
+    keys: dict[tuple[str, str, str], ElementTree.Element] = {}
 
-    network = graph.network()
-    flat = networkx.MultiDiGraph(**_flat(network.graph))
-    for node, data in network.nodes(data=True):
-        flat.add_node(node, **_flat(data))
-    for source, target, key, data in network.edges(keys=True, data=True):
-        flat.add_edge(source, target, key=key, **_flat(data))
-    networkx.write_graphml(flat, path)
+    def describe(element: ElementTree.Element, of: str, data: dict[str, Any]) -> None:
+        for name, value in _flat(data).items():
+            kind = next(kind for sort, kind in _GRAPHML_TYPES if isinstance(value, sort))
+            about = {"id": f"d{len(keys)}", "for": of, "attr.name": name, "attr.type": kind}
+            key = keys.setdefault((of, name, kind), ElementTree.Element("key", about))
+            text = str(value).lower() if kind == "boolean" else str(value)
+            ElementTree.SubElement(element, "data", key=key.attrib["id"]).text = text
+
+    body = ElementTree.Element("graph", edgedefault="directed")
+    describe(body, "graph", {"parameter": graph.parameter, "finished": graph.finished})
+    for label, data in graph.nodes():
+        describe(ElementTree.SubElement(body, "node", id=label), "node", data)
+    for source, target, data in graph.edges():
+        edge = ElementTree.SubElement(body, "edge", source=source, target=target, id=data["point"])
+        describe(edge, "edge", data)
+    root = ElementTree.Element("graphml", xmlns="http://graphml.graphdrawing.org/xmlns")
+    root.extend([*keys.values(), body])
+    tree = ElementTree.ElementTree(root)
+    ElementTree.indent(tree)
+    tree.write(path, encoding="utf-8", xml_declaration=True)
+
+
+_GRAPHML_TYPES = ((bool, "boolean"), (int, "long"), (float, "double"), (str, "string"))
 
 
 def _flat(data: dict[str, Any]) -> dict[str, Any]:

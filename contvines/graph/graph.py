@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -211,25 +212,43 @@ class Graph:
             for label, proof in self.proofs.items()
         }
 
-    def network(self) -> Any:
-        """The graph as networkx MultiDiGraph: nodes are branches, edges are switches."""
-        import networkx
+    def nodes(self) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Branches as nodes of a network: label and attributes."""
+        return ((branch.label, branch.to_dict()) for branch in self.branches.values())
 
-        network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
-        for branch in self.branches.values():
-            network.add_node(branch.label, **branch.to_dict())
+    def edges(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """Links between branches as edges of a network: labels of both branches, and attributes."""
         for switch in self.switches:
             point = self.special[switch.point]
-            network.add_edge(
+            yield (
                 switch.source,
                 switch.target,
-                key=switch.point,
-                point=switch.point,
-                kind=switch.kind,
-                value=float(point.value),
-                criticality=point.criticality,
-                note=switch.note,
+                {
+                    "point": switch.point,
+                    "kind": switch.kind,
+                    "value": float(point.value),
+                    "criticality": point.criticality,
+                    "note": switch.note,
+                },
             )
+
+    def network(self) -> Any:
+        """The graph as networkx MultiDiGraph: nodes are branches, edges are switches.
+
+        Raises
+        ------
+        ValueError
+            If networkx is not installed.
+        """
+        try:
+            import networkx
+        except ImportError:
+            raise ValueError(
+                "this needs networkx, which is not installed: pip install 'contvines[tables]'"
+            ) from None
+        network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
+        network.add_nodes_from(self.nodes())
+        network.add_edges_from((a, b, data["point"], data) for a, b, data in self.edges())
         return network
 
     def merge(self, other: Graph) -> dict[str, str]:
