@@ -47,7 +47,7 @@ EXPORT void core_exponentials(whole count, const double* x, double* values) {
 EXPORT const Table* core_table(whole which) {
     static const Table* const tables[] = {&cycles::CycleKernels<cycles::Cavity<cycles::AbsorberLaw>>::table,
                                           &cycles::CycleKernels<cycles::Cavity<cycles::GeneralLaw>>::table,
-                                          &cycles::CycleKernels<cycles::CoupledCycles>::table, &loci::table};
+                                          &cycles::CycleKernels<cycles::Coupled>::table, &loci::table};
     return tables[which];
 }
 

@@ -1,86 +1,127 @@
-// Event-driven simulation of the absorber on its oscillator.
-//
-// In the direction s of the sliding let y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at least
-//
-//     h = 2 y / (sqrt(y'^2 + 2 M y) - y'),
-//
-// and w is monotone for as long as y is positive: inside such a step the wall ahead is met exactly when it has been passed at the end
-// of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip is
-// found in the same way from a - |v''| > 0.
-//
-// M comes from the energy of the third derivative u = q1''', which is itself an oscillator's response to a force of amplitude
-// f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time.
-//
-// Close to the start of a leg differences are taken from the Taylor series, and positions are kept with the digits below their
-// roundoff, so that flights, turns and impacts keep their relative accuracy however small they are.
+// The absorber on its oscillator between two events, in closed form: for numbers, and for numbers with derivatives. Simulation, cycles
+// and margins use the same motion. In words: orbits/machines/coupled/maps.py.
 #pragma once
-#include "stepping.hpp"
+#include "dual.hpp"
 
-namespace simulation {
+namespace coupled {
 
 // Response of a damped oscillator to the moving base, X sin Psi + Y cos Psi, and its own decay rate and frequency.
-struct Response {
-    double X = 0.0, Y = 0.0, alpha, beta, kappa, by_beta, by_kappa;  // kappa = alpha^2 + beta^2; reciprocals
+template <class T> struct Response {
+    T X = 0.0, Y = 0.0, alpha, beta, kappa, by_beta, by_kappa;  // kappa = alpha^2 + beta^2; reciprocals
 
-    Response(double mass, double force, double excitation, double damping, double omega) {
-        double drag = damping * omega, stiffness = 1.0 - mass * omega * omega, size = stiffness * stiffness + drag * drag;
-        if (force != 0.0) {
-            double scale = force / size;
-            X = size == 0.0 ? HUGE_VAL : scale * (stiffness + excitation * drag * drag);
-            Y = size == 0.0 ? HUGE_VAL : scale * drag * (excitation * stiffness - 1.0);
+    Response(T mass, T force, T excitation, T damping, T omega) {
+        T drag = damping * omega, stiffness = 1.0 + -(mass * omega * omega), size = stiffness * stiffness + drag * drag;
+        if (value_of(force) != 0.0 && value_of(size) == 0.0) X = Y = HUGE_VAL;
+        else if (value_of(size) != 0.0) {
+            T scale = force / size;
+            X = scale * (stiffness + excitation * drag * drag), Y = scale * drag * (excitation * stiffness - 1.0);
         }
         alpha = 0.5 * damping / mass;
-        double square = 1.0 / mass - alpha * alpha;
-        beta = square <= 0.0 ? __builtin_nan("") : sqrt(square);
+        T square = 1.0 / mass - alpha * alpha;
+        beta = value_of(square) <= 0.0 ? T(NAN) : sqrt(square);
         kappa = alpha * alpha + beta * beta;
-        by_beta = 1.0 / beta;
-        by_kappa = 1.0 / kappa;
+        by_beta = 1.0 / beta, by_kappa = 1.0 / kappa;
     }
 };
 
 // Motion of the oscillator from a state on: q1 = constant + harmonic h + damped oscillation z; q2' and q2'' of the absorber.
-struct Oscillation {
-    double omega, square, alpha, beta, kappa, h0, h1, z0, z1, q2_rate, q2_pull, by_omega, by_beta, by_kappa;
-    double h_sine = h1 * by_omega, z_sine = (z1 + alpha * z0) * by_beta, z1_sine = (alpha * z1 + kappa * z0) * by_beta;  // of sines
+template <class T> struct Oscillation {
+    T omega, square, alpha, beta, kappa, h0, h1, z0, z1, q2_rate, q2_pull, by_omega, by_beta, by_kappa;
+    T h_sine = h1 * by_omega, z_sine = (z1 + alpha * z0) * by_beta, z1_sine = (alpha * z1 + kappa * z0) * by_beta;  // of sines
 
-    struct Point { double way, speed, h2, z2, h3, z3; };  // q1 and q1' less those at the start; second and third derivatives
+    // q1 and q1' less those at the start, the mean of q1'' since then; second and third derivatives.
+    struct Point { T way, speed, mean, h2, z2, h3, z3; };
 
     // Taylor series to order 8 up to here: relative error below roundoff.
     static constexpr double NEAR = 0.03;
 
-    Point at(double t) const {
-        if (t < NEAR) {
-            double h2 = -square * h0, h3 = -square * h1, z2 = -2.0 * alpha * z1 - kappa * z0, z3 = -2.0 * alpha * z2 - kappa * z1;
-            double h4 = -square * h2, h5 = -square * h3, z4 = -2.0 * alpha * z3 - kappa * z2, z5 = -2.0 * alpha * z4 - kappa * z3;
-            double h6 = -square * h4, h7 = -square * h5, h8 = -square * h6, z6 = -2.0 * alpha * z5 - kappa * z4;
-            double z7 = -2.0 * alpha * z6 - kappa * z5, z8 = -2.0 * alpha * z7 - kappa * z6;
-            double d2 = h2 + z2, d3 = h3 + z3, d4 = h4 + z4, d5 = h5 + z5, d6 = h6 + z6, d7 = h7 + z7, d8 = h8 + z8;
+    Point begin() const {
+        T z2 = -2.0 * alpha * z1 - kappa * z0;
+        return {0.0, 0.0, z2 - square * h0, -(square * h0), z2, -(square * h1), -2.0 * alpha * z2 - kappa * z1};
+    }
+
+    Point at(T t) const {
+        if (fabs(value_of(t)) < NEAR) {
+            T h2 = -(square * h0), h3 = -(square * h1), z2 = -2.0 * alpha * z1 - kappa * z0, z3 = -2.0 * alpha * z2 - kappa * z1;
+            T h4 = -(square * h2), h5 = -(square * h3), z4 = -2.0 * alpha * z3 - kappa * z2, z5 = -2.0 * alpha * z4 - kappa * z3;
+            T h6 = -(square * h4), h7 = -(square * h5), h8 = -(square * h6), z6 = -2.0 * alpha * z5 - kappa * z4;
+            T z7 = -2.0 * alpha * z6 - kappa * z5, z8 = -2.0 * alpha * z7 - kappa * z6;
+            T d2 = h2 + z2, d3 = h3 + z3, d4 = h4 + z4, d5 = h5 + z5, d6 = h6 + z6, d7 = h7 + z7, d8 = h8 + z8;
             constexpr double T3 = 1.0 / 3, T5 = 1.0 / 5, T6 = 1.0 / 6, T7 = 1.0 / 7;
-            double b = 0.5 * t, c = t * T3, d = 0.25 * t, e = t * T5, f = t * T6, g = t * T7, i = 0.125 * t;
-            return {t * (h1 + z1) + t * b * (d2 + c * (d3 + d * (d4 + e * (d5 + f * (d6 + g * (d7 + i * d8)))))),
-                    t * (d2 + b * (d3 + c * (d4 + d * (d5 + e * (d6 + f * (d7 + g * d8)))))),
+            T b = 0.5 * t, c = t * T3, d = 0.25 * t, e = t * T5, f = t * T6, g = t * T7, i = 0.125 * t;
+            T mean = d2 + b * (d3 + c * (d4 + d * (d5 + e * (d6 + f * (d7 + g * d8)))));
+            return {t * (h1 + z1) + t * b * (d2 + c * (d3 + d * (d4 + e * (d5 + f * (d6 + g * (d7 + i * d8)))))), t * mean, mean,
                     h2 + t * (h3 + b * (h4 + c * (h5 + d * (h6 + e * (h7 + f * h8))))),
                     z2 + t * (z3 + b * (z4 + c * (z5 + d * (z6 + e * (z7 + f * z8))))),
                     h3 + t * (h4 + b * (h5 + c * (h6 + d * (h7 + e * h8)))),
                     z3 + t * (z4 + b * (z5 + c * (z6 + d * (z7 + e * z8))))};
         }
-        double sin_forced, cos_forced, sin_own, cos_own;
+        T sin_forced, cos_forced, sin_own, cos_own;
         sine_cosine(omega * t, sin_forced, cos_forced);
         sine_cosine(beta * t, sin_own, cos_own);
-        double decay = exponential(-alpha * t), C = decay * cos_own, S = decay * sin_own;
-        double H0 = h0 * cos_forced + h_sine * sin_forced, H1 = h1 * cos_forced - omega * h0 * sin_forced;
-        double Z0 = z0 * C + z_sine * S, Z1 = z1 * C - z1_sine * S, Z2 = -2.0 * alpha * Z1 - kappa * Z0;
-        return {(H0 - h0) + (Z0 - z0), (H1 - h1) + (Z1 - z1), -square * H0, Z2, -square * H1, -2.0 * alpha * Z2 - kappa * Z1};
+        T decay = exponential(-(alpha * t)), C = decay * cos_own, S = decay * sin_own;
+        T H0 = h0 * cos_forced + h_sine * sin_forced, H1 = h1 * cos_forced - omega * h0 * sin_forced;
+        T Z0 = z0 * C + z_sine * S, Z1 = z1 * C - z1_sine * S, Z2 = -2.0 * alpha * Z1 - kappa * Z0;
+        T speed = (H1 - h1) + (Z1 - z1);
+        return {(H0 - h0) + (Z0 - z0), speed, speed / t, -(square * H0), Z2, -(square * H1), -2.0 * alpha * Z2 - kappa * Z1};
     }
 
     // Way that the absorber slides less than it would without acceleration of q1: q2 - q2(0).
-    double travel(double t) const { return (q2_rate + 0.5 * q2_pull * t) * t; }
+    T travel(T t) const { return (q2_rate + 0.5 * q2_pull * t) * t; }
 
-    // Fourth and fifth derivatives of q1 without what the base gives.
-    double fourth(const Point& p) const { return -square * p.h2 - 2.0 * alpha * p.z3 - kappa * p.z2; }
-    double fifth(const Point& p) const {
+    // Fourth and fifth derivatives of q1.
+    T fourth(const Point& p) const { return -square * p.h2 - 2.0 * alpha * p.z3 - kappa * p.z2; }
+    T fifth(const Point& p) const {
         return -square * p.h3 + 2.0 * alpha * (2.0 * alpha * p.z3 + kappa * p.z2) - kappa * p.z3;
     }
+
+    // Bounds of |h'|, |h''|, .. by order, and of |z'|, |z''|, .. from the time `start` on.
+    T driven(int order) const {
+        T size = hypotenuse(h0, h_sine);
+        for (int k = 0; k < order; k++) size = size * omega;
+        return size;
+    }
+    T own(int order, T start) const {
+        T size = hypotenuse(z0, z_sine) * exponential(-alpha * start);
+        for (int k = 0; k < order / 2; k++) size = size * kappa;
+        return order % 2 ? size * sqrt(kappa) : size;
+    }
+};
+
+// Displacements and speeds of absorber and cavity.
+template <class T> struct Motion { T w, rate, v, v_rate; };
+
+// The machine's numbers. Parameters in order: forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation.
+template <class T> struct Law {
+    T G, omega, lambda, eps, r, mu, g, chi;
+    T full = 1.0 + eps, by_full = 1.0 / full, by_omega = 1.0 / omega, pull = mu * g, a = full * pull, drag = eps * lambda, square = omega * omega;
+    Response<T> slide{1.0, eps * G, chi, drag, omega}, stuck{full, eps * G, chi, drag, omega};
+
+    explicit Law(const T* p) : G(p[0]), omega(p[1]), lambda(p[2]), eps(p[3]), r(p[4]), mu(p[5]), g(p[6]), chi(p[7]) {}
+
+    // The closed form of a leg that begins with a state.
+    Oscillation<T> oscillation(const T& psi, const Motion<T>& x, double s) const {
+        const Response<T>& response = s != 0.0 ? slide : stuck;
+        T sin_psi, cos_psi, sp = s * pull, q2_rate = (x.v_rate - x.rate) * by_full, q1 = (x.v + eps * x.w) * by_full;
+        sine_cosine(psi, sin_psi, cos_psi);
+        T h0 = response.X * sin_psi + response.Y * cos_psi, h1 = omega * (response.X * cos_psi - response.Y * sin_psi);
+        return {omega, square, response.alpha, response.beta, response.kappa,
+                h0, h1, q1 - h0 + eps * sp, x.v_rate - eps * q2_rate - h1, q2_rate, sp, by_omega, response.by_beta, response.by_kappa};
+    }
+    // Where such a leg is after a time; `low`: digits of w below its roundoff.
+    Motion<T> after(const Oscillation<T>& q, const typename Oscillation<T>::Point& p, const Motion<T>& x, double s, const T& t, double low = 0.0) const {
+        if (s == 0.0) return {x.w, 0.0, x.v + full * p.way, x.v_rate + full * p.speed};
+        T travel = q.travel(t);
+        return {x.w + (low + (p.way - travel)), x.rate + p.speed - q.q2_pull * t, x.v + p.way + eps * travel,
+                x.v_rate + p.speed + eps * q.q2_pull * t};
+    }
+    // v'' = -q1 - eps lambda q1' + e + eps lambda e', which no friction enters.
+    T push(const Motion<T>& x, const T& sin_psi, const T& cos_psi) const {
+        T q1 = (x.v + eps * x.w) / full, q1_rate = (x.v_rate + eps * x.rate) / full;
+        return -q1 - drag * q1_rate + eps * G * (sin_psi + chi * drag * omega * cos_psi);
+    }
+    // Amplitude of the base's force.
+    T strength() const { return eps * fabs(G) * sqrt(1.0 + chi * chi * drag * drag * square); }
 };
 
 // Time for which y > 0 stays positive while |y''| <= bound: the zero of y + y' h - bound h^2/2.
@@ -89,379 +130,27 @@ inline double certain(double y, double slope, double bound) {
     return slope > 0.0 ? (root + slope) / bound : 2.0 * y / (root - slope);
 }
 
-struct Coupled {
-    static constexpr int STATE = 8, ROW = 7;
-    static constexpr double HORIZON = 2.5;  // M is renewed after this time
-
-    double G, omega, lambda, eps, r, mu, g, chi;  // forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation
-    double full, by_full, by_omega, pull, a, drag, square, force;
-    Response slide, stuck;
-
-    explicit Coupled(const double *p)
-        : G(p[0]), omega(p[1]), lambda(p[2]), eps(p[3]), r(p[4]), mu(p[5]), g(p[6]), chi(p[7]), full(1.0 + eps),
-          by_full(1.0 / full), by_omega(1.0 / omega), pull(mu * g),
-          a(full * pull), drag(eps * lambda), square(omega * omega),
-          force(eps * fabs(G) * sqrt(1.0 + chi * chi * drag * drag * square)), slide(1.0, eps * G, chi, drag, omega),
-          stuck(full, eps * G, chi, drag, omega) {}
-
-    // The closed form of a leg that begins with a state.
-    Oscillation oscillation(double psi, double w, double rate, double s, double v, double v_rate) const {
-        const Response& response = s != 0.0 ? slide : stuck;
-        double sin_psi, cos_psi, sp = s * pull, q2_rate = (v_rate - rate) * by_full, q1 = (v + eps * w) * by_full;
-        sine_cosine(psi, sin_psi, cos_psi);
-        double h0 = response.X * sin_psi + response.Y * cos_psi, h1 = omega * (response.X * cos_psi - response.Y * sin_psi);
-        return {omega, square, response.alpha, response.beta, response.kappa,
-                h0, h1, q1 - h0 + eps * sp, v_rate - eps * q2_rate - h1, q2_rate, sp, by_omega, response.by_beta, response.by_kappa};
+// First zero after the time `start` of a number that `look(tau, value, slope)` knows, with |second derivative| <= bound; `end` if there is
+// none before. Steps as long as is certain never jump over one. A zero at `start` itself is not counted: the slope there tells for how
+// long there is no other. `tiny`: the value's rounding; `phase`: where the motion began.
+template <class Look> double first_zero(double start, double end, double bound, double tiny, double phase, Look look) {
+    double tau = start, value, slope;
+    if (bound <= 1e-300) return end;
+    look(tau, value, slope);
+    if (fabs(value) <= tiny + 1e-15 * (1.0 + start + fabs(phase)) * fabs(slope)) {
+        tau += larger(fabs(slope) / bound, 1e-8);
+        if (!(tau < end)) return end;
+        look(tau, value, slope);
     }
-    Oscillation oscillation(const double *x) const {
-        return oscillation(x[PSI], x[W], x[MODE] != 0.0 ? x[RATE] : 0.0, x[MODE], x[V], x[V_RATE]);
+    const double sign = value > 0.0 ? 1.0 : -1.0;
+    for (;;) {
+        if (sign * value <= tiny) return tau;
+        double step = certain(sign * value, sign * slope, bound);
+        if (step <= 2e-16 * (1.0 + tau)) return tau;
+        tau += step;
+        if (!(tau < end)) return end;
+        look(tau, value, slope);
     }
+}
 
-    // Reduce the phase and set the mode of a start.
-    void launch(double *state) const {
-        carry(state[PSI], state[TURNS]);
-        double sin_psi, cos_psi, w = state[W], rate = state[RATE];
-        sine_cosine(state[PSI], sin_psi, cos_psi);
-        double q1 = (state[V] + eps * w) / full, q1_rate = (state[V_RATE] + eps * rate) / full;
-        double push = -q1 - drag * q1_rate + eps * G * (sin_psi + chi * drag * omega * cos_psi);  // v''
-        if (push == 0.0 && a == 0.0)  // the third derivative decides
-            push = eps * G * omega * (cos_psi - chi * drag * omega * sin_psi) - state[V_RATE] / full - drag * push;
-        if (rate != 0.0) state[MODE] = rate > 0.0 ? 1.0 : -1.0;
-        else if ((fabs(push) <= a && a > 0.0) || (fabs(w) == 1.0 && push * w >= 0.0)) state[MODE] = 0.0;
-        else state[MODE] = push >= 0.0 ? 1.0 : -1.0;
-    }
-
-    // How a leg ends.
-    enum Outcome { TIME_IS_OVER, HIT, HALT, SLIPS, NEVER };
-
-    // While the absorber sticks: the time until friction no longer holds it, and in which direction it then goes.
-    Outcome wait(const Oscillation& q, double w, double left, double& tau, Oscillation::Point& p, double& way) const {
-        double driven = full * square * hypotenuse(q.h0, q.h_sine);  // bounds of |v''|
-        double own = full * q.kappa * hypotenuse(q.z0, q.z_sine), tiny = 4e-16 * (driven + own);
-        double z2 = -2.0 * q.alpha * q.z1 - q.kappa * q.z0;
-        p = {0.0, 0.0, -square * q.h0, z2, -square * q.h1, -2.0 * q.alpha * z2 - q.kappa * q.z1};
-        bool first = true;  // a zero right at the start is judged by its slope, and left behind
-        double renew = -1.0, M = 0.0;
-        tau = 0.0;
-        while (tau < left) {
-            if (tau >= renew) {
-                if (driven + own * exponential(-q.alpha * tau) < a || driven + own == 0.0) {
-                    return NEVER;
-                }
-                double u4 = q.fourth(p), u5 = q.fifth(p);
-                M = full * (sqrt(u4 * u4 + u5 * u5 * q.by_kappa) + square * square * force * HORIZON);
-                renew = tau + HORIZON;
-            }
-            double value = full * (p.h2 + p.z2), slope = full * (p.h3 + p.z3), step = renew - tau;
-            for (double m = 1.0; m >= -1.0; m -= 2.0) {
-                if (m * w >= 1.0) continue;
-                double y = a - m * value, y_rate = -m * slope;
-                way = m;
-                if (y <= tiny) {
-                    if (!first || y_rate < 0.0 || y < -tiny) return SLIPS;
-                    double ahead = M > 0.0 ? y_rate / M : step;
-                    step = least(step, most(ahead, 1e-9));
-                } else {
-                    double ahead = M > 0.0 || y_rate < 0.0 ? certain(y, y_rate, M) : step;
-                    step = least(step, ahead);
-                    if (ahead < 2.3e-16 * (1.0 + tau)) return SLIPS;
-                }
-            }
-            first = false;
-            tau = least(step < renew - tau ? tau + step : renew, left);
-            p = q.at(tau);
-        }
-        return TIME_IS_OVER;
-    }
-
-    // While it slides: the time until it hits the wall ahead or comes to a halt; y = s w' and its rate there, the way slid.
-    Outcome slip(const Oscillation& q, double s, double Y0, double Y1, double target, double left, double& tau, Oscillation::Point& p,
-                 double& y, double& y_rate, double& gain) const {
-        const double third = square * omega * force * HORIZON * sqrt(q.by_kappa), tiny = 1e-300;
-        double renew = -1.0, M = 0.0;
-        tau = gain = 0.0;
-        y = Y0;
-        y_rate = Y1;
-        if (target <= 0.0) return HIT;
-        auto look = [&] {
-            p = q.at(tau);
-            gain = s * (p.way - q.travel(tau));
-            y = Y0 + s * p.speed - pull * tau;
-            y_rate = s * (p.h2 + p.z2) - pull;
-        };
-        for (;;) {
-            if (tau >= renew) {
-                double u3 = p.h3 + p.z3, u4 = q.fourth(p);
-                M = sqrt(u3 * u3 + u4 * u4 * q.by_kappa) + third;
-                renew = tau + HORIZON;
-            }
-            double step;
-            if (y <= tiny) {
-                if (tau > 0.0) return HALT;
-                // from rest: y' or, after a slip, y'' opens the flight
-                double jerk = s * (p.h3 + p.z3), u4 = q.fourth(p), u5 = q.fifth(p);
-                double M4 = sqrt(u4 * u4 + u5 * u5 * q.by_kappa) + omega * third;
-                step = most(M > 0.0 ? y_rate / M : 0.0, M4 > 0.0 ? 1.5 * jerk / M4 : 0.0);
-                if (M == 0.0 && M4 == 0.0) return NEVER;  // neither friction nor forcing: nothing moves
-                if (!(step > 1e-13)) step = 1e-13;  // hardly any acceleration in this direction
-            } else {
-                step = M > 0.0 || y_rate < 0.0 ? certain(y, y_rate, M) : HUGE_VAL;
-                if (step < 2.3e-16 * tau) return HALT;
-                if (step > 2.0 * target / y + 0.5) step = 2.0 * target / y + 0.5;  // far beyond the wall
-            }
-            double before = tau;
-            tau = least(step < renew - tau ? tau + step : renew, left);
-            look();
-            if (gain >= target) {
-                double lo = before, hi = tau;
-                for (int k = 0; k < 60; k++) {
-                    double miss = gain - target, bottom = 2.0 * y * y - miss * y_rate;
-                    if (miss >= 0.0) hi = tau; else lo = tau;
-                    step = bottom > 0.0 ? 2.0 * miss * y / bottom : HUGE_VAL;
-                    double next = tau - step;
-                    if (!(lo < next && next < hi)) {
-                        if (fabs(step) <= 4.5e-16 * tau) break;
-                        next = 0.5 * (lo + hi);
-                    }
-                    double change = fabs(next - tau);
-                    tau = next;
-                    look();
-                    if ((change <= 1e-6 * tau && change * change * fabs(y_rate) <= 1e-16 * y * tau) || hi - lo <= 2.3e-16 * hi) {
-                        step = y > 0.0 ? (gain - target) / y : 0.0;  // one Newton step more, from values at hand
-                        if (fabs(step) < change) {
-                            tau -= step;
-                            p.way -= step * (p.speed + q.h1 + q.z1);
-                            p.speed -= step * (p.h2 + p.z2);
-                            y -= step * y_rate;
-                        }
-                        break;
-                    }
-                }
-                return HIT;
-            }
-            if (tau >= left) return TIME_IS_OVER;
-        }
-    }
-
-    Status advance(double *state, double until, Events& events) const {
-        double psi = state[PSI], w = state[W], rate = state[RATE], s = state[MODE], turns = state[TURNS], low = state[LOW];
-        double v = state[V], v_rate = state[V_RATE];
-        double check = psi + w + rate + v + v_rate + slide.X + slide.Y + stuck.X + stuck.Y + slide.beta + stuck.beta + a;
-        if (!isfinite(check)) return FAILED;
-        // by forcing periods and by periods of the oscillator, whichever are longer
-        const double goal = least(until, turns + least(SLICE, SLICE * omega));
-        bool fresh = false;  // the leg starts with a slip: w' = w'' = 0
-        int idle = 0;  // legs in a row without progress
-        Status status = EVENTS_FULL;
-        auto add = [&](Code code, double before, double after) {
-            double *row = events.add(ROW, code, s, psi, turns, w, before, after);
-            row[5] = v;
-            row[6] = v_rate;
-        };
-        while (!events.full()) {
-            const double left = ((goal - turns) * TWO_PI - psi) / omega, rest_of_time = ((until - turns) * TWO_PI - psi) / omega;
-            if (!(left > 0.0)) { status = TIME_REACHED; break; }
-            double tau;
-            Oscillation::Point p;
-            if (s == 0.0) {  // at rest on the floor, or against a wall
-                const Oscillation q = oscillation(psi, w, 0.0, 0.0, v, v_rate);
-                double way = 0.0;
-                Outcome outcome = wait(q, w, left, tau, p, way);
-                if (outcome == NEVER) p = q.at(tau = rest_of_time);
-                if (tau > 0.0) {
-                    v += full * p.way;
-                    v_rate += full * p.speed;
-                    psi += omega * tau;
-                    carry(psi, turns);
-                }
-                rate = 0.0;
-                if (outcome != SLIPS) { status = outcome == NEVER ? AT_REST : TIME_REACHED; break; }
-                s = way;
-                fresh = true;
-                if (a > 0.0 || fabs(w) == 1.0) add(SLIP, 0.0, 0.0);
-                continue;
-            }
-            const Oscillation q = oscillation(psi, w, rate, s, v, v_rate);
-            double z2 = -2.0 * q.alpha * q.z1 - q.kappa * q.z0;
-            p = {0.0, 0.0, -square * q.h0, z2, -square * q.h1, -2.0 * q.alpha * z2 - q.kappa * q.z1};
-            double Y0 = s * rate, Y1 = fresh ? 0.0 : s * (p.h2 + p.z2) - pull;
-            if (Y0 < 1e-6 && s * w == -1.0 && low == 0.0 && Y1 + 2.0 * a < 0.0) {
-                // leaving a wall that is pushed after the absorber: is this the tail of a chatter?
-                double shove = -Y1 - a, factor = r * sqrt((shove - a) / (shove + a));  // shove: |v''|
-                double rest = Y0 * (1.0 / (shove + a) + 1.0 / sqrt((shove - a) * (shove + a)));
-                if (factor < 1.0) rest /= 1.0 - factor;
-                if ((factor < 1.0 && rest < 1e-7 && rest * fabs(p.h3 + p.z3) < 0.01 * (shove - a)) || Y0 < 1e-13) {
-                    rest = least(rest, 1e-7);
-                    v += rest * v_rate;
-                    v_rate -= rest * s * shove;
-                    psi += omega * rest;
-                    carry(psi, turns);
-                    rate = s = 0.0;
-                    add(HOLD, 0.0, 0.0);
-                    continue;
-                }
-            }
-            double y, y_rate, gain;
-            Outcome outcome = slip(q, s, Y0, Y1, (1.0 - s * w) - s * low, left, tau, p, y, y_rate, gain);
-            if (outcome == NEVER) tau = rest_of_time;
-            fresh = false;
-            idle = tau < 1e-11 ? idle + 1 : 0;
-            if (idle > 10000) { status = FAILED; break; }
-            v += p.way + eps * q.travel(tau);
-            v_rate += p.speed + eps * q.q2_pull * tau;
-            psi += omega * tau;
-            carry(psi, turns);
-            if (outcome == HIT) {
-                if (!(y > 1e-30)) y = 1e-30;
-                w = s;
-                low = 0.0;
-                rate = -s * r * y;
-                s = -s;
-                add(s < 0.0 ? HIT_LEFT : HIT_RIGHT, -s * y, rate);
-                continue;
-            }
-            shift(w, low, s * gain);
-            if (fabs(w) > 1.0 || (fabs(w) == 1.0 && w * low > 0.0)) { w = copysign(1.0, w); low = 0.0; }
-            if (outcome != HALT) {
-                rate = y > 0.0 ? s * y : 0.0;
-                status = outcome == NEVER ? AT_REST : TIME_REACHED;
-                break;
-            }
-            rate = 0.0;
-            if (a == 0.0) { s = -s; continue; }  // nothing happens where w' passes zero
-            bool turns_back = y_rate < -2.0 * a;
-            s = turns_back ? -s : 0.0;
-            add(turns_back ? TURN : STICK, 0.0, 0.0);
-        }
-        if (!(isfinite(psi) && isfinite(w) && isfinite(rate) && isfinite(v))) status = FAILED;
-        const double now[STATE] = {psi, w, rate, s, turns, low, v, v_rate};
-        for (int i = 0; i < STATE; i++) state[i] = now[i];
-        return status == TIME_REACHED && goal < until ? PAUSED : status;
-    }
-
-    double cavity_speed(const double *state) const { return state[V_RATE]; }
-
-    // w, w', v, v' at a phase after a state.
-    void sample(const double *state, double ahead, double *out) const {
-        const Oscillation q = oscillation(state);
-        const double t = ahead / omega;
-        const Oscillation::Point p = q.at(t);
-        if (state[MODE] == 0.0) {
-            out[0] = state[W];
-            out[1] = 0.0;
-            out[2] = state[V] + full * p.way;
-            out[3] = state[V_RATE] + full * p.speed;
-            return;
-        }
-        const double travel = q.travel(t);
-        out[0] = state[W] + (state[LOW] + (p.way - travel));
-        out[1] = state[RATE] + p.speed - q.q2_pull * t;
-        out[2] = state[V] + p.way + eps * travel;
-        out[3] = state[V_RATE] + p.speed + eps * q.q2_pull * t;
-    }
-
-    // Positive half of the Gauss-Legendre rule with 16 nodes.
-    static constexpr int HALF = 8;
-    static constexpr double NODES[HALF] = {0.09501250983763744, 0.2816035507792589, 0.45801677765722737, 0.6178762444026438,
-                                           0.755404408355003,   0.8656312023878318, 0.9445750230732326,  0.9894009349916499};
-    static constexpr double WEIGHTS[HALF] = {0.1894506104550685,  0.18260341504492358, 0.16915651939500254,  0.14959598881657674,
-                                             0.12462897125553388, 0.09515851168249279, 0.062253523938647894, 0.027152459411754096};
-
-    // Sum f(tau, weight) over a span of time, in pieces of at most a turn: of a product of two waves, cos 2 x there, the rule misses less
-    // than 1e-19. Returns half the length of a piece, by which sums are to be multiplied.
-    template <class F> static double quadrature(double turn, double span, F f) {
-        const whole pieces = whole(most(turn, span) / TWO_PI) + 1;
-        const double half = 0.5 * span / double(pieces);
-        for (whole piece = 0; piece < pieces; piece++) {
-            for (int j = 0; j < HALF; j++) {
-                f((double(2 * piece + 1) - NODES[j]) * half, WEIGHTS[j]);
-                f((double(2 * piece + 1) + NODES[j]) * half, WEIGHTS[j]);
-            }
-        }
-        return half;
-    }
-
-    // Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way slid.
-    void works(const double *state, double ahead, double *out) const {
-        const Oscillation q = oscillation(state);
-        const double span = ahead / omega, start = q.h1 + q.z1;
-        double given = 0.0, lost = 0.0;
-        const double half = quadrature(ahead, span, [&](double tau, double weight) {
-            double rate = start + q.at(tau).speed, sin_psi, cos_psi;
-            sine_cosine(state[PSI] + omega * tau, sin_psi, cos_psi);
-            given += weight * rate * (sin_psi + chi * drag * omega * cos_psi);
-            lost += weight * rate * rate;
-        });
-        out[0] = eps * G * half * given;
-        out[1] = drag * half * lost;
-        out[2] = state[MODE] != 0.0 ? eps * pull * fabs(q.at(span).way - q.travel(span)) : 0.0;
-    }
-
-    // Kinetic and potential energy per M b^2 omega_0^2.
-    double energy(const double *state) const {
-        double q1 = (state[V] + eps * state[W]) / full, q1_rate = (state[V_RATE] + eps * state[RATE]) / full;
-        double q2_rate = (state[V_RATE] - state[RATE]) / full;
-        return 0.5 * (q1_rate * q1_rate + q1 * q1 + eps * q2_rate * q2_rate);
-    }
-
-    // Of a segment: largest |q1|, and the integrals of v sin Psi, v cos Psi and q1 sin Psi over the phase. The extrema of q1 are the
-    // zeros of the wave q1', of which none is missed: with M >= |q1'''|, y = |q1'| stays positive for `certain(y, y', M)`.
-    void shape(const double *state, double length, double *out) const {
-        const Oscillation q = oscillation(state);
-        const bool moving = state[MODE] != 0.0;
-        const double q1 = (state[V] + eps * state[W]) / full, span = length / omega;
-        double largest = most(fabs(q1), fabs(q1 + q.at(span).way)), tau = 0.0;
-        while (span > 0.0) {
-            tau = next_extremum(q, tau, span);
-            if (tau >= span) break;
-            largest = most(largest, fabs(q1 + q.at(tau).way));
-        }
-        out[0] = largest;
-        double sine_part = 0.0, cosine_part = 0.0, own = 0.0;
-        const double half = quadrature(length, span, [&](double t, double weight) {
-            double way = q.at(t).way, sin_psi, cos_psi, v = state[V] + (moving ? way + eps * q.travel(t) : full * way);
-            sine_cosine(state[PSI] + omega * t, sin_psi, cos_psi);
-            sine_part += weight * v * sin_psi;
-            cosine_part += weight * v * cos_psi;
-            own += weight * (q1 + way) * sin_psi;
-        });
-        out[1] = sine_part * half * omega;
-        out[2] = cosine_part * half * omega;
-        out[3] = own * half * omega;
-    }
-
-private:
-    // First zero of q1' after the time `start`; `end` when there is none before. A zero at `start` itself is not counted: the slope
-    // there tells for how long there is no other.
-    double next_extremum(const Oscillation& q, double start, double end) const {
-        const double driven = square * hypotenuse(q.h0, q.h_sine) * omega;
-        const double own = hypotenuse(q.z0, q.z_sine) * sqrt(q.kappa);
-        const double bound = driven + q.kappa * exponential(-q.alpha * start) * own, scale = fabs(q.h1) + omega * fabs(q.h0) + 2.0 * own;
-        const double tiny = 4e-16 * scale;
-        double tau = start;
-        if (bound <= 1e-300) return end;
-        double value, slope;
-        auto look = [&] {
-            Oscillation::Point p = q.at(tau);
-            value = q.h1 + q.z1 + p.speed;
-            slope = p.h2 + p.z2;
-        };
-        look();
-        if (fabs(value) <= tiny + 1e-15 * (1.0 + start) * fabs(slope)) {
-            tau += most(fabs(slope) / bound, 1e-8);
-            if (tau >= end) return end;
-            look();
-        }
-        const double sign = value > 0.0 ? 1.0 : -1.0;
-        for (;;) {
-            if (sign * value <= tiny) return tau;
-            double step = certain(sign * value, sign * slope, bound);
-            if (step <= 2e-16 * (1.0 + tau)) return tau;
-            tau += step;
-            if (tau >= end) return end;
-            look();
-        }
-    }
-};
-
-}  // namespace simulation
+}  // namespace coupled

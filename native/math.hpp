@@ -111,14 +111,15 @@ inline double arctangent(double x) {
     return copysign(found, x);
 }
 
-// x^y for x > 0 as path and laws of parameters need it: exact products and roots for multiples of 1/2.
+// x^y for x > 0 as path and laws of parameters need it: exact products and roots for multiples of 1/4.
 inline double power(double x, double y) {
-    double twice = 2.0 * y, size = fabs(twice);
-    if (size > 16.0 || twice != floor(twice)) return pow(x, y);
+    const double quarters = 4.0 * fabs(y);
+    if (quarters > 64.0 || quarters != floor(quarters)) return exponential(y * logarithm(x));
+    const whole count = whole(quarters);
     double found = 1.0;
-    whole count = whole(size);
-    for (whole i = 0; i < count / 2; i++) found *= x;
-    if (count % 2) found *= sqrt(x);
+    for (whole i = 0; i < count / 4; i++) found *= x;
+    if (count & 2) found *= sqrt(x);
+    if (count & 1) found *= sqrt(sqrt(x));
     return y < 0.0 ? 1.0 / found : found;
 }
 

@@ -1,6 +1,6 @@
 // The simulator's functions as Python calls them; the first argument is the machine's number.
 #pragma once
-#include "coupled.hpp"
+#include "coupled_simulation.hpp"
 #include "many_starts.hpp"
 #include "shaken.hpp"
 

@@ -76,11 +76,17 @@ def test_a_narrow_gap_does_not_depend_on_the_step(seed):
         for orbit, options in [start(seed)]
     )
     ours, theirs = (
-        sorted((point.kind, point.real, point.value) for point in graph.special.values())
+        sorted((point.kind, point.value, decided(point)) for point in graph.special.values())
         for graph in (long, short)
     )
-    assert [point[:2] for point in ours] == [point[:2] for point in theirs]
-    np.testing.assert_allclose([point[2] for point in ours], [point[2] for point in theirs], atol=1e-8)
+    assert [point[::2] for point in ours] == [point[::2] for point in theirs]
+    np.testing.assert_allclose([point[1] for point in ours], [point[1] for point in theirs], atol=1e-8)
+
+
+def decided(point):
+    """Whether a point is real; None on a border, where the last bit of the parameter says it (margins change by 9000 times its change)."""
+    margins = [margin.value for margin in point.orbit.margins] if point.orbit.word.text else [1.0]
+    return None if abs(min(margins)) < 1e-9 else point.real
 
 
 def test_a_light_absorber_begins_to_slip():
