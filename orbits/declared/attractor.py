@@ -22,6 +22,10 @@ from orbits.words.of_pages import PageWord
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
 LONGEST_WORD = 400
+EARLY, SHORT = (
+    5,
+    4,
+)  # a first look after a fifth of the transient, at short cycles first: what attracts and has returned need not be waited for
 PLAIN = 40  # events up to which the plainest reading is looked for
 REPELS = 1.0 + 1e-6  # an orbit with a larger multiplier repels, and ...
 CLOSED = 1e-9  # ... a return to it that is open by more, relative to 1 + states, only passes it by
@@ -136,8 +140,15 @@ def find_attractor(
 def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) -> DeclaredAttractor:
     """What the motion of a stepper leads to; `find_attractor` says what the numbers are."""
     machine, params = stepper.machine, stepper.params
+    early = transient // EARLY
+    skip(stepper, early)
+    for longest in sorted({min(SHORT, max_period), max_period}):
+        run = look(stepper, longest)
+        orbit = returning(run, longest, SETTLED)
+        if orbit is not None:
+            return DeclaredAttractor(machine, params, "periodic", orbit, run)
     for attempt in range(patience + 1):
-        skip(stepper, transient * 2**attempt)
+        skip(stepper, transient * 2**attempt - (0 if attempt else early))
         run = look(stepper, max_period)
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
         if orbit is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -101,13 +101,14 @@ def _rule(node: Symbol, d: Sequence[Symbol]) -> Any:
     return through if d[1].number == 0.0 else through + node * log(a) * d[1]
 
 
-def replaced(value: Symbol, numbers: dict[str, float]) -> Symbol:
-    """The expression with numbers in place of some variables."""
+def replaced(value: Symbol, by: Mapping[str, float | Symbol]) -> Symbol:
+    """The expression with numbers or other symbols in place of some variables."""
     places: dict[int, Symbol] = {}
     for node in in_order([value]):
         new = node
-        if node.operation == "variable" and node.operands[0] in numbers:
-            new = constant(numbers[node.operands[0]])
+        if node.operation == "variable" and node.operands[0] in by:
+            told = by[node.operands[0]]
+            new = told if isinstance(told, Symbol) else constant(told)
         elif node.operation not in ("variable", "number"):
             new = rebuilt(node, [places[id(x)] for x in node.operands])
         places[id(node)] = new

@@ -23,7 +23,7 @@ from orbits.machines.page.machine import Machine
 from orbits.population.sorting import Sorting
 from orbits.simulation.page import PageSimulator, Trajectory, collect, letter_of, outside
 
-BLOCKS = (20, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
+BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
 EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for
 LONGEST = 16  # forcing periods of the longest recurrence looked for
 FAR, WIDE = (
@@ -35,7 +35,7 @@ NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto 
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
 BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page are integrated one by one
-TOLD = 5  # looks after which a motion that does not recur is taken for the one that is known not to
+TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
 WANDERING = ("chaotic", "quasi-periodic", "slow")
 RELEASED = 1e-6  # difference of the clocks of two releases that are one
 
@@ -179,7 +179,7 @@ class PageFleet:
             if marks is not None and (gap < SURE or (marks is before[0] and gap < 0.5 * before[1])):
                 return sorting.assign(i, marks.place, marks.mirrored)
             before = marks, gap
-            if looks < 1 or (marks is not None and looks < 4):
+            if looks < 2 or (marks is not None and looks < 5):
                 continue
             run = look(stepper, LONGEST)
             orbit = returning(run, LONGEST, RETURNED)

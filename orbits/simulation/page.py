@@ -300,7 +300,7 @@ class PageSimulator:
                 continue
             here = here - gaps[j] * slopes / steep**2
             row = compiled.impact_map(j).one(here, 0.0, numbers)
-            jump, rate = row[:-1] - here, row[-1]
+            jump, rate = row[: machine.size] - here, row[machine.size]
             if rate > 0.0:  # after an impact: the impulse was larger by 1/restitution and the other way round
                 jump = jump / compiled.rebound(j).one(here, 0.0, numbers)[1]
             if rate != 0.0 and np.all(np.isfinite(jump)):

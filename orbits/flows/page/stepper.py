@@ -46,8 +46,9 @@ class Stepper:
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
         self._cache: dict[tuple[int, ...], tuple[Any, Any, Any, np.ndarray, Any]] = {}
-        self._touched = {  # frictions and switches whose sign an impact may change
-            w: [j for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
+        places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
+        self._touched = {  # frictions and switches whose sign an impact may change, and where the impact's map tells it
+            w: [(j, places[j]) for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
             for w, contact in enumerate(machine.contacts)
             if isinstance(contact, Wall)
         }
@@ -139,20 +140,21 @@ class Stepper:
         return STUCK
 
     def _gap_rate(self, wall: int) -> float:
-        return float(self._impacts[wall].one(self.state, self.clock, self._tools(self.modes)[3])[-1])
+        return float(
+            self._impacts[wall].one(self.state, self.clock, self._tools(self.modes)[3])[len(self.state)]
+        )
 
     def _impact(self, wall: int) -> int:
         """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
         numbers = self._tools(self.modes)[3]
         row = self._impacts[wall].one(self.state, self.clock, numbers)
-        before = float(row[-1])
-        self.state[:] = row[:-1]
-        if self._touched[wall]:
-            modes, values = list(self.modes), self.contact_values()
-            for j in self._touched[wall]:
-                if values[j] != 0.0:
-                    modes[j] = 1 if values[j] > 0.0 else -1
-            self.modes = tuple(modes)
+        n = len(self.state)
+        before = float(row[n])
+        self.state[:] = row[:n]
+        for j, place in self._touched[wall]:
+            sign = 1 if row[place] > 0.0 else -1
+            if sign != self.modes[j] and row[place] != 0.0:
+                self.modes = self._with(j, sign)
         if before * before < SLOW:
             push = self._push_back(wall)
             if push < 0.0 and before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):

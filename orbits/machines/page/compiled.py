@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.integrators.engine import engine
-from orbits.integrators.expressions import Values, derivatives, variable
+from orbits.integrators.expressions import Values, derivatives, replaced, variable
 from orbits.machines.page.patterns import Equations, PatternKey
 
 
@@ -132,12 +132,16 @@ class Compiled:
         return self._once("limits", lambda: Values(self.layout, [limit[j] for j in frictions]))
 
     def impact_map(self, wall: int) -> Values:
-        """The states after an impact, then the gap's rate before it."""
+        """The states after an impact, the gap's rate before it, then what the signs of frictions and switches follow after it, contact by contact."""
         e = self.equations
-        return self._once(
-            ("impact", wall),
-            lambda: self.engine.Values(self.layout, [*e.impact(wall), e.gap_rate(wall)]),
-        )
+
+        def make() -> Values:
+            after = e.impact(wall)
+            places = dict(zip(self.layout.states, after))
+            signs = [replaced((e.velocity | e.surface)[j], places) for j in e.signed]
+            return self.engine.Values(self.layout, [*after, e.gap_rate(wall), *signs])
+
+        return self._once(("impact", wall), make)
 
     def rebound(self, wall: int) -> Values:
         """The rate of a gap and the wall's restitution."""
