@@ -44,7 +44,6 @@ lead(
         "scene": "orbits.plots.scene:scene",
         "scene_of_page": "orbits.plots.declared:scene",
         "simulate": "orbits.simulation.driver:simulate",
-        "simulate_page": "orbits.simulation.page:simulate",
     }
 )
 __all__ = sorted([*_PLACES, *_ROOMS])

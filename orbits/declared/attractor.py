@@ -16,7 +16,7 @@ from orbits.flows.page.solving import SOLVED, newton
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.flows.protocol import Record
 from orbits.machines.page.machine import Machine
-from orbits.simulation.page import Trajectory, collect, first_state
+from orbits.simulation.page import PageTrajectory, collect, first_state
 from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
@@ -44,7 +44,7 @@ class DeclaredAttractor:
         self-excited machine has no events any more), or "aperiodic" (no period up to the longest that was looked for).
     orbit : DeclaredOrbit or None
         Of a periodic one.
-    trajectory : Trajectory
+    trajectory : PageTrajectory
         The last part of the simulation.
     """
 
@@ -52,7 +52,7 @@ class DeclaredAttractor:
     params: np.ndarray
     kind: str
     orbit: DeclaredOrbit | None
-    trajectory: Trajectory = field(repr=False)
+    trajectory: PageTrajectory = field(repr=False)
 
     @property
     def word(self) -> PageWord | None:
@@ -173,7 +173,7 @@ def skip(stepper: Stepper, count: int) -> None:
             return
 
 
-def look(stepper: Stepper, max_period: int) -> Trajectory:
+def look(stepper: Stepper, max_period: int) -> PageTrajectory:
     """The run in which a recurrence of up to `max_period` periods is looked for."""
     if stepper.machine.forced:
         return collect(stepper, TWO_PI * (2 * max_period + 1), 50 * max_period + 2000)
@@ -186,7 +186,7 @@ def settle(stepper: Stepper, transient: int, max_period: int) -> DeclaredOrbit |
     return returning(look(stepper, max_period), max_period, RETURNED)
 
 
-def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | None:
+def returning(run: PageTrajectory, max_period: int, near: float) -> DeclaredOrbit | None:
     """The shortest cycle at the end of a run whose equations confirm it: not one that repels, beside which the run has only passed."""
     machine = run.machine
     if any(kind in (HOLD, RELEASE) for _, kind, _ in run.events[-LONGEST_WORD:]):
@@ -223,7 +223,7 @@ def returning(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | 
     return None
 
 
-def solved(run: Trajectory, length: int, periods: int, far: float = 0.1) -> DeclaredOrbit | None:
+def solved(run: PageTrajectory, length: int, periods: int, far: float = 0.1) -> DeclaredOrbit | None:
     """The last `length` events of a run as an orbit, if its equations have a solution within `far` of them; see `polished`."""
     machine = run.machine
     word = PageWord(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
@@ -239,7 +239,7 @@ def solved(run: Trajectory, length: int, periods: int, far: float = 0.1) -> Decl
 def of_record(record: Record, first: int, last: int, periods: int, far: float) -> DeclaredOrbit | None:
     """The cycle next to events `first` to `last` - 1 of a record; see `solved`."""
     run, stop = record.source, last + 1
-    part = Trajectory(
+    part = PageTrajectory(
         run.machine,
         run.params,
         run.clocks[:stop],
@@ -281,7 +281,7 @@ def plainest(orbit: DeclaredOrbit) -> DeclaredOrbit:
     return found
 
 
-def _eventless(run: Trajectory, max_period: int, near: float) -> DeclaredOrbit | None:
+def _eventless(run: PageTrajectory, max_period: int, near: float) -> DeclaredOrbit | None:
     """The shortest cycle of a forced motion without events, once per forcing period at phase zero; see `returning`."""
     machine = run.machine
     mode = run.modes[-1]

@@ -16,9 +16,10 @@ from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.starts import find
 from orbits.declared.sweep import sweep
 from orbits.flows.page.stepper import Stepper
+from orbits.flows.protocol import SimulationError
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.machine import Machine
-from orbits.simulation.page import SimulationError, outside
+from orbits.simulation.page import outside
 from orbits.starts.find import StartError
 from orbits.words.of_pages import PageWord
 

@@ -70,15 +70,13 @@ def from_impacts(
     def residuals(values: np.ndarray, used: int = count) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, values)), fixed)
         numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
-        phases = np.empty(0)
+        instants = np.empty(0)
         for events in (3 * used + 20, 40 * used + 400):  # most motions have few turns between impacts
-            if phases.size < used:
-                run = simulate(model, start, events=events, **numbers)
-                phases = run.phases[run.codes < 2][:used]
-        if phases.size < used:
+            if instants.size < used:
+                instants = simulate(model, start, events=events, **numbers).impact_times[:used]
+        if instants.size < used:
             return np.full(used, 1e3 * float(since[-1]))
-        seconds = float(model.gauge("time", params))
-        late = (phases - phases[0]) / numbers["frequency"] * seconds - since[:used]
+        late = (instants - instants[0]) - since[:used]
         return late - late.mean()
 
     found = fit(residuals, _nearer(residuals, unknown, bounds, count), bounds, confidence, spent=1)

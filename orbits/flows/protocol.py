@@ -18,11 +18,14 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+import math
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
+
+from contvines.shared.near_names import did_you_mean
 
 
 class Motion(Protocol):
@@ -46,6 +49,24 @@ class Motion(Protocol):
 
 class SimulationError(ValueError):
     """A start or a length of a run that cannot be, or a motion that does not go on; the sentence says what would do."""
+
+
+def told(start: Mapping[str, float], allowed: Sequence[str]) -> dict[str, float]:
+    """The entries of a start as numbers.
+
+    Raises
+    ------
+    SimulationError
+        If a name is unknown or a value not finite.
+    """
+    for key, value in start.items():
+        if key not in allowed:
+            raise SimulationError(
+                f"start has no entry {key!r}{did_you_mean(key, allowed)}; it may have {', '.join(allowed)}"
+            )
+        if not math.isfinite(float(value)):
+            raise SimulationError(f"start: {key} = {value!r} is not finite; give a number")
+    return {key: float(value) for key, value in start.items()}
 
 
 @dataclass(frozen=True, eq=False)

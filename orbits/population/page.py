@@ -21,9 +21,10 @@ from orbits.flows.protocol import Record
 from orbits.machines.notation import STARTS
 from orbits.machines.page.machine import Machine
 from orbits.population.sorting import Sorting
-from orbits.simulation.page import PageSimulator, Trajectory, collect, letter_of, outside
+from orbits.simulation.page import PageSimulator, PageTrajectory, collect, letter_of, outside
 
-BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)  # forcing periods (or events) between two looks at a motion
+BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
+"""Forcing periods (or events) between two looks at a motion."""
 EMBEDDED = 4  # forcing periods of the longest unstable cycle looked for
 LONGEST = 16  # forcing periods of the longest recurrence looked for
 FAR, WIDE = (
@@ -269,7 +270,7 @@ class PageFleet:
         return _Marks(place, mirrored, table, known)
 
 
-def _chatters(run: Trajectory) -> bool:
+def _chatters(run: PageTrajectory) -> bool:
     """Whether a wall takes hold again and again at the same clock: the motion recurs, with infinitely many impacts in between."""
     releases = np.array(
         [clock for clock, (_, kind, _) in zip(run.clocks[1:], run.events, strict=True) if kind == RELEASE]

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from contvines.shared.near_names import did_you_mean
-from orbits.flows.protocol import SimulationError
+from orbits.flows.page.stepper import Stepper
+from orbits.flows.protocol import SimulationError, told
 from orbits.machines.catalogue import stepper as machine
+from orbits.machines.page.machine import Machine as Page
 from orbits.machines.stepping import EVENTS_FULL, FAILED, MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
+from orbits.simulation import page
 from orbits.simulation.trajectory import Trajectory
 
 FIRST, CHUNK = 256, 16384
@@ -26,20 +28,20 @@ def simulate(
     start: Mapping[str, float] | np.ndarray | None = None,
     *,
     periods: float | None = None,
+    time: float | None = None,
     events: int | None = None,
     **parameters: float,
-) -> Trajectory:
+) -> Any:
     """Simulate the machine from event to event.
 
     Parameters
     ----------
-    model : Model
-        The machine.
+    model : Model or Machine
     start : mapping or ndarray, optional
-        `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`;
-        what is not given is 0. Or a state, such as `Trajectory.end`.
-    periods : float, optional
-        Forcing periods to simulate.
+        Of a built-in machine `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`; of a page
+        its states by name, and `phase` if it is forced. What is not given is 0. Or a state of a built-in machine, such as `Trajectory.end`.
+    periods, time : float, optional
+        How long: forcing periods, or the machine's time.
     events : int, optional
         Stop after so many events. Without it at most a million, so that a run always ends.
     **parameters
@@ -47,24 +49,36 @@ def simulate(
 
     Returns
     -------
-    Trajectory
+    Trajectory or PageTrajectory
 
     Raises
     ------
     SimulationError
-        If the start lies outside the cavity or is not finite, or neither periods nor events are given.
+        If the start cannot be, no length is given, or the laws do not continue the motion.
     """
     params = model.vector(parameters)
-    if periods is None and events is None:
-        raise SimulationError("neither periods nor events are given: say how long to simulate")
-    if periods is not None and not (math.isfinite(periods) and periods >= 0.0):
-        raise SimulationError(f"periods = {periods}: give a number of forcing periods, 0 or above")
-    if events is not None and events < 0:
-        raise SimulationError(f"events = {events}: give a number of events, 0 or above")
+    page_ = isinstance(model, Page)
+    if periods is None and time is None and events is None:
+        raise SimulationError("neither periods, time nor events are given: say how long to simulate")
+    if page_ and periods is not None and not model.forced:
+        raise SimulationError("periods: a self-excited machine has no forcing to count; give time or events")
+    for name, value in (("periods", periods), ("time", time), ("events", events)):
+        if value is not None and not (math.isfinite(value) and value >= 0.0):
+            raise SimulationError(f"{name} = {value}: give a number, 0 or above")
+    most = MOST_EVENTS if events is None else events
+    if page_:
+        stepper = Stepper(model, params)
+        stepper.start(*page.first_state(model, start))
+        length = None if periods is None else 2.0 * math.pi * periods
+        if length is None and time is not None:
+            length = time * stepper.clock_rate
+        return page.collect(stepper, math.inf if length is None else length, most)
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
-    length = FOREVER if periods is None else periods
-    return follow(model, engine, params, state, length, MOST_EVENTS if events is None else events)
+    if periods is None and time is not None:
+        rate = float(params[model.parameter_names.index("frequency")]) / float(model.gauge("time", params))
+        periods = time * rate / (2.0 * math.pi)
+    return follow(model, engine, params, state, FOREVER if periods is None else periods, most)
 
 
 def follow(
@@ -112,12 +126,8 @@ def first_state(
             w, v = model.relative(q1, q2, params)
             w_rate, v_rate = model.relative(q1_rate, q2_rate, params)
             given = {"w": w, "w_rate": w_rate, "v": float(v), "v_rate": float(v_rate)} | given
-    for key, value in given.items():
-        if key not in allowed:
-            raise SimulationError(
-                f"start has no entry {key!r}{did_you_mean(key, allowed)}; it may have {', '.join(allowed)}"
-            )
-        state[_KEYS[key]] = float(value)
+    for key, value in told(given, allowed).items():
+        state[_KEYS[key]] = value
     _check(state, engine.walls(params))
     engine.launch(state, params)
     return state

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from contvines.shared.near_names import did_you_mean
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.flows.protocol import Record, SimulationError
+from orbits.flows.protocol import Record, told
 from orbits.machines.page.machine import Machine
 
-MOST_EVENTS = 1_000_000
 REACHED, FULL, STILL = 0, 1, 2
 FOREVER = 1e5  # clock after which a run that waits for events gives up
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class PageTrajectory:
     """A simulated motion of a declared machine.
 
     Attributes
@@ -63,6 +60,13 @@ class Trajectory:
     def impacts(self) -> int:
         """Number of impacts."""
         return sum(kind == HIT for _, kind, _ in self.events)
+
+    @property
+    def impact_times(self) -> np.ndarray:
+        """Instants of the impacts, in the machine's time."""
+        rate = self.machine.phase_rate
+        speed = 1.0 if rate is None else self.params[self.machine.parameter_names.index(rate)]
+        return self.clocks[1:][[kind == HIT for _, kind, _ in self.events]] / speed
 
     @property
     def chatters(self) -> int:
@@ -115,24 +119,10 @@ def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:
     return machine.alphabet.text_of(contact, kind, sign)
 
 
-def first_state(machine: Machine, start: Mapping[str, float] | None) -> tuple[np.ndarray, float]:
-    """State and phase of a start given by names.
-
-    Raises
-    ------
-    SimulationError
-        If a name is unknown or a value not finite.
-    """
-    allowed = [*machine.states, *(["phase"] if machine.forced else [])]
-    given = dict(start or {})
-    for key, value in given.items():
-        if key not in allowed:
-            raise SimulationError(
-                f"start has no entry {key!r}{did_you_mean(key, allowed)}; it may have {', '.join(allowed)}"
-            )
-        if not math.isfinite(float(value)):
-            raise SimulationError(f"start: {key} = {value!r} is not finite; give a number")
-    return np.array([float(given.get(s, 0.0)) for s in machine.states]), float(given.get("phase", 0.0))
+def first_state(machine: Machine, start: Any) -> tuple[np.ndarray, float]:
+    """State and phase of a start given by names; `SimulationError` if it cannot be one."""
+    given = told(dict(start or {}), [*machine.states, *(["phase"] if machine.forced else [])])
+    return np.array([given.get(name, 0.0) for name in machine.states]), given.get("phase", 0.0)
 
 
 def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
@@ -154,55 +144,7 @@ def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
     return state
 
 
-def simulate(
-    machine: Machine,
-    start: Mapping[str, float] | None = None,
-    *,
-    periods: float | None = None,
-    time: float | None = None,
-    events: int | None = None,
-    **parameters: float,
-) -> Trajectory:
-    """Simulate a declared machine from event to event.
-
-    Parameters
-    ----------
-    machine : Machine
-    start : mapping, optional
-        States by name, and `phase` (radians) of a forced machine; what is not given is 0.
-    periods, time : float, optional
-        How long: forcing periods, or time.
-    events : int, optional
-        Stop after so many events. Without it at most a million.
-    **parameters
-        In place of the page's own.
-
-    Raises
-    ------
-    SimulationError
-        If the start cannot be, no length is given, or the laws do not continue the motion.
-    """
-    params = machine.vector(parameters)
-    if periods is None and time is None and events is None:
-        raise SimulationError("neither periods, time nor events are given: say how long to simulate")
-    if periods is not None and not machine.forced:
-        raise SimulationError("periods: a self-excited machine has no forcing to count; give time or events")
-    for name, value in (("periods", periods), ("time", time), ("events", events)):
-        if value is not None and not (math.isfinite(value) and value >= 0):
-            raise SimulationError(f"{name} = {value}: give a number, 0 or above")
-    stepper = Stepper(machine, params)
-    state, clock = first_state(machine, start)
-    stepper.start(state, clock)
-    rate = params[machine.parameter_names.index(machine.phase_rate)] if machine.phase_rate else 1.0
-    length = math.inf
-    if periods is not None:
-        length = TWO_PI * periods
-    elif time is not None:
-        length = time * rate
-    return collect(stepper, length, MOST_EVENTS if events is None else events)
-
-
-def collect(stepper: Stepper, length: float, most: int) -> Trajectory:
+def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
     """Run on for a length of the clock, or so many events."""
     clocks = [stepper.base + stepper.clock]
     states, modes, events = [stepper.state.copy()], [stepper.modes], []
@@ -219,7 +161,7 @@ def collect(stepper: Stepper, length: float, most: int) -> Trajectory:
         events.append(event)
         if math.isinf(length):
             until = clocks[-1] + FOREVER
-    return Trajectory(
+    return PageTrajectory(
         stepper.machine,
         stepper.params,
         np.array(clocks),

@@ -101,6 +101,12 @@ class Trajectory:
         """Phase Psi of every event, shape (n,), counted through: 2 pi per forcing period."""
         return self.rows[:, 0] + TWO_PI * self.rows[:, 1]
 
+    @property
+    def impact_times(self) -> np.ndarray:
+        """Instants of the impacts, in the machine's time."""
+        frequency = float(self.params[self.model.parameter_names.index("frequency")])
+        return self.phases[self.codes < 2] / frequency * float(self.model.gauge("time", self.params))
+
     @cached_property
     def states(self) -> np.ndarray:
         """State at the start and after every event, shape (n + 1, S)."""

@@ -41,7 +41,7 @@ class Stepper:
         self.compiled, self.equations = machine.compiled, machine.equations
         self.absent = machine.absent(self.params)
         rate = machine.phase_rate
-        self._clock_rate = 1.0 if rate is None else float(self.params[machine.parameter_names.index(rate)])
+        self.clock_rate = 1.0 if rate is None else float(self.params[machine.parameter_names.index(rate)])
         self.state = np.zeros(machine.size)
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
@@ -248,7 +248,7 @@ class Stepper:
         """Go to the top of a short hop: its end is then looked for from there, for beside a zero at the very beginning another one may be lost."""
         before, begin = self.state.copy(), self.clock
         for _ in range(HALVINGS):
-            there = begin + self._hop * self._clock_rate
+            there = begin + self._hop * self.clock_rate
             if begin < there < end:
                 watch.move(self.state, begin, there, numbers)
                 self.clock = there

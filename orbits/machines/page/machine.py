@@ -217,8 +217,8 @@ class Machine:
         events: int | None = None,
         **parameters: float,
     ) -> Any:
-        """Simulate from event to event; see `orbits.simulation.page.simulate`."""
-        return above("simulate_page")(self, start, periods=periods, time=time, events=events, **parameters)
+        """Simulate from event to event; see `orbits.simulation.simulate`."""
+        return above("simulate")(self, start, periods=periods, time=time, events=events, **parameters)
 
     def attractor(self, start: Mapping[str, float] | None = None, **parameters: float) -> Any:
         """The attractor that a start leads to; see `orbits.declared.attractor.find_attractor`."""

@@ -177,3 +177,11 @@ def test_elastic_bounces_do_not_pile_up():
     run = simulate(machine, {"phase": 4.0, "w": 1.0, "w_rate": -0.01}, events=200, amplitude=2.0)
     assert not np.any(run.codes == 5)
     assert run.impacts == 200
+
+
+def test_a_length_of_time_is_so_many_periods():
+    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, frequency=1.7)
+    run = simulate(machine, time=9.0, amplitude=0.6)
+    same = simulate(machine, periods=9.0 * 1.7 / (2.0 * np.pi), amplitude=0.6)
+    assert run.letters == same.letters and np.array_equal(run.phases, same.phases)
+    assert run.impact_times == pytest.approx(run.phases[run.codes < 2] / 1.7)
