@@ -52,14 +52,17 @@ template <class Law> struct Cavity {
             double *F = work.F + 2 * i, *A = work.A + 4 * i, *D = work.D + 4 * i, *Q = work.Q + 2 * i;
             const whole event = c.events[i], arrival = arrival_of(c, i), mode = c.modes[i];
             const double psi0 = u[2 * i], y0 = u[2 * i + 1];
-            const double psi1 = i + 1 < length ? u[2 * i + 2] : u[0] + c.shift, y1 = i + 1 < length ? u[2 * i + 3] : c.twist * u[1];
+            const double psi1 = i + 1 < length ? u[2 * i + 2] : u[0] + c.shift;
+            double y1 = i + 1 < length ? u[2 * i + 3] : c.twist * u[1], y1_p = 0.0;
+            if (i + 1 == length && c.twist < 0.0 && c.events[0] > RIGHT)  // the image about the middle between the walls
+                y1 += law.wall[0] + law.wall[1], y1_p = rate.wall[0] + rate.wall[1];
             const double s0 = sines[i], c0 = cosines[i], s1 = sines[i + 1], c1 = cosines[i + 1];
             if (mode == 0) {  // stuck: the absorber waits for the slip
                 int way = mode_after(c, i) > 0.0 ? 0 : 1;
                 F[0] = peak * s1 + law.pull[way], F[1] = y0 - y1;
                 A[0] = 0.0, A[1] = 0.0, A[2] = 0.0, A[3] = 1.0;
                 D[0] = peak * c1, D[1] = 0.0, D[2] = 0.0, D[3] = -1.0;
-                Q[0] = rate.pull[way] + d_peak * s1, Q[1] = 0.0;
+                Q[0] = rate.pull[way] + d_peak * s1, Q[1] = -y1_p;
             } else {
                 const int way = mode > 0 ? 0 : 1;
                 const double sa = law.pull[way], d_sa = rate.pull[way], d = (psi1 - psi0) * by_omega;
@@ -96,7 +99,7 @@ template <class Law> struct Cavity {
                     F[0] = V, F[1] = W - y1;
                     A[0] = V_psi0, A[1] = V_y0, A[2] = W_psi0, A[3] = W_y0;
                     D[0] = V_psi1, D[1] = 0.0, D[2] = W_psi1, D[3] = -1.0;
-                    Q[0] = V_p, Q[1] = W_p;
+                    Q[0] = V_p, Q[1] = W_p - y1_p;
                 }
             }
             double size = larger(fabs(F[0]), fabs(F[1]));

@@ -6,7 +6,7 @@ breaking (there a multiplier of the half map passes -1), and a classification th
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -135,23 +135,39 @@ class OrbitProblem(Simulated, Relatives, Answers):
         return self.equations.to_multipliers(spectrum)
 
     # ------------------------------------------------------------------ shapes
-    def expand(self, u: np.ndarray) -> np.ndarray:
-        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N)."""
-        return self.equations.expand(u)
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N), at parameter values `p`, shape (...)."""
+        return self.equations.expand(u, p)
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""
         return self.equations.reduce(nodes)
+
+    def middle(self, p: float) -> float:
+        """w in the middle between the walls."""
+        return float(self.model.middle(self.values(p)))
+
+    @property
+    def image_offset(self) -> Callable[[float], np.ndarray] | None:
+        """Twice the middle between the walls, in the places of positions; None where it is w = 0 at all parameter values."""
+        began = self.equations.began
+        if not (self.middle(began) or self.middle(1.5 * began)):
+            return None
+        positions = np.zeros((self.length, self.model.node))
+        positions[:, 1] = (self.word.codes[: self.length] > 1) * 2.0 / self.equations.unit[: self.length, 1]
+        flat = positions.ravel()
+        return lambda p: self.middle(p) * flat
 
     # ------------------------------------------------------------------ larger and smaller problems
     def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
         """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
         if self.word.repetitions == 1:
             return None
-        word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u))
+        word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u, p))
         if len(word) == len(self.word):
             return None
-        found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes))
+        image = self.model.image(word.codes, nodes, self.values(p))
+        found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes, image=image))
         return found, found.reduce(nodes)
 
     def sibling(
@@ -178,7 +194,11 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """
         if not len(self.word):
             return ("stuck", self.model.name), np.array(u, dtype=float)
-        nodes = self.expand(u)
+        nodes = self.expand(u, p)
+        middle = self.middle(p)
+        if middle:
+            nodes = nodes.copy()
+            nodes[self.word.codes > 1, 1] -= middle  # from where an image has the opposite sign
         if self.units != PLAIN:
             nodes = nodes / self.equations.unit
         return canonical(self.word, self.periods, nodes, self._mirrored_at(p))
@@ -218,12 +238,12 @@ class OrbitProblem(Simulated, Relatives, Answers):
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
         p = np.atleast_1d(np.asarray(p, dtype=float))
-        nodes = self.expand(np.atleast_2d(u))
+        nodes = self.expand(np.atleast_2d(u), p)
         return measuring.measure(self.model, self.word, self.periods, nodes, self.values(p), names)
 
     def orbit(self, u: np.ndarray, p: float) -> Any:
         """The solution as an `orbits.orbit.Orbit`."""
-        return Orbit(self.model, self.word, self.periods, self.expand(u), self.values(p))
+        return Orbit(self.model, self.word, self.periods, self.expand(u, p), self.values(p))
 
     def amplitude(self, direction: np.ndarray) -> float:
         """Length of a direction as normal forms measure it: Euclidean, over the first node."""

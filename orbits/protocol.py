@@ -40,7 +40,7 @@ class CycleProblem(Protocol):
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray: ...
 
-    def expand(self, u: np.ndarray) -> np.ndarray: ...
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray: ...
 
     def orbit(self, u: np.ndarray, p: float) -> Solution: ...
 
@@ -67,6 +67,10 @@ class Answers:
 
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter cannot have; every value will do."""
+
+    def middle(self, p: float) -> float:
+        """The position about which mirror images are taken."""
+        return 0.0
 
     def smooth_margin(self, j: int) -> int:
         """The margin to follow along a locus where margin `j` vanishes."""
@@ -96,13 +100,15 @@ class Answers:
 class Symmetry(NamedTuple):
     """An image of a solution that solves the same problem; `root` reduces a solution that is its own image.
 
-    `kind_at` tells the kind of the points where that depends on the solution; of machines it never does.
+    `kind_at` tells the kind of the points where that depends on the solution; of machines it never does. `offset` (p) is added to
+    the image, where the middle between the walls is not at w = 0.
     """
 
     kind: str
     apply: Any
     root: Any
     kind_at: Any = None
+    offset: Any = None
 
 
 class Embedding(NamedTuple):

@@ -37,7 +37,12 @@ class Relatives:
     mirrored: bool
     shift: float
 
-    def expand(self, u: np.ndarray) -> np.ndarray:
+    @property
+    def image_offset(self) -> Callable[[float], np.ndarray] | None:
+        """What a mirrored solution's unknowns have beside the opposite signs, at parameter value p; None where there is nothing."""
+        return None
+
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """Nodes of the whole cycle, from the unknowns."""
         raise TypeError("a problem says how unknowns and nodes go together")
 
@@ -79,7 +84,9 @@ class Relatives:
     def _mirrored_on(self, places: int) -> Symmetry:
         periods = 2 * self.periods * places // self.length if self.forced else 1
         root = self._root(self.word.head(2 * places), periods, symmetric=True)
-        return Symmetry("symmetry-breaking", lambda u: self._rotated(u, places, -1.0), root)
+        return Symmetry(
+            "symmetry-breaking", lambda u: self._rotated(u, places, -1.0), root, offset=self.image_offset
+        )
 
     def _mirror_places(self) -> list[int]:
         """Rotations that make the word its mirror image, an odd number of half forcing periods on, the least first.
@@ -119,11 +126,11 @@ class Relatives:
             image = -along.reshape(self.length, -1)
             image[:, 0] *= -1.0
             direction = np.concatenate([along, image.ravel(), tangent[-1:]])
-            return [Embedding(full, full.reduce(self.expand(u)), direction, kind)]
+            return [Embedding(full, full.reduce(self.expand(u, p)), direction, kind)]
         if kind == "period-doubling" and not self.symmetric and len(self.word):
             periods = 2 * self.periods if self.forced else 1
             double = self.sibling(self.word.double(), periods, symmetric=False)
-            nodes = self.expand(u)
+            nodes = self.expand(u, p)
             second = nodes.copy()
             second[:, 0] += self.shift
             direction = np.concatenate([along, along, tangent[-1:]])

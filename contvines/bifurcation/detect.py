@@ -78,7 +78,7 @@ class Detector(SegmentSearch):
         if real and scan.smallest[0] < MARGIN and not (scan.smallest[1:] < MARGIN).all():
             flags[scan.smallest[1:] < MARGIN] |= BORDER
         for test in self.scanner.left_out:
-            turns, lands = turns_and_landings(test.part(chunk.points))
+            turns, lands = turns_and_landings(test.part(chunk.points, chunk.values))
             flags[turns] |= MEETING
             flags[lands] |= LANDING
         close: set[int] = set()

@@ -145,13 +145,13 @@ class SegmentSearch:
     def _meetings(self, segment: Segment) -> list[Located]:
         events = []
         for index, test in enumerate(self.symmetries):
-            ends = test.part(np.array([segment.a.u, segment.b.u]))
+            ends = test.part(np.array([segment.a.u, segment.b.u]), [segment.a.p, segment.b.p])
             if not (ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > 1e-6):
                 continue
             scale = float(np.sqrt(ends[0] @ ends[0]))
 
             def along(point: Solved, test: SymmetryTest = test, row: np.ndarray = ends[0] / scale) -> float:
-                return float(row @ test.part(point.u[None, :])[0])
+                return float(row @ test.part(point.u[None, :], [point.p])[0])
 
             first, last = along(segment.a), along(segment.b)
             root = locate_singular(segment, along, first / (first - last)) or locate(segment, along)

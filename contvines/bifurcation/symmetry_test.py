@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -15,11 +16,17 @@ def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return probe, check, np.argsort(probe, kind="stable")
 
 
+def image_of(symmetry: Any, u: np.ndarray, p: float) -> np.ndarray:
+    """The image of a solution (u, p)."""
+    image = symmetry.apply(u)
+    return image if symmetry.offset is None else image + symmetry.offset(p)
+
+
 class SymmetryTest:
     """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
 
-    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks. ``shift`` is not zero,
-    ``scale`` not one all over: else they are None.
+    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks. Where T depends on the
+    parameter it is asked at each point. ``shift`` is not zero, ``scale`` not one all over: else they are None.
     """
 
     def __init__(
@@ -29,6 +36,8 @@ class SymmetryTest:
         self.shift, self.scale = shift, scale
         probe, check, places = _patternless(n)
         self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        if symmetry.offset is not None:
+            return
         try:
             constant = np.asarray(symmetry.apply(np.zeros(n)), dtype=float)
             image = np.asarray(symmetry.apply(probe), dtype=float) - constant
@@ -41,13 +50,13 @@ class SymmetryTest:
         except (ArithmeticError, ValueError, IndexError):
             self.affine = None
 
-    def part(self, points: np.ndarray) -> np.ndarray:
-        """u - T(u) for points of shape (n, N)."""
+    def part(self, points: np.ndarray, values: Sequence[float] | np.ndarray) -> np.ndarray:
+        """u - T(u) for points of shape (n, N) at parameter values of shape (n,)."""
         if self.affine is not None:
             order, signs, constant = self.affine
             gap = points - (signs * points[:, order] + constant)
         else:
-            gap = points - np.array([self.symmetry.apply(u) for u in points])
+            gap = points - np.array([image_of(self.symmetry, u, float(p)) for u, p in zip(points, values)])
         if self.shift is not None:
             turns = np.rint(gap.dot(self.shift) / self.shift.dot(self.shift))
             if turns.any():

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..circles.section import Section, Walled, section_of
+from ..bifurcation.symmetry_test import image_of
 from ..graph.graph import Graph
 from .circle_step import TURN, next_point
 from .solutions import solutions_at
@@ -99,7 +100,8 @@ def stable_manifolds(
             word = str(branch.description.get("word", branch.label))
             periods = len(section.rounds(u))
             wanted += [
-                (branch.label, word, section, place, periods) for place in _places(branch.problem, section, u)
+                (branch.label, word, section, place, periods)
+                for place in _places(branch.problem, section, u, at)
             ]
     wanted.sort(key=lambda entry: entry[-1])  # those of few periods separate wide basins
     found: list[Manifold] = []
@@ -149,10 +151,10 @@ class _Counted:
         return self.step(x)
 
 
-def _places(problem: Any, section: Any, u: np.ndarray) -> list[np.ndarray]:
+def _places(problem: Any, section: Any, u: np.ndarray, p: float) -> list[np.ndarray]:
     """Where a solution and its images under the problem's symmetries meet the section, each point once."""
     found: list[np.ndarray] = []
-    for one in (u, *(symmetry.apply(u) for symmetry in problem.symmetries)):
+    for one in (u, *(image_of(symmetry, u, p) for symmetry in problem.symmetries)):
         for place in section.rounds(one):
             if not any(np.allclose(place, other, atol=1e-7) for other in found):
                 found.append(place)

@@ -87,7 +87,8 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     generic = run.kind(point.kind).leaves == "branch"
     inside = (
         any(
-            test.kind == point.kind and _is_image(test.part(point.u[None, :])) for test in detector.symmetries
+            test.kind == point.kind and _is_image(test.part(point.u[None, :], [point.value]))
+            for test in detector.symmetries
         )
         and problem.flip_kind != point.kind
     )
@@ -246,7 +247,11 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     _, detector = run.engine(point.problem)
     event = run.events.get(point.label)
     if event is None:  # of a graph that was loaded
-        met = [t for t in detector.symmetries if t.kind == point.kind and _is_image(t.part(point.u[None, :]))]
+        met = [
+            t
+            for t in detector.symmetries
+            if t.kind == point.kind and _is_image(t.part(point.u[None, :], [point.value]))
+        ]
         if not met:
             run.remark(point.label, "the problem has no symmetry that this point has")
             return

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Located, Role
+from ..bifurcation.symmetry_test import image_of
 from ..branches.assembly import make_branch
 from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
@@ -242,7 +243,7 @@ def _becoming(problem: LocusProblem, half: HalfBranch) -> str:
     u, p = problem.split(U)
     sizes = problem.sizes_at(u, float(p), q)[:-2]
     for symmetry in problem.at(q).symmetries:
-        if np.abs((symmetry.apply(u) - u) / sizes).max() < NEARLY:
+        if np.abs((image_of(symmetry, u, float(p)) - u) / sizes).max() < NEARLY:
             what = "a shorter one, run twice" if symmetry.kind == "period-doubling" else "symmetric"
             return f"the motion becomes {what}, at {problem.inner} = {p:.7g}, {problem.over} = {q:.7g}"
     return ""

@@ -81,12 +81,15 @@ class Symmetry:
         u -> (problem, u) of the smaller problem for a solution that lies in the fixed space.
     kind_at : callable, optional
         u -> the kind at a solution in the fixed space, where it is not the same everywhere.
+    offset : callable, optional
+        p -> what is added to `apply(u)`, shape (N,), where the image depends on the parameter.
     """
 
     kind: str
     apply: Callable[[np.ndarray], np.ndarray]
     root: Callable[[np.ndarray], tuple[Any, np.ndarray]] | None = None
     kind_at: Callable[[np.ndarray], str] | None = None
+    offset: Callable[[float], np.ndarray] | None = None
 
 
 class Embedding(NamedTuple):

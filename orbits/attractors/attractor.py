@@ -145,8 +145,8 @@ class Attractor:
         mirror = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
         own = self.model.at_home(self.codes, self.nodes, self.params)
         target = self.model.at_home(other.codes, other.nodes, self.params)
-        image = -own
-        image[:, 0] = own[:, 0] + np.pi
+        image = self.model.image(self.codes, own, self.params)
+        image[:, 0] += np.pi
         images = [(self.codes, self.modes, own)]
         if self.model.has_mirror(self.params):
             images.append((mirror[self.codes], -self.modes, image))

@@ -125,8 +125,10 @@ def first_event(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray) -> int:
     return min(starts, key=rank)
 
 
-def is_symmetric(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, tolerance: float = 1e-7) -> bool:
-    """Whether the orbit equals its mirror image after half its events."""
+def is_symmetric(
+    codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, image: np.ndarray, tolerance: float = 1e-7
+) -> bool:
+    """Whether the orbit equals its mirror image (`image`, at the same phases) after half its events."""
     n = len(codes)
     if n == 0 or n % 2:
         return False
@@ -135,6 +137,5 @@ def is_symmetric(codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray, tolera
         np.array_equal(_MIRROR[codes], np.roll(codes, half)) and np.array_equal(-modes, np.roll(modes, half))
     ):
         return False
-    image = -nodes
-    image[:, 0] = nodes[:, 0] + np.pi
+    image = image + [np.pi, *[0.0] * (nodes.shape[1] - 1)]
     return cyclic_distance(image, np.roll(nodes, half, axis=0)) < tolerance

@@ -329,6 +329,7 @@ def _attractor(
         if window.length
         else 0.0
     )
+    home = model.at_home(codes, nodes, params)
     return Attractor(
         model=model,
         params=params,
@@ -341,7 +342,7 @@ def _attractor(
         residual=residual,
         multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
         symmetric=model.has_mirror(params)
-        and (kind == "stuck" or is_symmetric(codes, modes, model.at_home(codes, nodes, params))),
+        and (kind == "stuck" or is_symmetric(codes, modes, home, model.image(codes, home, params))),
         state=state.copy(),
         impacts_per_period=0.0 if kind == "stuck" else float(rate),
         impact_speed=float(hits.max()) if hits.size and kind != "stuck" else 0.0,

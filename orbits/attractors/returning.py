@@ -56,7 +56,7 @@ def returning_cycles(
     def ahead(x: np.ndarray, count: int) -> np.ndarray:
         """So many lengths later."""
         there = later(simulator, x, count * length)
-        return -there if length == 0.5 and count % 2 else there
+        return simulator.image(there) if length == 0.5 and count % 2 else there
 
     for start in starts:
         time = float(start[0]) / (2.0 * np.pi)

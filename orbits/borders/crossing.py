@@ -33,7 +33,7 @@ from orbits.borders.rewriting import edits_at
 from orbits.borders.rounds import derivative, rounds_at
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.claim import REAL
-from orbits.cycles.identity import canonical, is_symmetric
+from orbits.cycles.identity import canonical
 from orbits.cycles.rounds import MOST, choices, escape
 from orbits.cycles.solution import Solution
 from orbits.flows.native.cycle_equations import solved_at
@@ -193,7 +193,7 @@ def _grown_in(
     """The orbit in which the first rounds of the problem, as many as `changed`, go through one of the changes."""
     for edit in choices:
         ways = SIZES if rounds == 2 else SIZES[:2]
-        edits = [edit.later(k, problem) for k in range(changed)]
+        edits = [edit.later(k, problem, p) for k in range(changed)]
         found = grown(Begun(wider, whole, p, edits), ways, steady=rounds > 2)
         if found is not None:
             return found, edit.change.what.value
@@ -257,7 +257,7 @@ def _simulated(
             continue
         if distance(orbit, found) > CLOSE:
             continue
-        symmetric = is_symmetric(found.word, found.periods, found.nodes)
+        symmetric = found.symmetric
         other = problem.sibling(found.word, found.periods, symmetric)
         v = other.reduce(found.nodes)
         nearer = _nearer(other, v, q, p)

@@ -61,7 +61,9 @@ def distance(one: Solution, other: Solution, mirror: bool = False, instants: int
         else np.tile(orbit.positions(instants), periods // orbit.periods)
         for orbit in (one, other)
     )
-    images = [here, -np.roll(here, -instants // 2)] if mirror else [here]
+    images = [here]
+    if mirror:
+        images.append(2.0 * float(one.model.middle(one.params)) - np.roll(here, -instants // 2))
     best = np.inf
     turned = (instants * np.arange(one.periods)[:, None] + np.arange(0, len(here), COARSE)) % len(here)
     for image in images:

@@ -76,7 +76,9 @@ class Cycle:
     @cached_property
     def symmetric(self) -> bool:
         """Whether the orbit equals its mirror image after half its period."""
-        return self.model.has_mirror(self.params) and is_symmetric(self.word, self.periods, self.nodes)
+        return self.model.has_mirror(self.params) and is_symmetric(
+            self.word, self.periods, self.nodes, image=self._image
+        )
 
     @cached_property
     def events(self) -> EventTable:
@@ -125,9 +127,13 @@ class Cycle:
                 f"the model {self.model.name!r} has no mirror symmetry with these parameters: the image of "
                 f"{self.word.text!r} is not one of its orbits"
             )
-        nodes = -self.nodes
-        nodes[:, 0] = self.nodes[:, 0] + np.pi
+        nodes = self._image
+        nodes[:, 0] += np.pi
         return replace(self, word=self.word.mirror(), nodes=nodes)
+
+    @property
+    def _image(self) -> np.ndarray:
+        return self.model.image(self.word.codes, self.nodes, self.params)
 
     def rotate(self, places: int) -> Self:
         """The same orbit, read from the event `places` further on."""

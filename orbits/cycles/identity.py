@@ -42,15 +42,24 @@ def root_orbit(
 
 
 def is_symmetric(
-    word: CyclicWord, periods: int, nodes: np.ndarray, same: float = SAME, *, forced: bool = True
+    word: CyclicWord,
+    periods: int,
+    nodes: np.ndarray,
+    same: float = SAME,
+    *,
+    forced: bool = True,
+    image: np.ndarray | None = None,
 ) -> bool:
-    """Whether the orbit equals its mirror image after half its period."""
+    """Whether the orbit equals its mirror image after half its period.
+
+    `image` are the nodes mirrored, at the same phases; by default all states have the opposite sign.
+    """
     if not len(word):
         return True
     if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)):
         return False
     half = len(word) // 2
-    image = -nodes[:half]
+    image = (-nodes if image is None else image)[:half].copy()
     image[:, 0] = nodes[:half, 0] + (np.pi * periods if forced else 0.0)
     return bool(np.max(np.abs(image - nodes[half:])) < same)
 

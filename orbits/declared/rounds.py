@@ -66,7 +66,7 @@ def escapes(
         wider, whole = _repeated(problem, orbit, rounds)
         ways = SIZES if rounds == 2 else SIZES[:2]
         for edit in wanted:
-            parts = [edit.later(k, problem) for k in range(changed)]
+            parts = [edit.later(k, problem, p) for k in range(changed)]
             found = grown(wider, whole, p, parts, ways, steady=rounds > 2)
             if found is None:
                 continue

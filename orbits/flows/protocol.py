@@ -12,7 +12,7 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
 4. ``record(until, most)`` does the same and lists the events.
 5. A motion that cannot go on (it leaves the range of numbers, or a law does not continue it) or cannot begin raises `SimulationError`.
 6. ``struck(point, near)`` tells the two points that are one motion at a wall: just before and just after the impact.
-7. ``mirrored`` says that minus the point, half a period later, is a point of the same machine. ``hard`` says which coordinates walls limit by themselves.
+7. ``mirrored`` says that the ``image`` of a point, half a period later, is a point of the same machine. ``hard`` says which coordinates walls limit by themselves.
    ``watched`` is (periods, events) of the motion in which near returns are looked for.
 """
 
@@ -118,6 +118,8 @@ class Simulator(Protocol):
     def time(self) -> float: ...
     @property
     def point(self) -> np.ndarray: ...
+
+    def image(self, point: np.ndarray) -> np.ndarray: ...
 
     def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None: ...
 

@@ -10,8 +10,8 @@ The contract, in words
    its position w at the other events.
 3. `kernels` is the module of compiled maps with `linearise`, `margins` and `unpin` (signatures: `orbits.machines.absorber.maps`).
 4. `stepper` is the module of the compiled event-driven simulation (contract: `orbits.machines.stepping`).
-5. `has_mirror` says whether the mirror image of a motion (L and R change places, all unknowns but the phase change sign, half a
-   forcing period later) is a motion of the same machine. Nothing is solved on half a word, and no image is identified with a
+5. `has_mirror` says whether the mirror image of a motion about the middle between the walls (L and R change places, all unknowns
+   but the phase change sign, positions counted from that middle, half a forcing period later) is a motion of the same machine. Nothing is solved on half a word, and no image is identified with a
    motion, unless it says so.
 6. `cavity_motion`, `walls` and `restitutions` give what measures and event tables need; `own_measures` names further measures
    and `measure_own` computes them.
@@ -214,6 +214,22 @@ class Model(Varying):
         """w at the left and at the right wall; shapes follow `params` (..., P)."""
         one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
         return one, -one
+
+    @classmethod
+    def middle(cls, params: np.ndarray) -> Any:
+        """w in the middle between the walls, about which mirror images are taken; shapes follow `params` (..., P)."""
+        left, right = cls.walls(params)
+        return 0.5 * (left + right)
+
+    @classmethod
+    def image(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (..., L, n) of events `codes` mirrored about the middle between the walls, at the same phases."""
+        image = -nodes
+        image[..., 0] = nodes[..., 0]
+        middle = np.asarray(cls.middle(params))
+        if middle.any():
+            image[..., 1] += np.where(codes < 2, 0.0, 2.0 * middle[..., np.newaxis])
+        return image
 
     @classmethod
     def restitutions(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

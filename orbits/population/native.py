@@ -219,7 +219,9 @@ class NativeFleet:
         for k in range(max(found.periods, 1)):
             whole.append(self._vector(state))
             skip(self.engine, state, self.params, now + k + 0.5, 100_000)
-            half.append(-self._vector(state))
+            image = -self._vector(state)
+            image[0] += 2.0 * float(self.model.middle(self.params))
+            half.append(image)
             skip(self.engine, state, self.params, now + k + 1.0, 100_000)
         mirror = np.array(half) if self.model.has_mirror(self.params) else np.empty((0, len(whole[0])))
         return np.array(whole), mirror, found.impacts == 0

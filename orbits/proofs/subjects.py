@@ -175,7 +175,7 @@ def of_branch(
 
         def guess(p: float, x: np.ndarray = x, u: np.ndarray = u) -> np.ndarray:
             columns = [np.interp(p, x, u[:, j]) for j in range(u.shape[1])]
-            return problem.expand(np.array(columns))[: len(motif)]
+            return problem.expand(np.array(columns), p)[: len(motif)]
 
         between.append((first, last))
         pieces.append(prove_piece(motif, guess, given, varying, low, high, (ends[0], ends[1])))

@@ -44,6 +44,12 @@ class NativeSimulator:
         """Whether the machine equals its mirror image."""
         return self.model.has_mirror(self.params)
 
+    def image(self, point: np.ndarray) -> np.ndarray:
+        """A point mirrored about the middle between the walls."""
+        image = -point
+        image[0] += 2.0 * float(self.model.middle(self.params))
+        return image
+
     @property
     def hard(self) -> np.ndarray:
         """The walls limit the position in the cavity."""

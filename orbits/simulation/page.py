@@ -189,6 +189,10 @@ class PageSimulator:
         """Whether the machine equals its mirror image."""
         return self.machine.has_mirror(self.params)
 
+    def image(self, point: np.ndarray) -> np.ndarray:
+        """A point mirrored about the origin."""
+        return -point
+
     @property
     def time(self) -> float:
         """Forcing periods; of a self-excited machine its time over 2 pi."""

@@ -43,7 +43,7 @@ def polish(orbit: Found, limit: int = 30) -> Found | None:
     u, residual = solved_at(system, system.reduce(orbit.nodes), value, TOLERANCE, limit)
     if not residual < 1e-9 * max(1.0, float(np.abs(u).max())):
         return None
-    nodes = system.expand(u)
+    nodes = system.expand(u, value)
     nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
     return replace(orbit, nodes=nodes)
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.changes import Change
+from orbits.contacts.letters import HIT
 from orbits.words.rewriting import later
 
 
@@ -16,11 +17,14 @@ class Edit(NamedTuple):
     change: Change
     nodes: np.ndarray
 
-    def later(self, rounds: int, problem: Any) -> Edit:
+    def later(self, rounds: int, problem: Any, p: float) -> Edit:
         """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
         if rounds == 0:
             return self
         turned = problem.symmetric and rounds % 2 == 1
         nodes = -self.nodes if turned else self.nodes.copy()
         nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
+        if turned and (middle := problem.middle(p)):  # images are taken about the middle between the walls
+            letters = problem.word.alphabet.letters
+            nodes[[letters[text].kind != HIT for text in self.change.events], 1] += 2.0 * middle
         return Edit(later(self.change, rounds * problem.length, problem.word.alphabet, turned), nodes)

@@ -77,9 +77,10 @@ class Equations:
         self.n_margins = PER_NODE * length
         self.period_shift = np.zeros(self.dimension)
         self.period_shift[::n] = 2.0 * np.pi
+        self.codes = word.codes[:length]
         self.unit = unit_nodes(word, n, self.units)
         self.data = cycle_data(
-            word.codes[:length],
+            self.codes,
             word.mode_codes[:length],
             frame.own,
             frame.path if self.units == PLAIN else frame.own_path,
@@ -120,16 +121,21 @@ class Equations:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
 
-    def expand(self, u: np.ndarray) -> np.ndarray:
-        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N)."""
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).
+
+        The image of half a cycle is taken about the middle between the walls at the parameter values `p`, shape (...); without
+        them at the one in the parameter vector.
+        """
         u = np.asarray(u, dtype=float)
         nodes = u.reshape(*u.shape[:-1], self.length, self.model.node)
         if self.units != PLAIN:
             nodes = nodes * self.unit[: self.length]
         if self.twist > 0.0:
             return nodes
-        image = -nodes
-        image[..., 0] = nodes[..., 0] + self.shift
+        params = self.params if p is None else self.values(p)
+        image = self.model.image(self.codes, nodes, params)
+        image[..., 0] += self.shift
         return np.concatenate([nodes, image], axis=-2)
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:

@@ -72,7 +72,7 @@ class RestEquations:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
 
-    def expand(self, u: np.ndarray) -> np.ndarray:
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """No nodes."""
         return np.zeros((*np.shape(u)[:-1], 0, self.model.node))
 

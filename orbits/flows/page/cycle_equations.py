@@ -254,7 +254,7 @@ class DeclaredSystem:
         return spectrum**2 if self.symmetric else spectrum
 
     # ------------------------------------------------------------------ shapes
-    def expand(self, u: np.ndarray) -> np.ndarray:
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """Nodes of the whole cycle, shape (..., L, n + 1)."""
         u = np.asarray(u, dtype=float)
         nodes = u.reshape(*u.shape[:-1], self.length, self.size + 1)

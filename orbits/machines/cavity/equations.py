@@ -45,7 +45,7 @@ def cycle(data, u, work, law, rate):
     by_omega = 1.0 / omega
     speed = C * omega
     d_speed = d_C * omega + C * d_Omega
-    largest = 0.0
+    largest = y1_p = 0.0
     sines[:length], cosines[:length] = np.sin(u[::2]), np.cos(u[::2])
     sines[length] = twist * sines[0]
     cosines[length] = twist * cosines[0]
@@ -59,6 +59,9 @@ def cycle(data, u, work, law, rate):
             arrival = events[0] if twist > 0.0 or events[0] > 1 else 1 - events[0]
             psi1 = u[0] + shift
             y1 = twist * u[1]
+            if twist < 0.0 and events[0] > 1:  # the image about the middle between the walls
+                y1 += law.left + law.right
+                y1_p = rate.left + rate.right
         psi0 = u[2 * i]
         y0 = u[2 * i + 1]
         s0, c0 = sines[i], cosines[i]
@@ -78,7 +81,7 @@ def cycle(data, u, work, law, rate):
             D[i, 1, 1] = -1.0
             d_pull = rate.pull_left if after > 0 else rate.pull_right
             Q[i, 0] = d_pull + (d_speed * omega + speed * d_Omega) * s1
-            Q[i, 1] = 0.0
+            Q[i, 1] = -y1_p
         else:
             sa = law.pull_left if mode > 0 else law.pull_right
             d_sa = rate.pull_left if mode > 0 else rate.pull_right
@@ -155,7 +158,7 @@ def cycle(data, u, work, law, rate):
                 D[i, 1, 0] = W_psi1
                 D[i, 1, 1] = -1.0
                 Q[i, 0] = V_p
-                Q[i, 1] = W_p
+                Q[i, 1] = W_p - y1_p
         size = max(abs(F[i, 0]), abs(F[i, 1]))
         if not size <= largest:
             largest = size

@@ -30,8 +30,9 @@ class Cavity(Shaken):
     ``w'' = -C Omega^2 sin(Psi) - (1 + eps) g sin(slope) - s (1 + eps) mu_s g cos(slope),   -distance_right <= w <= distance_left``,
 
     with s the sign of w', ``mu_+`` = `friction_left` (sliding to the left wall), ``mu_-`` = `friction_right`, and w'+ = -r w'- with the
-    restitution of the wall that is hit. Level and with equal sides this is `orbits.Absorber`; steep, without friction and
-    with the left wall out of reach it is a ball that bounces on a sinusoidal table.
+    restitution of the wall that is hit. Level and with equal sides this is `orbits.Absorber`, level and with unlike distances it is
+    symmetric about the middle between the walls. Steep, without friction and with the left wall out of reach it is a ball that
+    bounces on a sinusoidal table.
 
     Parameters
     ----------
@@ -175,12 +176,11 @@ class Cavity(Shaken):
 
     # ------------------------------------------------------------------ mechanics
     def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
-        """Level, and both sides alike; what varies must keep it so."""
+        """Level, and with one coefficient of restitution and of friction; what varies must keep it so."""
         value = dict(zip(self.parameter_names, (float(number) for number in params)))
-        pairs = (*PAIRS.values(), ("distance_left", "distance_right"))
-        if value["slope"] != 0.0 or any(value[left] != value[right] for left, right in pairs):
+        if value["slope"] != 0.0 or any(value[left] != value[right] for left, right in PAIRS.values()):
             return False
-        return varying is None or varying in PAIRS or varying not in ("slope", *(s for p in pairs for s in p))
+        return varying not in ("slope", *(side for pair in PAIRS.values() for side in pair))
 
     @classmethod
     def friction_acceleration(cls, params: np.ndarray) -> float:

@@ -153,7 +153,7 @@ def test_a_change_some_rounds_later_is_that_of_the_repeated_orbit(symmetric):
     (first,) = edits_at(border, WALL, problem.length)
     whole = border.repeat(4)
     for rounds in range(4):
-        moved = first.later(rounds, problem)
+        moved = first.later(rounds, problem, border.parameters["amplitude"])
         (wanted,) = edits_at(whole, 4 * problem.length * rounds + WALL)
         assert moved.change == wanted.change
         np.testing.assert_allclose(moved.nodes, wanted.nodes, atol=1e-13)

@@ -26,6 +26,12 @@ def drawn(name, text, seed, symmetric, without_friction):
     params = np.abs(model.vector(given_) * (1.0 + 0.2 * draw.normal(size=len(model.parameter_names))))
     if without_friction:
         params[[i for i, n in enumerate(model.parameter_names) if n.startswith("friction")]] = 0.0
+    if symmetric and name == "cavity":  # level, with unlike distances of the walls
+        for side in ("restitution", "friction"):
+            params[model.parameter_names.index(f"{side}_right")] = params[
+                model.parameter_names.index(f"{side}_left")
+            ]
+        params[model.parameter_names.index("slope")] = 0.0
     parameter = str(draw.choice(model.parameter_names))
     try:
         system = Equations(model, Word.parse(text), 1, parameter, params, symmetric)

@@ -28,7 +28,8 @@ def apart(one: Any, other: Any, *, images: bool = True) -> float:
     free = not (one.impacts and other.impacts)
     faces = [here]
     if images and one.model.has_mirror(one.params):
-        faces.append(-np.roll(here, PER_PERIOD // 2))
+        left, right = one.model.walls(one.params)
+        faces.append(float(left + right) - np.roll(here, PER_PERIOD // 2))
     gaps = np.array([np.roll(face, k * PER_PERIOD) - there for face in faces for k in range(periods)])
     sizes = 0.5 * np.ptp(gaps, axis=1) if free else np.abs(gaps).max(axis=1)
     return float(sizes.min()) / one.model.natural_units(one.params)[0]

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import contvines as cv
 from orbits import Absorber, Cavity, ParameterError
@@ -59,7 +60,8 @@ def test_level_and_symmetric_it_has_the_absorbers_special_points():
 def test_level_with_unlike_distances_it_is_the_absorber_of_their_mean():
     """Nothing but the walls knows the place of the origin: with the mean distance b of the walls as the unit of length, C and g count as C/b and g/b.
 
-    The orbit LR ends at a border from which simulation also goes on to sliding, a symmetric motion of a machine without mirror image.
+    Its mirror image is taken about the middle between the walls. The orbit LR ends at a border from which simulation also goes on to
+    sliding, a symmetric motion.
     """
     b, mass_ratio = 0.95, 0.006
     machine = Cavity(
@@ -69,8 +71,95 @@ def test_level_with_unlike_distances_it_is_the_absorber_of_their_mean():
     R, H = restitution_ratio(0.5), friction_number(0.5, 0.2 / b, mass_ratio)
     fold, pitchfork = b * np.sqrt(fold_square(R, H)), b * np.sqrt(symmetry_breaking_square(R, H))
     assert graph["LP1"].value == pytest.approx(fold, abs=1e-12)
-    assert graph["BP1"].value == pytest.approx(pitchfork, abs=1e-12)
+    assert graph["SB1"].value == pytest.approx(pitchfork, abs=1e-12)
     assert graph["WG1"].branch == "B1" and "failed" not in graph["WG1"].note
+
+
+def test_level_with_unlike_distances_its_graph_is_the_absorbers_in_other_units():
+    """All words, and borders where events off the walls begin: the graph of the absorber with b = (d_L + d_R)/2, C and g as C/b and g/b."""
+    left, right = 0.9, 1.3
+    b = 0.5 * (left + right)
+    absorber = Absorber(restitution=0.76, friction=0.5, **LEVEL)
+    scaled = {**LEVEL, "gravity": b * LEVEL["gravity"], "distance_left": left, "distance_right": right}
+    cavity = Cavity(restitution=0.76, friction=0.5, **scaled)
+    graphs = [
+        cv.diagram(
+            machine.orbit("LR", amplitude=0.6 * unit), over="amplitude", within=(0.15 * unit, 1.1 * unit)
+        )
+        for machine, unit in ((absorber, 1.0), (cavity, b))
+    ]
+    listed = [
+        [(branch.description["word"], branch.real, branch.problem.symmetric) for branch in graph]
+        for graph in graphs
+    ]
+    assert listed[0] == listed[1] and len({word for word, *_ in listed[0]}) > 4
+    assert [point.label for point in graphs[0].special.values()] == [
+        point.label for point in graphs[1].special.values()
+    ]
+    for one, other in zip(graphs[0].special.values(), graphs[1].special.values()):
+        assert other.value == pytest.approx(b * one.value, abs=1e-9), one.label
+    asymmetric = next(branch for branch in graphs[1] if not branch.problem.symmetric and branch.real)
+    orbit, image = asymmetric.orbit(3), asymmetric.orbit(3).mirror()
+    assert (
+        image.residual < 1e-10
+        and image.real
+        and np.abs(image.positions(200) - orbit.positions(200)).max() > 1e-3
+    )
+    # seen from the middle the image is on the other side, half a period later
+    assert image.positions(200) + np.roll(orbit.positions(200), 100) == pytest.approx(left - right, abs=1e-10)
+
+
+def test_symmetry_breaks_where_one_distance_varies():
+    """The middle between the walls moves along the branch: its pitchforks are those of the absorber with half the way from wall to wall."""
+    right, amplitude, H0 = 1.2, 0.7, friction_number(0.5, LEVEL["gravity"], LEVEL["mass_ratio"])
+    R = restitution_ratio(0.76)
+
+    def away(left: float) -> float:
+        b = 0.5 * (left + right)
+        return float(b * np.sqrt(symmetry_breaking_square(R, H0 / b))) - amplitude
+
+    expected = brentq(away, 0.2, 1.5)
+    machine = Cavity(restitution=0.76, friction=0.5, distance_left=1.0, distance_right=right, **LEVEL)
+    orbit = machine.orbit("LR", amplitude=amplitude)
+    graph = cv.diagram(orbit, over="distance_left", within=(0.4, 1.4), depth=1)
+    assert graph["SB1"].value == pytest.approx(expected, abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    "parameter", ["distance_left", "distance_right", "amplitude", "frequency", "friction"]
+)
+@pytest.mark.parametrize("text", ["LtLRtR", "tLRtRL", "suLsuR"])
+def test_the_equations_of_a_level_cavity_have_its_mirror(text, parameter):
+    """At any unknowns: the image's residuals are those of the unknowns in other places, and the half word's are those of the whole one.
+
+    So that a sign, a place or the derivative of the middle between the walls that is wrong shows without any orbit.
+    """
+    machine = Cavity(restitution=0.6, friction=0.4, distance_left=0.7, distance_right=1.2, **LEVEL)
+    params, word = machine.vector({"amplitude": 0.9}), Word.parse(text)
+    whole, half = (
+        OrbitProblem(machine, word, 1, parameter, params, symmetric) for symmetric in (False, True)
+    )
+    draw = np.random.default_rng(5)
+    u = draw.uniform(-0.5, 0.5, whole.dimension)
+    u[::2] = np.sort(draw.uniform(0.0, 2.0 * np.pi, whole.length))
+    p = 1.1 * whole.value(params)
+    (symmetry,) = (one for one in whole.symmetries if one.kind == "symmetry-breaking")
+
+    def residuals(problem, unknowns, value=p):
+        work = problem.workspace()
+        problem.kernels.linearise(problem.data, unknowns, value, work)
+        return work[0].ravel().copy(), work[3].ravel().copy()
+
+    image = symmetry.apply(u) + symmetry.offset(p)
+    assert symmetry.apply(image) + symmetry.offset(p) == pytest.approx(u, abs=1e-12)
+    one, other = residuals(whole, u)[0], residuals(whole, image)[0]
+    assert np.sort(np.abs(one)) == pytest.approx(np.sort(np.abs(other)), abs=1e-12)
+    v = u[: half.dimension].copy()
+    v[::2] = np.sort(draw.uniform(0.0, np.pi, half.length))
+    one, other = residuals(half, v)[0], residuals(whole, whole.reduce(half.expand(v, p)))[0]
+    assert np.abs(np.tile(one, 2)) == pytest.approx(np.abs(other), abs=1e-12)
+    slope = (residuals(half, v, p + 1e-6)[0] - residuals(half, v, p - 1e-6)[0]) / 2e-6
+    assert residuals(half, v)[1] == pytest.approx(slope, abs=1e-8)
 
 
 def test_level_with_unlike_distances_sliding_ends_where_it_fills_the_cavity():
