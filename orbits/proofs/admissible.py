@@ -115,7 +115,7 @@ def conditions(
     """All inequalities of the orbit, the one that vanishes at a border left out or marked."""
     flights = motif.flights(p)
     for i in range(len(motif)):
-        following = motif.after(i, nodes)
+        following = motif.after(i, nodes, p)
         flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
         phases = (nodes[i][0], following[0])
         for condition in _at_event(motif, i, flight(nodes[i][0]), nodes[i], flights):

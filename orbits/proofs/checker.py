@@ -66,16 +66,16 @@ def motion(p, letter, mode, x, phase, rates=5):
         q.append(X * s + Y * c + rest + y * C + z * S)
         X, Y, y, z, rest = om * Y * -1, om * X, b * z - d * y, b * y * -1 - d * z, zero
     return q, [a - f for a, f in zip(q, [*fall, zero, zero])] if mode else [w0, *[zero] * 4]
-def flights(c, x, end):
-    """Of every flight: letter, mode, the event after it and the mode then, both nodes; `end` closes the word."""
-    nodes = [x[j:j + c["n"]] for j in range(0, len(x) - 1, c["n"])]
-    nodes.append([end[0] + iv.pi * c["periods"] * (2 - c["half"]), *(a * (1 - 2 * c["half"]) for a in end[1:c["n"]])])
-    return [(*word, node, y) for word, node, y in zip(c["word"], nodes, nodes[1:])]
+def flights(c, p, x, end):
+    """Of every flight: letter, mode, the event after it and the mode then, both nodes; `end` or its image closes the word."""
+    nodes, t, w = [x[j:j + c["n"]] for j in range(0, len(x) - 1, c["n"])], 1 - 2 * c["half"], p["wall1"] + p["wall-1"]
+    end = [end[0] + iv.pi * c["periods"] * (2 - c["half"]), end[1] * t + w * c["off"], *(a * t for a in end[2:c["n"]])]
+    return [(*word, node, y) for word, node, y in zip(c["word"], nodes, [*nodes[1:], end])]
 def equations(c, flat, shift=0):
     """Zero on an orbit; unknowns are counted from 1, those of the node that closes the word from 1 + shift."""
     x, end = ([Jet({0: a, u: iv.mpf(1)}) for u, a in enumerate(flat, 1 + first)] for first in (0, shift))
     p, rows = machine(c, x[-1]), []
-    for letter, mode, wall, after, node, y in flights(c, x, end) if c["events"] != "o" else []:
+    for letter, mode, wall, after, node, y in flights(c, p, x, end) if c["events"] != "o" else []:
         (q, w), s = motion(p, letter, mode, node, y[0], 3), WALL.get(wall)
         v, speed = (p["whole"] * q[k] - p["e"] * w[k] for k in (0, 1))
         slip = p["whole"] * q[2] + p["bias"] - p[f"limit{after}"] * after if wall == "u" else w[1]
@@ -126,7 +126,7 @@ def positive(c, p, s, letter, mode, wall, after, x, y):
 def conditions(c, hull, wanted):
     """The inequalities of a real motion throughout a box, [what, event, side], if wanted: True, False or None each."""
     x, p, found = [jet(a) for a in hull], machine(c, jet(hull[-1])), []
-    for i, (letter, mode, wall, after, node, y) in enumerate(flights(c, x, x)):
+    for i, (letter, mode, wall, after, node, y) in enumerate(flights(c, p, x, x)):
         found += [sign((y[0] - node[0])[0])] if wanted(["duration", i, 0]) else []
         found += [sign((p[f"wall{s}"] - node[1])[0] * s) for s in SIDES if letter not in WALL and wanted(["wall", i, s])]
         sides = [s for s in SIDES if (c["frictionless"] or mode in (0, s)) and wanted(["flight", i, s])]
@@ -173,9 +173,9 @@ def verify(c):
     known = [(a, b) in MODES[wall] or (c["frictionless"] and b == -WALL[wall]) for _, a, wall, b in word if events != "o"]
     need(all(known) and (events != "o" or (modes, half, c["periods"]) == ([0], False, 1)), "no machine has this word")
     need({*given} in [ALL | own for own in OWN] and c["periods"] == int(c["periods"]) > 0, "no such numbers")
-    alike = all(given.get(a) == given.get(b) and given.get(a, ZERO)[1] == "0" for a, b in PAIRS)
+    alike = all(given.get(a) == given.get(b) and given.get(a, ZERO)[1] == "0" for a, b in PAIRS[:2])
     need(half in (0, 1) and (not half or (alike and given.get("slope", ZERO) == ZERO and c["periods"] % 2)), "no mirror")
-    c |= {"n": 2 if "amplitude" in given else 4, "word": word}
+    c |= {"n": 2 if "amplitude" in given else 4, "word": word, "off": int(half and events[0] not in WALL)}
     boxes, claims = [proved(c, box) for box in c["boxes"]], c["claims"]
     orbits, tiles, steady, kinds = boxes[::2], boxes[1::2], claims["stable"], [box["kind"] for box in boxes[1::2] or boxes]
     need(len(orbits) == len(tiles) + 1 and all(box["q"] == 0 for box in orbits), "no chain of orbits and tiles")

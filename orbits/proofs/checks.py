@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from orbits.proofs.balls import Given
+from orbits.proofs.balls import Given, ball
 from orbits.proofs.equations import MIRRORED, Motif
 from orbits.proofs.flights import MACHINES, parameter_names
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.varying import Varying
 
-SIDED = ("restitution", "friction", "distance")
+SIDED = ("restitution", "friction")
 NEAR = 1e-6  # nodes of an orbit and of its mirror image
 
 
@@ -35,7 +35,13 @@ def motif_of(
     return Motif(machine, tuple(events[:length]), tuple(modes[:length]), periods, half, frictionless)
 
 
-def require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], nodes: np.ndarray) -> None:
+def require_mirror(
+    motif: Motif,
+    events: Sequence[str],
+    modes: Sequence[int],
+    nodes: np.ndarray,
+    given: Mapping[str, Given],
+) -> None:
     """Refuse to prove half a word for the whole where the other half is not its mirror image.
 
     Raises
@@ -45,6 +51,9 @@ def require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], no
     n = len(motif)
     image = -nodes[:n]
     image[:, 0] = nodes[:n, 0] + np.pi * motif.periods
+    if "distance_left" in given:
+        middle = float(ball(given["distance_left"]) - ball(given["distance_right"]))
+        image[[letter not in MIRRORED for letter in motif.events], 1] += middle
     letters = tuple(MIRRORED.get(letter, letter) for letter in motif.events)
     same = tuple(events[n:]) == letters and tuple(modes[n:]) == tuple(-mode for mode in motif.modes)
     if not same or nodes.shape[0] != 2 * n or not np.max(np.abs(nodes[n:] - image)) < NEAR:
@@ -54,7 +63,7 @@ def require_mirror(motif: Motif, events: Sequence[str], modes: Sequence[int], no
 
 
 def mirrored(given: Mapping[str, Given], varying: Varying | None = None) -> bool:
-    """Whether the mirror image of a motion is one, too: a cavity must be level and its sides exactly alike."""
+    """Whether the mirror image of a motion is one, too: a cavity must be level, with exactly one restitution and one friction."""
     told = {**given, **(varying.numbers if varying else {})}
     pairs = [(f"{name}_left", f"{name}_right") for name in SIDED if f"{name}_left" in told]
     level = Decimal(str(told.get("slope", "0"))) == 0

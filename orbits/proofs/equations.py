@@ -77,14 +77,17 @@ class Motif:
         """The mode before event i."""
         return self.modes[i - 1] if i > 0 else self.twist * self.modes[-1]
 
-    def closing(self, node: Sequence[Any]) -> list[Any]:
-        """The first node again, at the end of the part."""
+    def closing(self, node: Sequence[Any], p: Mapping[str, Any]) -> list[Any]:
+        """The first node again, at the end of the part; a position is mirrored about the middle between the walls."""
         shift = library().arb.pi() * (self.periods if self.half else 2 * self.periods)
-        return [node[0] + shift, *(self.twist * value for value in node[1:])]
+        found = [node[0] + shift, *(self.twist * value for value in node[1:])]
+        if self.half and self.events[0] not in WALLS and "distance_left" in p:
+            found[1] = found[1] + (p["distance_left"] - p["distance_right"])
+        return found
 
-    def after(self, i: int, nodes: Sequence[Sequence[Any]]) -> Sequence[Any]:
+    def after(self, i: int, nodes: Sequence[Sequence[Any]], p: Mapping[str, Any]) -> Sequence[Any]:
         """The node at which flight i ends."""
-        return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0])
+        return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0], p)
 
     def residual(
         self, i: int, flights: Shaken | Coupled, x: Sequence[Any], following: Sequence[Any]
@@ -126,9 +129,13 @@ class System:
         self.k, self.m, self.length = motif.node, 0, len(motif)
         self.borders: tuple[Border, ...] = ()
 
+    def numbers(self, extras: Sequence[Any]) -> Mapping[str, Any]:
+        """The parameters, at these further unknowns."""
+        return self.p
+
     def prepare(self, extras: Sequence[Any]) -> Any:
         """What all blocks share."""
-        return self.motif.flights(self.p)
+        return self.motif.flights(self.numbers(extras))
 
     def block(
         self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]
@@ -138,7 +145,7 @@ class System:
 
     def closing(self, z: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
         """The unknowns that follow the last block, from those of the first."""
-        return self.motif.closing(z)
+        return self.motif.closing(z, self.numbers(extras))
 
     # ------------------------------------------------------------------ evaluation
     def residuals(

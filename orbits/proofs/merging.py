@@ -52,7 +52,7 @@ def merged(
     if 2 * len(pairs) == len(motif) and all(_pair(motif, nodes, i) == "us" for i in pairs):
         return replace(motif, events=(), modes=(), periods=1, half=False), nodes[:0], ("hold", 0)
     mine = next(i for i in pairs if event in (i, (i + 1) % len(motif)))
-    motif, nodes, i = _inwards(motif, nodes, mine)
+    motif, nodes, i = _inwards(motif, nodes, mine, room)
     if i + 1 >= len(motif) or i == 0:
         return None
     kind = _pair(motif, nodes, i)
@@ -68,7 +68,7 @@ def merged(
 
 def _grazing(motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float]) -> Merged | None:
     if motif.frictionless:
-        motif, nodes, i = _inwards(motif, nodes, i)
+        motif, nodes, i = _inwards(motif, nodes, i, room)
         return _without(motif, nodes, [i], ("reversal", i - 1)) if i > 0 else None
     side = WALLS[motif.events[i]]
     events, nodes = list(motif.events), nodes.copy()
@@ -76,7 +76,9 @@ def _grazing(motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float])
     return replace(motif, events=tuple(events)), nodes, ("wall", i)
 
 
-def _inwards(motif: Motif, nodes: np.ndarray, i: int) -> tuple[Motif, np.ndarray, int]:
+def _inwards(
+    motif: Motif, nodes: np.ndarray, i: int, room: Mapping[int, float]
+) -> tuple[Motif, np.ndarray, int]:
     """The word begun elsewhere, so that places i and i + 1 are neither its first nor beyond its last, if it is long enough."""
     for _ in range(len(motif)):
         if i > 0 and i + 1 < len(motif):
@@ -85,6 +87,8 @@ def _inwards(motif: Motif, nodes: np.ndarray, i: int) -> tuple[Motif, np.ndarray
         last[:, 1:] *= motif.twist
         last[:, 0] += np.pi * motif.periods * (1 if motif.half else 2)
         letter = motif.events[0]
+        if motif.half and letter not in WALLS:  # mirrored about the middle between the walls
+            last[:, 1] += room[1] - room[-1]
         following = MIRRORED.get(letter, letter) if motif.half else letter
         motif = replace(
             motif,

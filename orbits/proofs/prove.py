@@ -74,7 +74,7 @@ def prove_orbit(
     start = nodes[: len(motif)]
     check_symmetry(motif, given)
     if half:
-        require_mirror(motif, events, modes, nodes)
+        require_mirror(motif, events, modes, nodes, given)
     proof = Proof("orbit", motif, given)
 
     def attempt(at: int) -> Proof:

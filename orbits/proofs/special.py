@@ -39,9 +39,9 @@ class AtParameter(System):
         super().__init__(motif, p)
         self.varying, self.m = varying, 1
 
-    def prepare(self, extras: Sequence[Any]) -> Any:
-        """The machine's flights at the unknown parameter."""
-        return self.motif.flights(self.p | self.varying.at(extras[0]))
+    def numbers(self, extras: Sequence[Any]) -> Mapping[str, Any]:
+        """The parameters, at the unknown one."""
+        return self.p | self.varying.at(extras[0])
 
 
 class AtMultiplier(AtParameter):
@@ -76,7 +76,9 @@ class AtMultiplier(AtParameter):
     def closing(self, z: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
         """x_l and phi_l = mu phi_0, seen through the mirror on half a word."""
         n = self.n
-        return self.motif.closing(z[:n]) + self._mirrored([self.mu * value for value in z[n:]])
+        return self.motif.closing(z[:n], self.numbers(extras)) + self._mirrored(
+            [self.mu * value for value in z[n:]]
+        )
 
     def _mirrored(self, phi: list[Any]) -> list[Any]:
         return [phi[0], *(self.motif.twist * value for value in phi[1:])]
@@ -100,7 +102,9 @@ class AtPair(AtMultiplier):
         a, b = z[n : 2 * n], z[2 * n :]
         real = [c * p - s * q for p, q in zip(a, b)]
         imaginary = [s * p + c * q for p, q in zip(a, b)]
-        return self.motif.closing(z[:n]) + self._mirrored(real) + self._mirrored(imaginary)
+        return (
+            self.motif.closing(z[:n], self.numbers(extras)) + self._mirrored(real) + self._mirrored(imaginary)
+        )
 
 
 @dataclass(frozen=True)

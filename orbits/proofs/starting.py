@@ -102,7 +102,7 @@ def _least(
     i = vanishing.event
     flights = motif.flights(p)
     flight = flights.launch(motif.events[i], motif.modes[i], nodes[i])
-    first, last = nodes[i][0].mid(), motif.after(i, nodes)[0].mid()
+    first, last = nodes[i][0].mid(), motif.after(i, nodes, p)[0].mid()
     candidates = []
     for j in range(1, SAMPLES):
         phase = (first + (last - first) * j / SAMPLES).mid()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.near_names import no_parameter
-from orbits.cycles.identity import is_symmetric, root_orbit
+from orbits.cycles.identity import root_orbit
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.branches import Pieces
 from orbits.proofs.checks import check_symmetry, motif_of
@@ -90,7 +90,7 @@ def of_point(
         )
     word, periods, nodes, half = orbit.word, orbit.periods, orbit.nodes, problem.symmetric
     if kind in CRITICAL or kind == "branch-point":
-        kind, word, periods, nodes, half = _critical(kind, word, periods, nodes, half)
+        kind, word, periods, nodes, half = _critical(kind, word, periods, nodes, half, orbit.symmetric)
     motif = motif_of(machine, word.events, word.modes, periods, half, word.frictionless)
     vanishing = None
     if kind not in CRITICAL:
@@ -197,13 +197,13 @@ def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
 
 
 def _critical(
-    kind: str, word: Word, periods: int, nodes: np.ndarray, half: bool
+    kind: str, word: Word, periods: int, nodes: np.ndarray, half: bool, symmetric: bool
 ) -> tuple[str, Word, int, np.ndarray, bool]:
     """The description of the orbit in which a multiplier is critical alone: the root, and half of a symmetric one."""
     root, root_periods, root_nodes = root_orbit(word, periods, nodes)
     if not half and len(root) < len(word) and kind in ("period-doubling", "branch-point"):
         return "period-doubling", root, root_periods, root_nodes, False
-    if not half and kind in ("symmetry-breaking", "branch-point") and is_symmetric(word, periods, nodes):
+    if not half and kind in ("symmetry-breaking", "branch-point") and symmetric:
         return "symmetry-breaking", word, periods, nodes, True
     return ("fold" if kind == "branch-point" else kind), word, periods, nodes, half
 

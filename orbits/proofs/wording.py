@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from orbits.proofs.checks import SIDED
 from orbits.words import Word
 
 SAYS = {
@@ -32,10 +33,7 @@ def spelling(proof: Any) -> str:
 def _mirrored(proof: Any) -> bool:
     """Whether mirror images are motions of the machine, however the enclosed parameter varies."""
     known = proof.parameters
-    alike = all(
-        known.get(f"{name}_left") == known.get(f"{name}_right")
-        for name in ("restitution", "friction", "distance")
-    )
+    alike = all(known.get(f"{name}_left") == known.get(f"{name}_right") for name in SIDED)
     return proof.motif.machine != "cavity" or (alike and "slope" in known and float(known["slope"]) == 0.0)
 
 
