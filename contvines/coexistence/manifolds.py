@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..circles.section import Section, Walled, section_of
 from ..bifurcation.symmetry_test import image_of
+from ..circles.section import Section, Walled, section_of
 from ..graph.graph import Graph
 from .circle_step import TURN, next_point
 from .solutions import solutions_at
