@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..interrupts import HELD
+from ..provenance import provenance
 from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, cut_short, damaged, pending
 from .packing import digest_of, packed, printable, split, unpacked
 from .publishing import draft_of, publish
@@ -148,6 +149,16 @@ class Store:
     def study(self) -> dict[str, Any] | None:
         """What `create` was told of the study."""
         return json.loads(self._meta("study"))
+
+    @property
+    def made(self) -> dict[str, str]:
+        """With what the file was made (`contvines.provenance`); empty for files of versions that did not say so."""
+        if self._promised is not None:
+            return {}
+        with self._guard():
+            row = self._db.execute("SELECT value FROM meta WHERE key = 'made'").fetchone()
+        found = json.loads(row[0]) if row is not None and isinstance(row[0], str) else {}
+        return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else {}
 
     @property
     def finished(self) -> bool:
@@ -381,7 +392,12 @@ def _make(path: Path, fingerprint: str, study: Mapping[str, Any] | None) -> None
             )
             db.executemany(
                 "INSERT INTO meta VALUES (?, ?)",
-                [("fingerprint", fingerprint), ("study", json.dumps(study)), ("finished", "false")],
+                [
+                    ("fingerprint", fingerprint),
+                    ("study", json.dumps(study)),
+                    ("finished", "false"),
+                    ("made", json.dumps(provenance())),
+                ],
             )
             db.execute("COMMIT")
         publish(draft, path)

@@ -1,0 +1,86 @@
+"""`contvines doctor`: versions, core, extras, and a continuation whose result is known in closed form."""
+
+from __future__ import annotations
+
+import math
+from importlib.util import find_spec
+from typing import Any
+
+import typer
+
+from contvines.command.options import JsonOption
+
+EXTRAS = {
+    "machines": ("heyoka",),
+    "proofs": ("flint", "mpmath"),
+    "units": ("pint",),
+    "tables": ("pandas", "xarray", "h5netcdf"),
+    "surveys": ("dask", "distributed"),
+    "report": ("plotly",),
+}
+"""Modules that each extra of pyproject.toml brings."""
+
+AGREES = 1e-9  # relative; the fold is solved to roundoff, whatever the processor
+
+
+def doctor(json: JsonOption = False) -> None:
+    """Print versions, the core that computes, the extras that are installed, and the result of a self-test.
+
+    The self-test follows the symmetric motion of an absorber to its fold and
+    compares it with the closed form; it takes about a second. Exit status 1
+    if it fails.
+    """
+    from contvines.provenance import provenance
+
+    made = provenance()
+    extras = {name: all(find_spec(part) for part in parts) for name, parts in EXTRAS.items()}
+    test = self_test()
+    if json:
+        from contvines.export import json_text
+
+        typer.echo(json_text({**made, "extras": extras, "self_test": test}))
+    else:
+        for name, value in made.items():
+            typer.echo(f"{name:>10}  {value}")
+        for name, there in extras.items():
+            way = "installed" if there else f'missing; pip install "contvines[{name}]" adds it'
+            typer.echo(f"{name:>10}  {way}")
+        verdict = "passed" if test["passed"] else "FAILED"
+        typer.echo(
+            f" self-test  {verdict}: fold at amplitude {test['found']:.12g}, closed form {test['closed_form']:.12g}"
+        )
+    if not test["passed"]:
+        raise typer.Exit(1)
+
+
+def self_test() -> dict[str, Any]:
+    """The fold of the absorber's symmetric motion, found by continuation and in closed form.
+
+    Returns
+    -------
+    dict
+        "passed", "found" and "closed_form" (amplitudes).
+
+    Notes
+    -----
+    With beta = (B - pi a/2) and H = pi a/2 at frequency 1, C^2 = (1 - pi beta/2)^2 + (R beta + H)^2 and the fold is at
+    beta = (2 pi - 4 R H)/(pi^2 + 4 R^2), R = (1 - r)/(1 + r) (Youssef, Karoui, Leine, symmetric periodic motions).
+    """
+    import contvines
+    from orbits import Absorber
+
+    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    graph = contvines.diagram(
+        absorber.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 0.6), depth=0
+    )
+    ratio = (1.0 - 0.76) / (1.0 + 0.76)
+    friction = 0.5 * math.pi * 1.006 * 0.5 * 0.211
+    beta = (2.0 * math.pi - 4.0 * ratio * friction) / (math.pi**2 + 4.0 * ratio**2)
+    expected = math.hypot(1.0 - 0.5 * math.pi * beta, ratio * beta + friction)
+    folds = [point.value for point in graph.special.values() if point.kind == "fold"]
+    found = min(folds, key=lambda value: abs(value - expected), default=math.nan)
+    return {
+        "passed": bool(abs(found - expected) < AGREES * expected),
+        "found": float(found),
+        "closed_form": expected,
+    }
