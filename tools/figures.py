@@ -18,7 +18,14 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
 SOURCE = ("orbits", "contvines", "native")
-SILENT = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
+SILENT = (
+    tokenize.COMMENT,
+    tokenize.NL,
+    tokenize.NEWLINE,
+    tokenize.INDENT,
+    tokenize.DEDENT,
+    tokenize.ENDMARKER,
+)
 CPP_TOKEN = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\])*\"|[\w.]+|[^\s\w]", re.S)
 SMALL_FLOAT = re.compile(r"^\d+(\.\d*)?[eE][-+]?\d+$")
 

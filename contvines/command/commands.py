@@ -8,7 +8,6 @@ from typer.core import TyperCommand
 from typer.main import get_command
 
 COMMANDS = {
-    "new": ("new", "Write a commented study to begin with."),
     "diagram": ("run", "Automatic bifurcation diagram of a study; goes on with an unfinished file."),
     "trace": ("run", "Follow the study's one branch, without switching."),
     "switch": ("run", "Follow the branch that leaves a special point, and add it to the file."),
@@ -53,7 +52,11 @@ COMMANDS = {
         "design",
         "Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and sliding limits.",
     ),
-    "doctor": ("doctor", "Print versions, core and extras, and run a self-test."),
+    "new": ("new", "Write a commented study to begin with: every field with its meaning."),
+    "doctor": (
+        "doctor",
+        "Print versions, the core that computes, the extras that are installed, and the result of a self-test.",
+    ),
     "schema": (
         "editor_schema",
         "Print the JSON Schema of studies, for editors that complete and check TOML.",

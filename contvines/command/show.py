@@ -8,17 +8,22 @@ from contvines.command.stored import say_unfinished
 
 def show(file: FileArgument, json: JsonOption = False) -> None:
     """List branches, special points and switches."""
-    from contvines.store import load
+    from contvines.provenance import as_text
+    from contvines.store import Store, load
 
     graph = load(file, problems=False)
+    with Store.open(file) as store:
+        made = store.made
     if json:
         from contvines.export import json_text
 
-        typer.echo(json_text(graph.to_dict()))
+        typer.echo(json_text({**graph.to_dict(), "made": made}))
         return
     if not graph.finished:
         say_unfinished(file)
     typer.echo(str(graph))
+    if made:
+        typer.echo(as_text(made))
     if "page" in graph.model:
         from orbits.declared.stored import page_changed
 
