@@ -27,12 +27,9 @@ def provenance() -> dict[str, str]:
     dict of str to str
         Keys ``contvines``, ``numpy``, ``scipy``, ``python``, ``platform``, ``core`` and ``date`` (ISO 8601, to the second).
     """
-    from . import __version__
-
     found = {name: version_of(name) or "unknown" for name in PACKAGES}
     return {
         **found,
-        "contvines": __version__,
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
         "core": variant(),
