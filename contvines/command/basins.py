@@ -43,8 +43,7 @@ def basins(
 ) -> None:
     """Basins of attraction in a plane of starts, their shares and their boundary's exponent."""
     import contvines
-    from contvines.coexistence.population import population_of
-    from contvines.command.compose import checked_study, loose, machine, say
+    from contvines.command.compose import checked_study, population, say
 
     if plot is not None:
         from contvines.plots.figures import check_picture, check_size
@@ -52,13 +51,11 @@ def basins(
         check_picture(plot)
         check_size(size)
     asked = checked_study(study)
-    own = machine(asked)
-    units = getattr(own, "units", {})
+    starts = population(asked)
+    units = getattr(starts, "units", {})
     value = inside("--at", at, asked.parameter, asked.within, units, f"{study}: [continue] within")
-    fixed = {name: value for name, value in loose(asked).items() if name != asked.parameter}
-    population = population_of(own, asked.parameter, **fixed)
     graph: Any = None if saddles is None else contvines.load(saddles)
-    found = contvines.basins(population, at=value, plane=plane, points=points, saddles=graph)
+    found = contvines.basins(starts, at=value, plane=plane, points=points, saddles=graph)
     if json:
         from contvines.export import json_text
 

@@ -87,8 +87,8 @@ def machine(study: "Study") -> Any:
 
     if study.flow is not None:
         raise ValueError(
-            f"{study.path}: this command needs a machine; of the flow {study.name!r} there are contvines diagram, trace and orbit, and "
-            "of the file that they write plot, show, report and export"
+            f"{study.path}: this command needs a machine; of the flow {study.name!r} there are contvines diagram, trace, atlas, basins and "
+            "orbit, and of the file that they write plot, show, switch, locus, chart, circle, report and export"
         )
     if study.machine is not None:
         return study.machine
@@ -96,6 +96,17 @@ def machine(study: "Study") -> Any:
         return build(study.quantities)
     own = {k: v for k, v in study.parameters.items() if k not in loose(study)}
     return build({"name": study.name, **own})
+
+
+def population(study: "Study") -> Any:
+    """Starts of a study's machine or flow, and what they settle on, over its parameter."""
+    if study.flow is not None:
+        fixed = {name: value for name, value in study.parameters.items() if name != study.parameter}
+        return study.flow.population(study.parameter, box=study.box, **fixed)
+    from contvines.coexistence.population import population_of
+
+    fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
+    return population_of(machine(study), study.parameter, **fixed)
 
 
 def loose(study: "Study") -> dict[str, float]:
@@ -184,24 +195,17 @@ def run_diagram(study: "Study", seed: Any, **options: Any) -> "Graph":
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 
-def run_atlas(study: "Study", model: Any, **options: Any) -> "Graph":
-    """The atlas of a study's machine; options as for `contvines.atlas`."""
+def run_atlas(study: "Study", seed: Any, **options: Any) -> "Graph":
+    """The atlas of a study's starts; options as for `contvines.atlas`."""
     import contvines
-    from contvines.coexistence.population import population_of
 
-    fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
     asked = {
         "depth": study.depth,
         "virtual": study.virtual,
         "settings": study.settings,
         "kinds": kinds_of(study),
     }
-    return contvines.atlas(
-        population_of(model, study.parameter, **fixed),
-        within=study.within,
-        **study.atlas.model_dump(),
-        **{**asked, **options},
-    )
+    return contvines.atlas(seed, within=study.within, **study.atlas.model_dump(), **{**asked, **options})
 
 
 def beside(path: Path, ending: str) -> Path:

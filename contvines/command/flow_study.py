@@ -21,16 +21,19 @@ class FlowSection(Section):
 
 
 class FlowStart(Section):
-    """`[start]`: where a motion begins whose cycle is followed; without it, the equilibrium near the flow's own start. Further keys are parameters."""
+    """`[start]`: where a motion begins whose cycle is followed; without it, the equilibrium near the flow's own start. ``box`` are the ranges
+    of the states from which an atlas and basins begin. Further keys are parameters."""
 
     model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
     state: Annotated[list[float], Field(min_length=1)] | None = None
+    box: list[Annotated[list[float], Field(min_length=2, max_length=2)]] | None = None
 
 
 class FlowStudyFile(Section):
     model: FlowSection
     start: FlowStart = FlowStart()
     continue_: Annotated[ContinueSection, Field(alias="continue")]
+    atlas: AtlasSection = AtlasSection()
 
 
 def flow_of(data: dict[str, Any], path: Path) -> Any:
@@ -90,6 +93,13 @@ def check(data: dict[str, Any], path: Path, flow: Any) -> dict[str, Any]:
         wrong.append(
             f"[start] state has {len(file.start.state)} numbers; the flow has {len(flow.x0)} states."
         )
+    box = file.start.box
+    if box is not None and len(box) != len(flow.x0):
+        wrong.append(
+            f"[start] box has {len(box)} pair{'s' if len(box) > 1 else ''}; the flow has {len(flow.x0)} states."
+        )
+    elif box is not None and not all(low < high for low, high in box):
+        wrong.append(f"[start] box = {box!r}: each pair is (low, high), low < high.")
     if wrong:
         raise ValueError(together(wrong))
     return {
@@ -107,11 +117,12 @@ def check(data: dict[str, Any], path: Path, flow: Any) -> dict[str, Any]:
             include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
         ),
         "sweep": SweepSection(),
-        "atlas": AtlasSection(),
+        "atlas": file.atlas,
         "bounds": {name: (low, high) for name, (low, high) in go.bounds.items()},
         "kinds": go.kinds,
         "flow": flow,
         "start_state": file.start.state,
+        "box": box,
     }
 
 

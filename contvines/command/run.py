@@ -215,7 +215,7 @@ def _run(
 
 def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
     """The graph of a study: from its file if that is finished, computed else."""
-    from contvines.command.compose import first_orbit, machine, run_atlas, run_diagram, say
+    from contvines.command.compose import first_orbit, population, run_atlas, run_diagram, say
     from contvines.command.progress import shown
     from contvines.command.stored import finished_of
     from contvines.store import Store
@@ -225,7 +225,7 @@ def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: boo
     if graph is None:
         alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
         run = run_atlas if command == "atlas" else run_diagram
-        seed = machine(study) if command == "atlas" else first_orbit(study)
+        seed = population(study) if command == "atlas" else first_orbit(study)
         with Store.attach(target, fingerprint, study.describe()) as store:
             note = f"all finished points are kept in {target}; the same command goes on from there"
             with interruptible(note), shown(quiet=quiet) as progress:
@@ -261,22 +261,15 @@ def _look(study: Any, target: Path) -> Any:
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
     """
     from contvines.coexistence.missing import look
-    from contvines.coexistence.population import population_of
-    from contvines.command.compose import loose, machine
-    from contvines.problems.abilities import Populated
+    from contvines.command.compose import population
     from contvines.store import Store
 
     with Store.open(target, write=True) as store:
         graph = store.graph()
-        model = study.flow if study.flow is not None else machine(study)
         with interruptible(
             f"the diagram is kept in {target}; the same command looks again for what it does not have"
         ):
-            if not isinstance(model, Populated):
-                graph.looked = True
-            else:
-                fixed = {name: value for name, value in loose(study).items() if name != study.parameter}
-                look(graph, population_of(model, study.parameter, **fixed))
+            look(graph, population(study))
         store.checkpoint(graph)
         store.tidy()
     return graph

@@ -55,7 +55,7 @@ class Study:
     parameters : every parameter of the model at the start, by name.
     word, periods, guess : the first orbit.
     parameter, within, depth, virtual : the continuation.
-    flow, start_state : of a study of differential equations: the flow, and where a motion begins whose cycle is followed.
+    flow, start_state, box : of a study of differential equations: the flow, where a motion begins whose cycle is followed, ranges of many starts.
     bounds : (low, high) of measures at which branches end; infinite where there is none.
     settings : the fields of `contvines.continuation.settings.Settings` that the study sets.
     sweep, atlas : settings of the brute-force sweep and of the atlas.
@@ -91,6 +91,7 @@ class Study:
     flow: Any = None
     start_state: list[float] | None = None
     kinds: str | None = None
+    box: list[list[float]] | None = None
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -126,6 +127,7 @@ class Study:
                 "name": self.name,
                 "digest": self.flow.origin[2],
                 "state": self.start_state,
+                "box": self.box,
                 **self.parameters,
             }
         own = {} if self.machine is None else self.machine.settings()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -65,7 +66,9 @@ def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[
         "margin": [float(v) for v in branch.margin],
         "special": [marks.get(i, "") for i in range(n)],
     }
-    for j in range(branch.points.shape[1]):
+    # values on the mesh of a cycle of a flow say nothing in a table
+    meshed = isinstance(branch.description.get("cycle"), Mapping)
+    for j in range(0 if meshed else branch.points.shape[1]):
         columns[f"u{j}"] = [float(v) for v in branch.points[:, j]]
     for j in range(branch.multipliers.shape[1]):
         columns[f"multiplier{j}_re"] = [float(v) for v in np.real(branch.multipliers[:, j])]

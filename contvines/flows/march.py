@@ -72,9 +72,9 @@ class March:
             took = rows[good]
             self.x[took], self.t[took], self.slope[took] = new[good], (t + h)[good], k[6][good]
             whole = h == self.h[rows]
-            self.h[rows] = np.where(
-                np.isfinite(error), np.where(whole | ~good, h * factor, self.h[rows]), SHRINK * h
-            )
+            with np.errstate(all="ignore"):
+                scaled = np.where(whole | ~good, h * factor, self.h[rows])
+            self.h[rows] = np.where(np.isfinite(error), scaled, SHRINK * h)
             lost = (np.abs(self.x[rows]) > far * self.size).any(axis=1) | (
                 h < 1e-14 * np.maximum(1.0, np.abs(t))
             )

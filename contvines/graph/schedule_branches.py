@@ -56,11 +56,11 @@ def leave(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 def why_nothing_leaves(graph: Graph, label: str) -> str:
     """A sentence on a special point from which no new branch leaves."""
     point = graph.special[label]
-    if nothing := graph.kind(point.kind).nothing:
-        return nothing
     known = [
         end for s in graph.switches if s.point == label for end in (s.source, s.target) if end != point.branch
     ]
+    if (nothing := graph.kind(point.kind).nothing) and not known:
+        return nothing
     if known:
         return "the graph has the branches that leave here already: " + ", ".join(dict.fromkeys(known))
     return "; ".join(point.remarks) or "no branch that leaves here was found"

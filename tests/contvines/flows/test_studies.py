@@ -62,6 +62,8 @@ def test_what_a_motion_settles_on(study, monkeypatch, capsys):
         (("[continue]", "[start]\nstate = [1.0]\n[continue]"), "2 states"),
         (("within = [-0.2, 0.3]", "within = [0.2, 0.3]"), "lies outside"),
         (("oscillator", "pendulum"), "pendulum"),
+        (("[continue]", "[start]\nbox = [[-1.0, 1.0]]\n[continue]"), "box has 1 pair"),
+        (("[continue]", "[start]\nbox = [[-1.0, 1.0], [2.0, 1.0]]\n[continue]"), "low < high"),
     ],
 )
 def test_bad_studies_are_refused(study, change, words):
@@ -73,3 +75,28 @@ def test_bad_studies_are_refused(study, change, words):
 def test_commands_for_machines_say_so(study, monkeypatch, capsys):
     assert run(monkeypatch, "sweep", "study.toml")
     assert "needs a machine" in " ".join(capsys.readouterr().err.split())
+
+
+def test_atlas_and_basins(study, monkeypatch, capsys):
+    box = "\n[start]\nbox = [[-1.0, 1.0], [-1.0, 1.0]]\n[atlas]\nvalues = 2\nstarts = 8\nscan = 0\n"
+    study.write_text(STUDY + box)
+    assert not run(monkeypatch, "atlas", "study.toml", "--plot", "atlas.png")
+    table = capsys.readouterr().out
+    assert "equilibrium" in table and "cycle" in table and "HB1" in table
+    assert (study.parent / "atlas.png").stat().st_size > 1000
+    assert not run(
+        monkeypatch, "basins", "study.toml", "--at", "0.2", "--points", "5", "--plot", "basins.png"
+    )
+    assert "100.00%" in capsys.readouterr().out  # every start reaches the circle
+
+
+def test_what_is_done_with_a_file(study, monkeypatch, capsys):
+    assert not run(monkeypatch, "diagram", "study.toml", "-q", "--plot", "diagram.png")
+    assert not run(monkeypatch, "switch", "study.vines", "HB1", "--trust")
+    assert "B2" in capsys.readouterr().out
+    assert not run(monkeypatch, "export", "study.vines", "--to", "csv", "-o", "out.csv", "--trust")
+    head = (study.parent / "out.csv").read_text().splitlines()[0].split(",")
+    assert {"period", "max x0", "min x1", "multiplier0_re"} <= set(head)
+    assert "u2" not in head
+    assert not run(monkeypatch, "plot", "study.vines", "-y", "period", "--trust", "-o", "period.png")
+    assert not run(monkeypatch, "report", "study.vines", "--trust", "-o", "study.html")
