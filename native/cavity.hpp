@@ -3,37 +3,10 @@
 //     w' = C Omega cos Psi - beta - (b + s a_s) d,   w = w_0 + C (sin Psi - sin Psi_0) - beta d - (b + s a_s) d^2 / 2.
 // The reference with all docstrings: orbits/machines/cavity/equations.py and margins.py.
 #pragma once
+#include "cavity_law.hpp"
 #include "cycles.hpp"
 
 namespace cycles {
-
-// The numbers of the equations of motion, or their derivatives by the parameter; see orbits/machines/cavity/law.py.
-struct CavityLaw { double amplitude, omega, pull[2], slope, restitution[2], wall[2]; };  // [0]: left, [1]: right
-
-struct AbsorberLaw {
-    static CavityLaw law(const double* par) {
-        double a = (1.0 + par[4]) * par[2] * par[3];
-        return {par[0], par[5], {a, -a}, 0.0, {par[1], par[1]}, {1.0, -1.0}};
-    }
-    static CavityLaw rate(const double* par, const double* d) {
-        double da = (1.0 + par[4]) * (par[2] * d[3] + par[3] * d[2]) + par[2] * par[3] * d[4];
-        return {d[0], d[5], {da, -da}, 0.0, {d[1], d[1]}, {0.0, 0.0}};
-    }
-};
-struct GeneralLaw {  // amplitude, restitution_left, _right, friction_left, _right, gravity, mass_ratio, frequency, slope, distance_left, _right
-    static CavityLaw law(const double* par) {
-        double all = 1.0 + par[6], g = par[5], s, c;
-        sine_cosine(par[8], s, c);
-        double b = all * g * s;
-        return {par[0], par[7], {all * par[3] * g * c + b, b - all * par[4] * g * c}, b, {par[1], par[2]}, {par[9], -par[10]}};
-    }
-    static CavityLaw rate(const double* par, const double* d) {
-        double g = (1.0 + par[6]) * par[5], dg = (1.0 + par[6]) * d[5] + par[5] * d[6], s, c;
-        sine_cosine(par[8], s, c);
-        double normal = g * c, d_normal = dg * c - g * s * d[8], db = dg * s + g * c * d[8];
-        return {d[0], d[7], {d_normal * par[3] + normal * d[3] + db, db - d_normal * par[4] - normal * d[4]}, db, {d[1], d[2]}, {d[9], -d[10]}};
-    }
-};
 
 template <class Law> struct Cavity {
     static double linearise(const Cycle& c, const double* u, Workspace& work) {
@@ -107,23 +80,6 @@ template <class Law> struct Cavity {
         }
         if (c.pinned == 1) largest = larger(largest, pin(c, u, work, law.wall[0] + law.wall[1], rate.wall[0] + rate.wall[1]));
         return largest;
-    }
-
-    // Replace the displacement equation of the last flight by w_i + w_{i+1} = middle, the sum of the walls' places; returns by how much the
-    // mean position is off.
-    static double pin(const Cycle& c, const double* u, Workspace& work, double middle, double d_middle) {
-        whole last = last_flight(c);
-        double *A = work.A + 4 * last + 2, *D = work.D + 4 * last + 2, *kept = work.pin;
-        kept[0] = A[0], kept[1] = A[1], kept[2] = D[0], kept[3] = D[1], kept[4] = work.F[2 * last + 1];
-        A[0] = 0.0, A[1] = 1.0, D[0] = 0.0, D[1] = 1.0, work.Q[2 * last + 1] = -d_middle;
-        double& F = work.F[2 * last + 1];
-        F = u[2 * last + 1] + (last + 1 < c.length ? u[2 * last + 3] : c.twist * u[1]) - middle;
-        return fabs(F);
-    }
-    static void unpin(const Cycle& c, Workspace& work) {
-        if (c.pinned != 1) return;
-        whole last = last_flight(c);
-        for (int k = 0; k < 2; k++) work.A[4 * last + 2 + k] = work.pin[k], work.D[4 * last + 2 + k] = work.pin[2 + k];
     }
 
     static constexpr double SLIPPING = 1e-6;  // phase by which the slip may miss the instant at which friction gives way

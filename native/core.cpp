@@ -4,7 +4,6 @@
 #include "loci.hpp"
 #include "math.hpp"
 #include "record.hpp"
-#include "rounds.hpp"
 #include "scan.hpp"
 #include "simulation.hpp"
 
@@ -45,8 +44,8 @@ EXPORT void core_exponentials(whole count, const double* x, double* values) {
 // ---- compiled problems -----------------------------------------------------------------------------------------------------------
 // The tables of the built-in machines' cycles, and of loci of any compiled problem.
 EXPORT const Table* core_table(whole which) {
-    static const Table* const tables[] = {&cycles::CycleKernels<cycles::Cavity<cycles::AbsorberLaw>>::table,
-                                          &cycles::CycleKernels<cycles::Cavity<cycles::GeneralLaw>>::table,
+    static const Table* const tables[] = {&cycles::CycleKernels<cycles::Cavity<AbsorberLaw>>::table,
+                                          &cycles::CycleKernels<cycles::Cavity<GeneralLaw>>::table,
                                           &cycles::CycleKernels<cycles::Coupled>::table, &loci::table};
     return tables[which];
 }

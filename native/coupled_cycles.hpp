@@ -47,24 +47,8 @@ struct Coupled {
                 if (!(fabs(F) <= largest)) largest = fabs(F);
             }
         }
-        if (c.pinned && c.twist > 0.0) largest = larger(largest, pin(c, u, work));
+        if (c.pinned == 1) largest = larger(largest, pin(c, u, work, 0.0, 0.0));
         return largest;
-    }
-
-    // Replace the displacement equation of the last flight by w_i + w_{i+1} = 0; returns by how much the mean position is off.
-    static double pin(const Cycle& c, const double* u, Workspace& work) {
-        whole last = last_flight(c);
-        double *A = work.A + 16 * last + 4, *D = work.D + 16 * last + 4, &F = work.F[4 * last + 1];
-        for (int k = 0; k < 4; k++) work.pin[k] = A[k], work.pin[4 + k] = D[k], A[k] = 0.0, D[k] = 0.0;
-        work.pin[8] = F;
-        A[1] = 1.0, D[1] = 1.0, work.Q[4 * last + 1] = 0.0;
-        F = u[4 * last + 1] + (last + 1 < c.length ? u[4 * last + 5] : u[1]);
-        return fabs(F);
-    }
-    static void unpin(const Cycle& c, Workspace& work) {
-        if (!c.pinned || !(c.twist > 0.0)) return;
-        whole last = last_flight(c);
-        for (int k = 0; k < 4; k++) work.A[16 * last + 4 + k] = work.pin[k], work.D[16 * last + 4 + k] = work.pin[4 + k];
     }
 
     // ---- margins ----------------------------------------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 // What all cycles share: their data and workspace, how parameters move a machine's numbers, other readings of the linearisation,
-// multipliers with margins, Newton's method. `Machine` (cavity.hpp, coupled.hpp) has `node`, `linearise`, `margins`, `unpin`.
+// multipliers with margins, Newton's method. `Machine` (cavity.hpp, coupled_cycles.hpp) has `linearise`, `margins`.
 #pragma once
 #include "elimination.hpp"
 #include "multipliers.hpp"
@@ -32,6 +32,22 @@ inline double mode_after(const Cycle& c, whole i) { return i + 1 < c.length ? do
 inline double mode_before(const Cycle& c, whole i) { return i > 0 ? double(c.modes[i - 1]) : c.twist * double(c.modes[c.length - 1]); }
 // The last event that is followed by a flight: its displacement equation is what the pin replaces (orbits/machines/pinning.py).
 inline whole last_flight(const Cycle& c) { return c.modes[c.length - 1] != 0 ? c.length - 1 : c.length - 2; }
+
+// Replace the displacement equation of the last flight of an impact-free motion by w_i + w_{i+1} = middle, the sum of the walls' places;
+// returns by how much the mean position is off.
+inline double pin(const Cycle& c, const double* u, Workspace& work, double middle, double d_middle) {
+    const whole n = work.node, last = last_flight(c), row = last * n + 1;
+    double *A = work.A + row * n, *D = work.D + row * n;
+    for (whole k = 0; k < n; k++) work.pin[k] = A[k], work.pin[n + k] = D[k], A[k] = D[k] = 0.0;
+    A[1] = D[1] = 1.0, work.Q[row] = -d_middle;
+    work.F[row] = u[row] + (last + 1 < c.length ? u[row + n] : c.twist * u[1]) - middle;
+    return fabs(work.F[row]);
+}
+inline void unpin(const Cycle& c, Workspace& work) {
+    if (c.pinned != 1) return;
+    const whole n = work.node, row = last_flight(c) * n + 1;
+    for (whole k = 0; k < n; k++) work.A[row * n + k] = work.pin[k], work.D[row * n + k] = work.pin[n + k];
+}
 
 // The numbers at p, then their derivatives with respect to p, into `out` (2 P,); see orbits/machines/path.py.
 inline void place(const Cycle& c, double p, double* out) {
@@ -101,7 +117,7 @@ template <class Machine> struct CycleKernels {
     // Turn the closure x_L = T x_0 into x_L = -T x_0 (sign = -1), and back; the pin of an impact-free motion is taken out.
     static void flip(void* data, void* work, double) {
         auto& w = *static_cast<Workspace*>(work);
-        Machine::unpin(*static_cast<Cycle*>(data), w);
+        unpin(*static_cast<Cycle*>(data), w);
         double* last = w.D + (w.length - 1) * w.node * w.node;
         for (whole i = 0; i < w.node * w.node; i++) last[i] = -last[i];
     }
@@ -110,7 +126,7 @@ template <class Machine> struct CycleKernels {
         auto& c = *static_cast<Cycle*>(data);
         auto& w = *static_cast<Workspace*>(work);
         const int n = int(w.node);
-        Machine::unpin(c, w);
+        unpin(c, w);
         // Nothing later depends on when a stick begins or ends: w' = 0 there and v'' is the same before and after, at a slip w'' = 0, too.
         // Those phases move with 1/w'' and one over the rate at which friction gives way, which grow without bound where the stick
         // vanishes, so they are held instead.

@@ -11,21 +11,17 @@
 // on the falling piece y is concave and Newton's iteration from the left climbs to the root without crossing it, or runs past the
 // point where p = 0: then there is no hit before the turn. No hit and no turn can be missed.
 #pragma once
+#include "cavity_law.hpp"
 #include "stepping.hpp"
 
 namespace simulation {
-
-// w'' = -C Omega^2 sin Psi - pull_left (w' > 0) or - pull_right (w' < 0); the slope is the part of the pulls that is no friction.
-struct Law {
-    double amplitude, omega, pull_left, pull_right, slope, restitution_left, restitution_right, left, right;
-};
 
 // One direction of sliding: A, sin alpha, alpha, cos alpha, whether the shaking ever beats A and whether it always does, the wall ahead.
 struct Direction {
     double pull, ratio, alpha, beta, reach, restitution;
     bool driven, always;
 
-    Direction(double acceleration, const Law& law, double wall, double factor) : reach(wall), restitution(factor) {
+    Direction(double acceleration, const CavityLaw& law, double wall, double factor) : reach(wall), restitution(factor) {
         double C = law.amplitude;
         pull = acceleration / (law.omega * law.omega);
         driven = C - pull > 1e-12 * C;
@@ -79,21 +75,21 @@ struct Leg {
 
 struct Shaken {
     static constexpr int STATE = 6, ROW = 5;
-    Law law;
+    CavityLaw law;
     Direction rightwards, leftwards;
     bool frictionless;
 
-    explicit Shaken(const Law& numbers)
-        : law(numbers), rightwards(-law.pull_right, law, -law.right, law.restitution_right),
-          leftwards(law.pull_left, law, law.left, law.restitution_left), frictionless(law.pull_left == law.pull_right) {}
+    explicit Shaken(const CavityLaw& numbers)
+        : law(numbers), rightwards(-law.pull[1], law, -law.wall[1], law.restitution[1]),
+          leftwards(law.pull[0], law, law.wall[0], law.restitution[0]), frictionless(law.pull[0] == law.pull[1]) {}
 
     // Reduce the phase and set the mode of a start.
     void launch(double *state) const {
         carry(state[PSI], state[TURNS]);
         double square = law.omega * law.omega, push = -law.amplitude * sine(state[PSI]), w = state[W];
-        bool to_left = push > law.pull_left / square, to_right = push < law.pull_right / square;
+        bool to_left = push > law.pull[0] / square, to_right = push < law.pull[1] / square;
         if (state[RATE] != 0.0) state[MODE] = state[RATE] > 0.0 ? 1.0 : -1.0;
-        else if (!(to_left || to_right) || (w == law.left && to_left) || (w == law.right && to_right)) state[MODE] = 0.0;
+        else if (!(to_left || to_right) || (w == law.wall[0] && to_left) || (w == law.wall[1] && to_right)) state[MODE] = 0.0;
         else state[MODE] = to_left ? 1.0 : -1.0;
     }
 
@@ -133,7 +129,7 @@ struct Shaken {
                 psi += wait;
                 carry(psi, turns);
                 p = 0.0;
-                if (!(frictionless && law.right < w && w < law.left)) events.add(ROW, SLIP, s, psi, turns, w, 0.0, 0.0);
+                if (!(frictionless && law.wall[1] < w && w < law.wall[0])) events.add(ROW, SLIP, s, psi, turns, w, 0.0, 0.0);
                 continue;
             }
             const Direction &ahead = s > 0.0 ? leftwards : rightwards, &behind = s > 0.0 ? rightwards : leftwards;
@@ -257,8 +253,8 @@ struct Shaken {
                 continue;
             }
             shift(w, low, s * y);
-            if (w > law.left || (w == law.left && low > 0.0)) { w = law.left; low = 0.0; }
-            else if (w < law.right || (w == law.right && low < 0.0)) { w = law.right; low = 0.0; }
+            if (w > law.wall[0] || (w == law.wall[0] && low > 0.0)) { w = law.wall[0]; low = 0.0; }
+            else if (w < law.wall[1] || (w == law.wall[1] && low < 0.0)) { w = law.wall[1]; low = 0.0; }
             if (outcome == LEG_ENDS) {
                 p = rate > 0.0 ? rate : 0.0;
                 if (cut) { status = TIME_REACHED; break; }
@@ -309,7 +305,7 @@ struct Shaken {
         sine_cosine(state[PSI] + x, sin_psi, cos_psi);
         double m1 = -s * sin_psi, k1 = -s * cos_psi, A = C * from.m0 - from.q0;
         out[0] = C * square * ((from.p + C * from.k0) * (from.k0 - k1) - 0.5 * C * (m1 * m1 - from.m0 * from.m0) - A * (m1 - from.m0 - x * k1));
-        out[2] = (s > 0.0 ? law.pull_left - law.slope : law.slope - law.pull_right) * fabs(from.at(x).y);
+        out[2] = (s > 0.0 ? law.pull[0] - law.slope : law.slope - law.pull[1]) * fabs(from.at(x).y);
     }
 
     // Energy of the relative motion per mass of the absorber.
@@ -320,28 +316,17 @@ private:
         const double C = law.amplitude, omega = law.omega, s = state[MODE];
         double sin_psi, cos_psi;
         sine_cosine(state[PSI], sin_psi, cos_psi);
-        double A = (s > 0.0 ? law.pull_left : -law.pull_right) / (omega * omega), m0 = -s * sin_psi;
+        double A = (s > 0.0 ? law.pull[0] : -law.pull[1]) / (omega * omega), m0 = -s * sin_psi;
         return {s * state[RATE] / omega, C * m0 - A, C, -s * cos_psi, m0};
     }
 };
 
-// The machines whose cavity moves as prescribed: their parameters as in orbits/machines/absorber/law.py and cavity/numbers.py.
+// The machines whose cavity moves as prescribed.
 struct Absorber : Shaken {
-    explicit Absorber(const double *p) : Shaken(law_of(p)) {}
-    static Law law_of(const double *p) {
-        double a = (1.0 + p[4]) * p[2] * p[3];
-        return {p[0], p[5], a, -a, 0.0, p[1], p[1], 1.0, -1.0};
-    }
+    explicit Absorber(const double *p) : Shaken(AbsorberLaw::law(p)) {}
 };
-
 struct Cavity : Shaken {
-    explicit Cavity(const double *p) : Shaken(law_of(p)) {}
-    static Law law_of(const double *p) {
-        double sin_slope, cos_slope;
-        sine_cosine(p[8], sin_slope, cos_slope);
-        double all = 1.0 + p[6], g = p[5], b = all * g * sin_slope;
-        return {p[0], p[7], all * p[3] * g * cos_slope + b, b - all * p[4] * g * cos_slope, b, p[1], p[2], p[9], -p[10]};
-    }
+    explicit Cavity(const double *p) : Shaken(GeneralLaw::law(p)) {}
 };
 
 }  // namespace simulation

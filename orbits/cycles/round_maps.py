@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contvines.core.library import NOTHING, POINTER, WHOLE, address, function, native
 
-LARGEST = 8  # unknowns of a node for which the native core has room
-
-
+@np.errstate(all="ignore")
 def through_flights(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray] | None:
     """The product of -D_i^-1 A_i over all flights, and that of their absolute values; None where one cannot be solved for.
 
@@ -17,16 +14,17 @@ def through_flights(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndar
     A, D : ndarray, shape (l, n, n)
         Derivatives of the equations of each flight by the node before it and after it; without D those of A are the factors.
     """
-    flights, n = A.shape[:2]
-    if not native() or n > LARGEST:
-        return reference_through_flights(A, D)
-    A, D = np.ascontiguousarray(A, dtype=float), None if D is None else np.ascontiguousarray(D, dtype=float)
-    product, sizes = np.empty((n, n)), np.empty((n, n))
-    work = function("rounds_through_flights", WHOLE, WHOLE, WHOLE, POINTER, POINTER, POINTER, POINTER)
-    after = None if D is None else address(D)
-    return (product, sizes) if work(flights, n, address(A), after, address(product), address(sizes)) else None
+    try:
+        factors = A if D is None else -np.linalg.solve(D, A)
+    except np.linalg.LinAlgError:
+        return None
+    product = sizes = np.eye(A.shape[1])
+    for factor in factors:
+        product, sizes = factor @ product, np.abs(factor) @ sizes
+    return product, sizes
 
 
+@np.errstate(all="ignore")
 def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """For each cycle of some rounds the least and the largest distance of its points from the border, and the product of its rounds.
 
@@ -34,7 +32,7 @@ def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.
     ----------
     maps : ndarray, shape (2, n, n)
         Derivatives of an unchanged and of a changed round.
-    keys : ndarray of int64, shape (c, 2)
+    keys : ndarray of int, shape (c, 2)
         Numbers of rounds, and of changed ones, which come first.
 
     Returns
@@ -44,46 +42,18 @@ def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.
     products : ndarray, shape (c, n, n)
         Read from the first point.
     """
-    count, n = len(keys), maps.shape[1]
-    if not native() or n > LARGEST:
-        return reference_sides_of_cycles(maps, keys)
-    maps, keys = np.ascontiguousarray(maps, dtype=float), np.ascontiguousarray(keys, dtype=np.int64)
-    sides, products = np.empty((count, 2)), np.empty((count, n, n))
-    work = function("rounds_sides_of_cycles", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER)
-    work(n, address(maps), count, address(keys), address(sides), address(products))
-    return sides, products
-
-
-@np.errstate(all="ignore")
-def reference_through_flights(
-    A: np.ndarray, D: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """`through_flights` in numpy, which the native core is compared with."""
-    whole = sizes = np.eye(A.shape[1])
-    for i, factor in enumerate(A):
-        if D is not None:
-            try:
-                factor = -np.linalg.solve(D[i], factor)
-            except np.linalg.LinAlgError:
-                return None
-        whole, sizes = factor @ whole, np.abs(factor) @ sizes
-    return whole, sizes
-
-
-@np.errstate(all="ignore")
-def reference_sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """`sides_of_cycles` in numpy, which the native core is compared with."""
-    unit = np.eye(maps.shape[1])
-    sides, products = np.empty((len(keys), 2)), np.empty((len(keys), *unit.shape))
-    for c, (rounds, changed) in enumerate(keys):
-        found = []
-        for first in range(rounds):
-            P, M = unit, maps[int(first < changed)]
-            for later in range(1, rounds):
-                here = maps[int((first + later) % rounds < changed)]
-                P, M = unit + here @ P, here @ M
-            if first == 0:
-                products[c] = M
-            found.append((1.0 if first < changed else -1.0) * np.linalg.det(P))
-        sides[c] = (min(found), max(found)) if np.isfinite(found).all() else np.nan
-    return sides, products
+    rounds, changed = keys[:, :1], keys[:, 1:]
+    firsts = np.arange(rounds.max(initial=1))[None, :]  # each cycle is read from each of its points at once
+    P = np.broadcast_to(np.eye(maps.shape[1]), (len(keys), firsts.size, *maps.shape[1:]))
+    M = maps[(changed[:, 0] > 0).astype(int)]
+    for later in range(1, firsts.size):
+        here = maps[((firsts + later) % rounds < changed).astype(int)]
+        goes_on = (later < rounds)[:, :, None, None]
+        P = np.where(goes_on, np.eye(maps.shape[1]) + here @ P, P)
+        M = np.where(goes_on[:, 0], here[:, 0] @ M, M)
+    found = np.where(firsts < changed, 1.0, -1.0) * np.linalg.det(P)
+    exists = firsts < rounds
+    low = np.where(exists, found, np.inf).min(axis=1)
+    high = np.where(exists, found, -np.inf).max(axis=1)
+    finite = (np.isfinite(found) | ~exists).all(axis=1)
+    return np.where(finite[:, None], np.stack([low, high], axis=1), np.nan), M

@@ -1,64 +1,16 @@
-"""The native core's products of flights, sides of cycles and positions against their references in numpy."""
+"""The native core's positions and shapes of segments against their references in numpy."""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from contvines.core.library import native
 from orbits import Absorber, Coupled
-from orbits.cycles.round_maps import (
-    LARGEST,
-    reference_sides_of_cycles,
-    reference_through_flights,
-    sides_of_cycles,
-    through_flights,
-)
 from orbits.flows.native.sampling import positions_of, reference_positions
 from orbits.machines.catalogue import reference_stepper, stepper
 from orbits.machines.coupled import measures, segments
 from orbits.simulation.driver import simulate
 
 pytestmark = pytest.mark.skipif(not native(), reason="the native core is not loaded")
-
-
-@settings(max_examples=60)
-@given(
-    n=st.integers(1, LARGEST + 1),
-    flights=st.integers(1, 12),
-    seed=st.integers(0, 10**6),
-    solved=st.booleans(),
-)
-def test_products_of_flights(n, flights, seed, solved):
-    rng = np.random.default_rng(seed)
-    A, D = rng.normal(size=(2, flights, n, n))
-    D += 3.0 * np.eye(n)
-    found, wanted = (
-        function(A, D if solved else None) for function in (through_flights, reference_through_flights)
-    )
-    for one, other in zip(found, wanted, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
-
-
-def test_a_flight_that_cannot_be_solved_for():
-    A, D = np.ones((3, 2, 2)), np.stack([np.eye(2), np.zeros((2, 2)), np.eye(2)])
-    assert through_flights(A, D) is None and reference_through_flights(A, D) is None
-
-
-@settings(max_examples=40)
-@given(n=st.integers(1, 5), seed=st.integers(0, 10**6))
-def test_sides_of_cycles(n, seed):
-    maps = np.random.default_rng(seed).normal(size=(2, n, n))
-    keys = np.array([(rounds, changed) for rounds in range(1, 6) for changed in range(1, rounds + 1)])
-    found, wanted = sides_of_cycles(maps, keys), reference_sides_of_cycles(maps, keys)
-    for one, other in zip(found, wanted, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
-
-
-def test_sides_that_are_no_numbers():
-    maps = np.full((2, 2, 2), 1e200)
-    assert np.isnan(sides_of_cycles(maps, np.array([[4, 1]]))[0]).all()
-    assert np.isnan(reference_sides_of_cycles(maps, np.array([[4, 1]]))[0]).all()
 
 
 @pytest.mark.parametrize("name", ["absorber", "coupled"])
