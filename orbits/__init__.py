@@ -29,7 +29,7 @@ lead(
         "attractor_of_page": "orbits.declared.attractor:find_attractor",
         "attractors": "orbits.attractors.sweep:different_attractors",
         "attractors_of_page": "orbits.declared.attractor:find_attractors",
-        "DeclaredProblem": "orbits.declared.problem:DeclaredProblem",
+        "deviation_of_page": "orbits.declared.deviation:deviation",
         "find": "orbits.starts.find:find",
         "find_on_page": "orbits.declared.starts:find",
         "of_branch": "orbits.proofs.subjects:of_branch",

@@ -8,6 +8,6 @@ FACTORIES = {
     "orbits.problem:rebuild": "orbits.problem:rebuild",
     "orbits.cycles.stuck_problem:rebuild": "orbits.problem:rebuild",
     "orbits.stuck_problem:rebuild": "orbits.problem:rebuild",
-    "orbits.declared.stored:rebuild": "orbits.declared.stored:rebuild",
-    "orbits.machines.declared.stored:rebuild": "orbits.declared.stored:rebuild",
+    "orbits.declared.stored:rebuild": "orbits.problem:rebuild",
+    "orbits.machines.declared.stored:rebuild": "orbits.problem:rebuild",
 }

@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
+from orbits.declared.attractor import witness
 from orbits.flows.native.cycle_equations import unit_nodes
-from orbits.machines.base import Model
 from orbits.simulation.native import NativeSimulator
-from orbits.simulation.section import Section
-from orbits.words import Word
+from orbits.simulation.section import Section, VariedSection, section_of_page
 
 
 class Simulated:
     """Answers of a problem that knows its machine, word, periods, units and parameter vector."""
 
-    model: Model
-    word: Word
+    model: Any
+    word: Any
     periods: int
+    parameter: str
     units: tuple[float, float]
 
     def values(self, p: float) -> np.ndarray:
@@ -35,6 +35,8 @@ class Simulated:
             "word" (None where there is none), "periods" and "kind" of each motion, sorted.
         """
         params, generator = self.values(p), np.random.default_rng(7)
+        if self.model.flow == "page":
+            return witness(self.model, params, starts)
         named = dict(zip(self.model.parameter_names, map(float, params)))
         found: dict[tuple[str, int, str], dict[str, Any]] = {}
         for i in range(starts):
@@ -48,30 +50,28 @@ class Simulated:
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable motion as `witness` tells of it."""
+        if self.model.flow == "page":
+            return {
+                "word": self.word.canonical().text or None,
+                "periods": self.periods,
+                "kind": "periodic",
+            }
         kind = "periodic" if self.word.impacts else "sliding" if len(self.word) else "stuck"
         return {"word": self.word.spelled(), "periods": self.periods, "kind": kind}
 
-    def section(self, p: float) -> Section:
+    def section(self, p: float) -> Section | VariedSection:
         """Its motions by simulation, once per period of the cycle.
 
         Raises
         ------
         ValueError
-            For the empty word, which has no event to begin with.
+            For the absorber at rest, which has no event to begin with.
         """
+        params = self.values(p)
+        if self.model.flow == "page":
+            index = self.model.place_of(self.parameter)
+            return section_of_page(self.model, params, self.word, self.periods, index)
         if not len(self.word):
             raise ValueError("the absorber that never slides has no section")
         unit = unit_nodes(self.word, self.model.node, self.units)[0]
-        return Section(NativeSimulator(self.model, self.values(p)), self.word, self.periods, unit)
-
-    def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter of the machine cannot have.
-
-        Raises
-        ------
-        ParameterError
-            Naming the parameter, the value and what would do.
-        """
-        for entry in self.model.settable:
-            if entry.name == name:
-                entry.number(value)
+        return Section(NativeSimulator(self.model, params), self.word, self.periods, unit)

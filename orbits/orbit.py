@@ -2,19 +2,155 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
 from contvines.shared.near_arguments import hinting
-from orbits.cycles.solution import Solution
+from orbits.cycles.cycle import Cycle
+from orbits.cycles.deviation import replay_error
 from orbits.doors import above
+from orbits.flows.protocol import Equations
+from orbits.words.margins import Margin, approaches_of, limits_of, margin_units, named_margins
+
+REAL = (
+    -1e-12
+)  # margins down to this, in units of the machine's own size, are rounding: a border orbit itself is real
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Orbit(Solution):
-    """A periodic orbit P_l^k as users hold it; the attributes are those of `orbits.cycles.cycle.Cycle`."""
+class Orbit(Cycle):
+    """A cycle that is claimed to solve its equations: how well, how stable, and whether a machine can follow it.
+
+    The attributes are those of `orbits.cycles.cycle.Cycle`.
+    """
+
+    # ------------------------------------------------------------------ one look at its equations
+    def system(self, symmetric: bool) -> Equations:
+        """Its equations, against the machine's default parameter, or one along which symmetric orbits stay so."""
+        model = self.model
+        names = (model.default_parameter, *model.parameter_names)
+        lasting = (name for name in names if not symmetric or model.has_mirror(self.params, name))
+        parameter = next(lasting, names[0])
+        return self.flow.equations(model, self.word, self.periods, parameter, self.params, symmetric)
+
+    @cached_property
+    def _examined(self) -> tuple[float, np.ndarray, np.ndarray]:
+        """Residual, multipliers of the period and margins."""
+        half = self.symmetric and bool(self.flow.loose(self.model, self.word))
+        system = self.system(half)
+        residual, spectrum, margins = examined(system, self.nodes)
+        return residual, system.to_multipliers(spectrum), margins
+
+    @property
+    def residual(self) -> float:
+        """Largest residual of the equations."""
+        return self._examined[0]
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Multipliers of the period, complex, largest modulus first; none of them is trivial."""
+        return self._examined[1]
+
+    @property
+    def half_multipliers(self) -> np.ndarray:
+        """Multipliers of the half map (half a period, then the mirror) of a symmetric orbit.
+
+        +1 is a fold, -1 a symmetry breaking; the multipliers of the period are their squares.
+
+        Raises
+        ------
+        ValueError
+            If the orbit is not symmetric.
+        """
+        if not self.symmetric:
+            raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
+        return examined(self.system(symmetric=True), self.nodes)[1]
+
+    def with_multipliers(self, multipliers: np.ndarray) -> Self:
+        """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits.
+
+        Where something has no length or speed at all the equations' own derivatives are rounding.
+        """
+        residual, _, margins = self._examined
+        found = copy.copy(self)
+        vars(found)["_examined"] = (residual, limits_of(multipliers), margins)
+        return found
+
+    @property
+    def margins(self) -> list[Margin]:
+        """Margins of admissibility, none negative for a real orbit; in the units of the nodes."""
+        own = self._examined[2]  # of half a symmetric motion that may be shifted
+        units = margin_units(self.word, self.model.natural_units(self.params))
+        return named_margins(self.word, own * units[: own.size])
+
+    @property
+    def relative_margins(self) -> list[Margin]:
+        """The same in units of the machine's own size."""
+        return named_margins(self.word, self._examined[2])
+
+    @property
+    def approaches(self) -> np.ndarray:
+        """The margins of the impacts, their speeds, in units of the machine's own size."""
+        return approaches_of(self.word, self._examined[2])
+
+    @property
+    def margin(self) -> float:
+        """The smallest margin, in units of the machine's own size."""
+        return float(np.min(self._examined[2]))
+
+    @property
+    def real(self) -> bool:
+        """Whether a machine can follow the orbit: no margin is negative. At a border one is zero, to rounding, and the orbit real."""
+        return self.margin >= REAL
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.all(np.abs(self.multipliers) < 1.0))
+
+    def measures(self, *wanted: str) -> dict[str, float]:
+        """Measures by name, all of them if none is named."""
+        asked = wanted or self.flow.measure_names(self.model)
+        values = self.flow.measures(
+            self.model, self.word, self.periods, self.nodes[None], self.params[None], list(asked)
+        )
+        return {name: float(value[0]) for name, value in values.items()}
+
+    def measure(self, name: str) -> float:
+        """One measure of the orbit; names: `problem().measure_names`."""
+        return float(self.measures(name)[name])
+
+    # ------------------------------------------------------------------ seeing it move
+    def sample(self, points: int = 400) -> dict[str, np.ndarray]:
+        """The motion over one period: positions and velocities in the cavity, or a page's states.
+
+        See `orbits.flows.native.sampling.sample`, `orbits.flows.page.sampling.sample`.
+        """
+        return self.flow.sample(self, points)
+
+    def positions(self, instants: int) -> np.ndarray:
+        """What no impulse moves, at so many equal phases of each forcing period, shape (m, c); kept: distances to several other orbits ask for it."""
+        known = vars(self).setdefault("_tracks", {})
+        if instants not in known:
+            known[instants] = self.flow.positions(self, instants)
+        return known[instants]
+
+    def repeat(self, times: int) -> Self:
+        """The same orbit, written `times` times."""
+        found = super().repeat(times)
+        known = vars(self).get("_tracks", {})
+        vars(found)["_tracks"] = {instants: np.tile(track, (times, 1)) for instants, track in known.items()}
+        return found
+
+    def replay(self) -> float:
+        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
+        if self.model.flow == "page":
+            return above("deviation_of_page")(self)
+        return replay_error(self, lambda: (self._examined[2], self.multipliers))
 
     # ------------------------------------------------------------------ towards continuation
     @hinting
@@ -48,39 +184,32 @@ class Orbit(Solution):
 
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
-        return above("portrait")(self, **options)
+        return above("portrait_of_page" if self.model.flow == "page" else "portrait")(self, **options)
 
     def scene(self, points: int = 120) -> dict[str, Any]:
         """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
-        return above("scene")(self, points)
+        return above("scene_of_page" if self.model.flow == "page" else "scene")(self, points)
 
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""
-        table = self.events
-        long, fast = (float(self.model.gauge(kind, self.params)) for kind in ("length", "velocity"))
-        nodes = []
-        for i, letter in enumerate(self.word.events):
-            entry = {
-                "event": letter,
-                "phase": float(table.phase[i]),
-                "B_pre": float(table.B_pre[i]) * fast,
-                "B_post": float(table.B_post[i]) * fast,
-                "w": float(table.w[i]) * long,
-                "w_rate": float(table.rate_post[i]) * fast,
-            }
-            for name in self.model.node_names[2:]:
-                entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
-            nodes.append(entry)
         return {
             "word": self.spelling,
-            "events": "".join(self.word.events),
             "periods": self.periods,
             "impacts": self.impacts,
             "symmetric": self.symmetric,
             **self.model.described(self.params),
-            "nodes": nodes,
+            **self.flow.described(self),
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],
             "real": self.real,
             "residual": self.residual,
         }
+
+
+def examined(system: Equations, nodes: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Residual, multipliers of the closure map and margins of a cycle in its equations."""
+    count = 2 * system.n_multipliers
+    row = np.empty(count + system.n_margins)
+    value = system.value(system.params)
+    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
+    return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]

@@ -13,20 +13,21 @@ import numpy as np
 
 from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
-from orbits.borders.distance import INSTANTS, SAME, distance
-from orbits.cycles import measures as measuring
-from orbits.cycles.identity import canonical, is_symmetric, root_orbit
+from orbits.borders.distance import INSTANTS, distance
+from orbits.cycles.identity import canonical, size_of_one
 from orbits.doors import above
-from orbits.flows.native.cycle_equations import PLAIN, equations
-from orbits.machines.base import Model
+from orbits.flows.catalogue import flow_of
+from orbits.flows.plain_kernels import PLAIN
 from orbits.machines.building import build
+from orbits.machines.page.stored import machine_again
 from orbits.machines.path import along
 from orbits.motions import Simulated
 from orbits.orbit import Orbit
 from orbits.protocol import Answers
 from orbits.relatives import Relatives
 from orbits.words import Word
-from orbits.words.margins import DURATION, FLIGHT, border_kind, margin_name
+from orbits.words.margins import border_kind
+from orbits.words.of_pages import PageWord
 
 
 class OrbitProblem(Simulated, Relatives, Answers):
@@ -34,11 +35,11 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     Parameters
     ----------
-    model : Model
-    word : Word
+    model : Model or Machine
+    word : Word or PageWord
         The word of the whole cycle.
     periods : int
-        Forcing periods k of the whole cycle.
+        Forcing periods k of the whole cycle; 1 for a self-excited machine, whose period is unknown.
     parameter : str
         Name of the parameter that varies.
     params : float array (P,)
@@ -55,13 +56,12 @@ class OrbitProblem(Simulated, Relatives, Answers):
     """
 
     spectrum = "map"
-    forced = True
     every = True
 
     def __init__(
         self,
-        model: Model,
-        word: Word,
+        model: Any,
+        word: Any,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -71,13 +71,14 @@ class OrbitProblem(Simulated, Relatives, Answers):
         params = np.array(params, dtype=float)
         self.model, self.word, self.periods = model, word, int(periods)
         self.parameter, self.params, self.symmetric = parameter, params, bool(symmetric)
+        self.flow, self.forced = flow_of(model), bool(model.forced)
         self.mirrored = model.has_mirror(params, parameter)
         self.units = model.natural_units(params) if units is None else units
-        system = equations(model, word, self.periods, parameter, params, self.symmetric, self.units)
-        self.equations = system
+        self.equations = system = self.flow.equations(
+            model, word, self.periods, parameter, params, self.symmetric, self.units
+        )
         self.length, self.dimension = system.length, system.dimension
-        self.twist, self.shift = system.twist, system.shift
-        self.movable = system.pinned == 2  # symmetric motions without impacts
+        self.twist, self.shift, self.movable = system.twist, system.shift, system.movable
         self.n_multipliers, self.n_margins = system.n_multipliers, system.n_margins
         self.path, self.data, self.period_shift = system.path, system.data, system.period_shift
         self.flip_kind = "symmetry-breaking" if self.twist < 0.0 else "period-doubling"
@@ -123,8 +124,12 @@ class OrbitProblem(Simulated, Relatives, Answers):
         return self.equations.value(params)
 
     def smooth_margin(self, j: int) -> int:
-        """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
-        return j - FLIGHT + DURATION if margin_name(self.word, j) == "hold" else j
+        """The margin to follow where margin `j` vanishes."""
+        return self.equations.smooth_margin(j)
+
+    def check_value(self, name: str, value: float) -> None:
+        """Refuse a value that a parameter of the machine cannot have; see `Model.check_value`."""
+        self.model.check_value(name, value)
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border at which margin `j` vanishes."""
@@ -161,14 +166,13 @@ class OrbitProblem(Simulated, Relatives, Answers):
     # ------------------------------------------------------------------ larger and smaller problems
     def root(self, u: np.ndarray, p: float) -> tuple[OrbitProblem, np.ndarray] | None:
         """The problem of the shortest orbit of which `u` is a repetition, and that orbit in it; None for a primitive one."""
-        if self.word.repetitions == 1:
+        if len(self.word) and self.word.repetitions == 1:
             return None
-        word, periods, nodes = root_orbit(self.word, self.periods, self.expand(u, p))
-        if len(word) == len(self.word):
+        root = self.orbit(u, p).root()
+        if (len(root.word), root.periods) == (len(self.word), self.periods):
             return None
-        image = self.model.image(word.codes, nodes, self.values(p))
-        found = self.sibling(word, periods, symmetric=is_symmetric(word, periods, nodes, image=image))
-        return found, found.reduce(nodes)
+        found = self.sibling(root.word, root.periods, root.symmetric)
+        return found, found.reduce(root.nodes)
 
     def sibling(
         self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None
@@ -192,28 +196,30 @@ class OrbitProblem(Simulated, Relatives, Answers):
         Rotations of the word, shifts by whole forcing periods, the mirror image and repetitions of a shorter orbit
         are one orbit.
         """
-        if not len(self.word):
-            return ("stuck", self.model.name), np.array(u, dtype=float)
         nodes = self.expand(u, p)
+        if not len(nodes):
+            return ("stuck", self.model.name), np.array(u, dtype=float)
         middle = self.middle(p)
         if middle:
             nodes = nodes.copy()
             nodes[self.word.codes > 1, 1] -= middle  # from where an image has the opposite sign
         if self.units != PLAIN:
             nodes = nodes / self.equations.unit
-        return canonical(self.word, self.periods, nodes, self._mirrored_at(p))
+        mirrored, same = self._mirrored_at(p), size_of_one(nodes)
+        return canonical(self.word, self.periods, nodes, mirrored, forced=self.forced, same=same)
 
     def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
 
         At a border one motion has several words, so that `canonical` cannot tell.
         """
-        if not isinstance(other, OrbitProblem):
+        if not isinstance(other, OrbitProblem) or other.model.name != self.model.name:
             return False
         one, another = self.orbit(u, p), other.orbit(v, p)
         # motions that are one at a few instants are one at all, and hardly ever one is the other's image
-        return distance(one, another, instants=INSTANTS) <= SAME or (
-            self._mirrored_at(p) and distance(one, another, mirror=True, instants=INSTANTS) <= SAME
+        same = self.flow.resolution
+        return distance(one, another, instants=INSTANTS) <= same or (
+            self._mirrored_at(p) and distance(one, another, mirror=True, instants=INSTANTS) <= same
         )
 
     def _mirrored_at(self, p: float) -> bool:
@@ -223,23 +229,23 @@ class OrbitProblem(Simulated, Relatives, Answers):
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Measures that this machine's orbits have."""
-        return measuring.names(self.model)
+        return self.flow.measure_names(self.model)
 
     @property
     def angles(self) -> tuple[str, ...]:
         """Measures that are angles: they jump by 2 pi without a jump of the orbit."""
-        return measuring.ANGLES
+        return self.flow.angles
 
     @property
     def default_measure(self) -> str:
         """The measure that a diagram shows when none is asked for."""
-        return self.model.default_measure
+        return self.flow.default_measure(self.model)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures of many solutions at once: `u` has shape (m, N), `p` shape (m,)."""
         p = np.atleast_1d(np.asarray(p, dtype=float))
         nodes = self.expand(np.atleast_2d(u), p)
-        return measuring.measure(self.model, self.word, self.periods, nodes, self.values(p), names)
+        return self.flow.measures(self.model, self.word, self.periods, nodes, self.values(p), names)
 
     def orbit(self, u: np.ndarray, p: float) -> Any:
         """The solution as an `orbits.orbit.Orbit`."""
@@ -265,8 +271,10 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""
+        over = over or self.parameter
         numbers = dict(zip(self.model.parameter_names, map(float, self.params), strict=True))
-        return self.model.population(over or self.parameter, **{**numbers, **parameters})
+        values = {**numbers, **parameters}
+        return self.model.population(over, **{name: v for name, v in values.items() if name != over})
 
     def __repr__(self) -> str:
         symmetric = ", symmetric" if self.symmetric else ""
@@ -296,32 +304,53 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""
+        unnamed = "stuck" if not self.word.modes else "no events"
         return {
             "factory": "orbits.problem:rebuild",
-            "name": f"P_{self.word.impacts}^{self.periods}" if len(self.word) else "stuck",
-            "model": self.model.settings(),
+            "name": f"P_{self.word.impacts}^{self.periods}" if len(self.word) else unnamed,
+            "model": self.model.settings(self.params),
             "word": self.spelling,
-            "events": "".join(self.word.events),
-            "modes": list(self.word.modes),
-            "frictionless": self.word.frictionless,
+            **self.word.describe(),
             "periods": self.periods,
-            "impacts": self.word.impacts,
+            "impacts": self.impacts,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
             **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
-            **({"counted_in": list(self.units)} if self.units != (1.0, 1.0) else {}),
+            **({"counted_in": list(self.units)} if self.units != PLAIN else {}),
         }
 
+    @property
+    def impacts(self) -> int:
+        """Impacts per period of the cycle."""
+        return self.word.impacts
 
-def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem:
-    """The problem that `OrbitProblem.describe` described; it holds data only, so `trust` has no meaning here."""
-    word = Word(
-        tuple(description.get("events", "")),  # files of version 0.1 keep none for the absorber at rest
-        tuple(description.get("modes", ())),
-        bool(description.get("frictionless", False)),
-    )
-    model, params = build(description["model"]), np.array(description["params"], dtype=float)
+
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem | None:
+    """The problem that `OrbitProblem.describe` described.
+
+    A machine on a page that this process has already is taken as it is. Else its page has to be run: only with `trust`; without it the
+    answer is None. The other machines are data.
+
+    Raises
+    ------
+    PageChanged
+        If the page is gone or has changed.
+    """
+    settings, params = description["model"], np.array(description["params"], dtype=float)
+    if "page" in settings:
+        model: Any = machine_again(settings, trust)
+        if model is None:
+            return None
+        modes = tuple(map(tuple, description["modes"]))
+        word: Any = PageWord(tuple(description["events"]), modes, model.alphabet)
+    else:
+        model = build(settings)
+        word = Word(
+            tuple(description.get("events", "")),  # files of version 0.1 keep none for the absorber at rest
+            tuple(description.get("modes", ())),
+            bool(description.get("frictionless", False)),
+        )
     if params.shape != (len(model.parameter_names),):
         raise ValueError(
             f"{params.size} parameters are described, the machine has {len(model.parameter_names)}"
@@ -333,5 +362,5 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
         description["parameter"],
         params,
         bool(description["symmetric"]),
-        tuple(description.get("counted_in", (1.0, 1.0))),  # older files count in the machine's own units
+        tuple(description.get("counted_in", PLAIN)),  # older files count in the machine's own units
     )

@@ -6,27 +6,28 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from orbits.cycles.solution import Solution
-from orbits.machines.base import Model
-from orbits.words import Word
+from orbits.flows.protocol import Equations
+from orbits.orbit import Orbit
 
 
 class CycleProblem(Protocol):
     """What borders ask of the problem of the cycles with one word (`orbits.problem.OrbitProblem`)."""
 
-    model: Model
-    word: Word
+    model: Any
+    word: Any
     periods: int
     parameter: str
     params: np.ndarray
     symmetric: bool
+    mirrored: bool
+    forced: bool
     length: int
     dimension: int
     shift: float
     n_multipliers: int
     n_margins: int
     data: Any
-    equations: Any
+    equations: Equations
 
     @property
     def spelling(self) -> str: ...
@@ -42,9 +43,9 @@ class CycleProblem(Protocol):
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray: ...
 
-    def orbit(self, u: np.ndarray, p: float) -> Solution: ...
+    def orbit(self, u: np.ndarray, p: float) -> Orbit: ...
 
-    def sibling(self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Any: ...
+    def sibling(self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Any: ...
 
 
 class Answers:

@@ -76,6 +76,6 @@ def _names(study: "Study") -> list[str]:
 
         return measure_names(study)
     from contvines.command.compose import machine
-    from orbits.cycles.measures import names
+    from orbits.flows.native.measures import names
 
     return list(names(machine(study)))

@@ -14,7 +14,7 @@ from contvines.shared.processes import ATTEMPTS, spread
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import Observation, lasting, observe
 from orbits.attractors.recurrence import find_attractor, settle
-from orbits.cycles.measures import gauged
+from orbits.flows.native.measures import gauged
 from orbits.machines.stepping import MODE, RATE
 from orbits.simulation.driver import SimulationError, collect, first_state, machine
 from orbits.simulation.trajectory import Trajectory

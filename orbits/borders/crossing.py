@@ -7,13 +7,12 @@ if its maps have a real solution next to the border and the simulator, which kno
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from itertools import chain, product
+from collections.abc import Hashable, Iterator
+from itertools import chain, islice, product
 from typing import Any
 
 import numpy as np
 
-from orbits.attractors.recurrence import settle
 from orbits.borders.alignment import read_alike
 from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends
@@ -25,22 +24,21 @@ from orbits.borders.neighbours import (
     Place,
     grown,
     margins_of,
+    place_at,
     placed,
     proposals,
+    readings,
     turned,
 )
 from orbits.borders.rewriting import edits_at
 from orbits.borders.rounds import derivative, rounds_at
+from orbits.borders.settling import settled
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
-from orbits.cycles.claim import REAL
-from orbits.cycles.identity import canonical
+from orbits.cycles.identity import canonical, size_of_one
 from orbits.cycles.rounds import MOST, choices, escape
-from orbits.cycles.solution import Solution
-from orbits.flows.native.cycle_equations import solved_at
-from orbits.machines.catalogue import stepper
-from orbits.machines.states import state_of
+from orbits.flows.solving import solved_at
+from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
-from orbits.starts.find import polish
 from orbits.words.edit import Edit
 from orbits.words.margins import approaches_of
 
@@ -73,20 +71,20 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
     list of Seed
         Usually one; empty if neither the local rules nor the simulator find an orbit there.
     """
-    if not len(problem.word):
+    if not problem.word.modes:
         return from_rest(problem, point)
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     rest = to_rest(problem, point)
     before = problem.orbit(u, p)
     if rest or piled_up(before, approaches_of(problem.word, margins_of(problem, u, p))):
         return rest
-    border = placed(problem, u, p, int(point.margin_index))
     index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)
     nearby = _real_part(problem, u, p, tangent_here, index)
     old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
     seeds = []
     # the simulator is asked only where no proposal stands
-    for candidate in chain(proposals(border), _simulated(problem, u, p)):
+    border = placed(problem, u, p, index)
+    for candidate in chain(proposals(border), _with_room(problem, u, p, index), _simulated(problem, u, p)):
         other, v, q, tangent, note = candidate
         orbit = other.orbit(v, q)
         if not _followed(other, v, q, orbit):
@@ -94,23 +92,35 @@ def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
         smallest, v, tangent = _simplest(other, orbit, v, tangent)
         persistence = bool(np.sign(q - p) != old_side)
         kind = "persistence" if persistence else "nonsmooth fold"
-        text = f"{note}: {kind}, the word becomes {smallest.spelling}"
-        seeds.append(Seed(smallest, v, q, tangent, "border", text, persistence))
+        seeds.append(Seed(smallest, v, q, tangent, "border", f"{note}: {kind}", persistence))
         if smallest is not other:
             seeds.extend(_onwards(smallest, v, p))
         break
-    if every or not seeds:
+    if (every or not seeds) and len(problem.word):
         beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
-        seeds += _escapes(border, beside)
-    return [read_alike(seed, before) for seed in seeds]
+        seeds += escapes(border, beside)
+    return [_told(read_alike(seed, before)) for seed in seeds]
 
 
-def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Solution) -> bool:
+def _told(seed: Seed) -> Seed:
+    """The seed with its word in the note."""
+    return seed._replace(note=f"{seed.note}, the word becomes {seed.problem.spelling or 'free of events'}")
+
+
+def _with_room(
+    problem: CycleProblem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
+    """What the local rules propose where the border is read with more events on either side."""
+    for read, v, place in islice(readings(problem, u, p, index), 1, None):
+        yield from proposals(place_at(read, v, place, p))
+
+
+def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Orbit) -> bool:
     return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < FOLLOWED
 
 
 def _simplest(
-    problem: CycleProblem, orbit: Solution, u: np.ndarray, tangent: np.ndarray | None
+    problem: CycleProblem, orbit: Orbit, u: np.ndarray, tangent: np.ndarray | None
 ) -> tuple[CycleProblem, np.ndarray, np.ndarray | None]:
     """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
     root = orbit.root()
@@ -128,12 +138,12 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
         if _followed(other, v, q, other.orbit(v, q)):
-            text = f"{note}: the branches meet at the border, the word becomes {other.spelling}"
+            text = f"{note}: the branches meet at the border"
             yield Seed(other, v, q, tangent, "border", text, False)
             return
 
 
-def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]) -> Iterator[Seed]:
+def escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]) -> Iterator[Seed]:
     """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
 
     A round is a whole cycle, or half a symmetric one. A change in every other round breaks the symmetry or doubles the
@@ -153,7 +163,7 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
     for rounds in range(2, MOST + 1):
         for changed in (1, rounds - 1) if rounds > 2 else (1,):
             wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
-            if not wanted:
+            if not wanted or (changed > 1 and not problem.forced):
                 continue
             if rounds > 2:
                 wider, whole = _repeated(problem, orbit, rounds)
@@ -162,17 +172,18 @@ def _escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]
                 continue
             (other, v, q, tangent), note = found
             there = other.orbit(v, q)
-            if there.root().periods != other.periods or (there.symmetric and not other.symmetric):
+            root = there.root()
+            if (len(root.word), root.periods) != (len(other.word), other.periods) or (
+                there.symmetric and not other.symmetric
+            ):
                 continue
             if not _followed(other, v, q, there):
                 continue
             what = escape(problem.symmetric, rounds)
-            yield Seed(
-                other, v, q, tangent, "border", f"{note}: {what}, the word becomes {other.spelling}", False
-            )
+            yield Seed(other, v, q, tangent, "border", f"{note}: {what}", False)
 
 
-def _repeated(problem: CycleProblem, orbit: Solution, rounds: int) -> tuple[CycleProblem, Solution]:
+def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CycleProblem, Orbit]:
     """The border orbit over some rounds, and the problem of the orbits with that many."""
     if problem.symmetric and rounds % 2:
         whole = orbit.repeat(rounds)  # an odd number of halves, and their mirror image
@@ -184,7 +195,7 @@ def _repeated(problem: CycleProblem, orbit: Solution, rounds: int) -> tuple[Cycl
 def _grown_in(
     problem: CycleProblem,
     wider: CycleProblem,
-    whole: Solution,
+    whole: Orbit,
     p: float,
     choices: list[Edit],
     rounds: int,
@@ -232,33 +243,15 @@ def _simulated(
 ) -> Iterator[tuple[CycleProblem, np.ndarray, float, None, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
     orbit = problem.orbit(u, p)
-    engine = stepper(problem.model.name)
-    here = canonical(orbit.word, orbit.periods, orbit.nodes)[0]
-    place = next((i for i, letter in enumerate(orbit.word.events) if letter != "u"), 0)
+    here = _key(orbit)
     for away, side in product(AWAY, (1.0, -1.0)):
         q = p + side * away * parameter_unit(problem, p)
-        params = problem.values(q)
-        state = state_of(
-            engine, params, int(orbit.word.codes[place]), int(orbit.word.modes[place]), orbit.nodes[place]
-        )
-        left, right = engine.walls(params)
-        state[1] = np.clip(state[1], right, left)
-        attractor = settle(problem.model, engine, params, state, 60.0, max(2 * problem.periods, 4), 1e-6, 0)
-        if attractor.word is None or not attractor.nodes.size:
+        found, _ = settled(orbit, problem.values(q))
+        if found is None or (problem.forced and found.periods % problem.periods) or _key(found) == here:
             continue
-        found = polish(Solution.of(attractor.cycle))
-        if found is None or found.periods % problem.periods:
+        if not _loses_alike(orbit, found) or distance(orbit, found) > CLOSE:
             continue
-        if canonical(found.word, found.periods, found.nodes)[0] == here:
-            continue
-        losses = [o.measure("friction_loss") / o.periods for o in (found, orbit)]
-        energy = problem.model.gauge("energy", params) * math.prod(problem.equations.units) ** 2
-        if abs(losses[0] - losses[1]) > 0.05 * energy:
-            continue
-        if distance(orbit, found) > CLOSE:
-            continue
-        symmetric = found.symmetric
-        other = problem.sibling(found.word, found.periods, symmetric)
+        other = problem.sibling(found.word, found.periods, found.symmetric)
         v = other.reduce(found.nodes)
         nearer = _nearer(other, v, q, p)
         if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
@@ -266,7 +259,21 @@ def _simulated(
         yield other, v, q, None, "the simulator goes on"
 
 
-def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Solution | None:
+def _key(orbit: Orbit) -> Hashable:
+    same = size_of_one(orbit.nodes)
+    return canonical(orbit.word, orbit.periods, orbit.nodes, forced=orbit.forced, same=same)[0]
+
+
+def _loses_alike(one: Orbit, other: Orbit) -> bool:
+    """Whether two motions lose as much by friction, where the machine knows what that is."""
+    if "friction_loss" not in one.flow.measure_names(one.model):
+        return True
+    losses = [orbit.measure("friction_loss") / orbit.periods for orbit in (one, other)]
+    energy = one.model.gauge("energy", other.params) * math.prod(one.model.natural_units(one.params)) ** 2
+    return abs(losses[0] - losses[1]) <= 0.05 * energy
+
+
+def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit | None:
     """The orbit at q, followed towards the border at p as far as it can be solved for; None if it stops being real on the way."""
     found = problem.orbit(u, q)
     for part in NEARER:

@@ -1,4 +1,4 @@
-"""Why no branch goes on at a border, where the reason is known."""
+"""Why no branch goes on at a border: what vanishes there, and where simulation goes from it."""
 
 from __future__ import annotations
 
@@ -6,34 +6,68 @@ from typing import Any
 
 import numpy as np
 
-from orbits.cycles.solution import Solution
+from orbits.borders.holding import parameter_unit
+from orbits.borders.settling import settled
+from orbits.contacts.letters import HIT, STICK, TURN
+from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
+from orbits.words.margins import border_kind, place_of
 
 SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
 UNRESOLVED = 1e-5  # the way after an impact that ends this slow, its square, is lost in that of the margins
 VANISHING = 1e-9  # margins smaller than this are those of the border itself
 ONE_WAY = 1e-9  # relative difference of the frictions, slope included, of the two directions
+AWAY = 1e-6  # of the parameter's unit, from where simulation is asked
 
 CREEPS = (
     "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
 )
+FALLING = "impacts on {contact} fall together: beyond the border infinitely many pile up, which simulation follows to their end and no finite word describes"
 PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be told from rest"
 TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be told from contact"
 FADING = "a stick that lasts {length:.1e} of the machine's own time, with {reserve:.1e} of its friction in reserve, is about to vanish as well: motions between the two borders cannot be resolved"
 UNKNOWN = (
-    "no motion that goes on from this one was found, neither by the rules of the contacts nor by simulation"
+    "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"
 )
+AT_REST = UNKNOWN.format(contact="the contacts")
+
+ENDS = {
+    "chatter": "goes to a motion on which impacts pile up",
+    "rest": "comes to rest",
+    "stuck": "comes to rest",
+    "aperiodic": "goes to a motion without a period",
+}
+"""What simulation does where it finds no orbit."""
 
 
 def dead_end(problem: CycleProblem, point: Any) -> str:
     """A sentence that says why no motion was found on the other side of a border."""
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     orbit = problem.orbit(u, p)
-    if not len(problem.word):
-        return CREEPS if _gives_way_one_way(orbit) else UNKNOWN
-    margins = orbit.relative_margins
+    if not orbit.word.modes:
+        return CREEPS if _gives_way_one_way(orbit) else AT_REST
+    index = getattr(point, "margin_index", None)
+    contact = "the contacts" if index is None else _contact(orbit, int(index))
+    if index is not None and border_kind(orbit.word, int(index)) == "vanishing-event":
+        return FALLING.format(contact=contact)
+    near = _nearly_vanishing(orbit)
+    return near or "; ".join([UNKNOWN.format(contact=contact), *_goes_to(problem, orbit, p)])
+
+
+def _contact(orbit: Orbit, index: int) -> str:
+    """The contact that a margin watches, in words."""
+    word = orbit.word
+    place, watched = place_of(word, index)
+    if watched < 0:
+        watched = word.letter(place).contact if len(word) else 0
+    return word.alphabet.contacts[watched].described
+
+
+def _nearly_vanishing(orbit: Orbit) -> str:
+    """What else is about to vanish beside that which does; empty where nothing is."""
+    margins, word = orbit.relative_margins, orbit.word
     speeds = [m.value for m in margins if m.kind == "approach" and VANISHING < m.value < SLOW]
-    turns = [k for k, letter in enumerate(orbit.word.events) if letter == "t"]
+    turns = [k for k in range(len(word)) if word.letter(k).kind == TURN]
     gaps = [
         m.value for m in margins if m.kind == "wall" and m.segment in turns and VANISHING < m.value < SLOW
     ]
@@ -41,32 +75,44 @@ def dead_end(problem: CycleProblem, point: Any) -> str:
         return PILING.format(speed=min(speeds))
     if gaps:
         return TOUCHING.format(gap=min(gaps))
-    fading = _fading(orbit)
-    return FADING.format(length=fading[0], reserve=fading[1]) if fading else UNKNOWN
-
-
-def _fading(orbit: Solution) -> tuple[float, float] | None:
-    """Duration of a stick, and the reserve of friction at its start, where both are about to vanish."""
-    seen = {(m.kind, m.segment): m.value for m in orbit.relative_margins}
-    for place, letter in enumerate(orbit.word.events):
+    seen = {(m.kind, m.segment): m.value for m in margins}
+    for place in range(len(word)):
         pair = seen.get(("duration", place), np.inf), seen.get(("stick", place), np.inf)
-        if letter == "s" and min(pair) > VANISHING and max(pair) < SLOW:
-            return pair
-    return None
+        if word.letter(place).kind == STICK and min(pair) > VANISHING and max(pair) < SLOW:
+            return FADING.format(length=pair[0], reserve=pair[1])
+    return ""
 
 
-def piled_up(orbit: Solution, approaches: np.ndarray | None = None) -> bool:
+def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
+    """Where simulation from the border orbit goes, a little to both sides of it."""
+    told = {}
+    for side, name in ((1.0, "above"), (-1.0, "below")):
+        found, kind = settled(orbit, problem.values(p + side * AWAY * parameter_unit(problem, p)))
+        if found is None:
+            told[name] = ENDS.get(kind, kind)
+        elif found.word.canonical().events == orbit.word.canonical().events:
+            told[name] = "stays with this word"
+        else:
+            told[name] = f"settles on {found.spelling or 'a motion without events'} elsewhere"
+    if told["above"] == told["below"]:
+        return [f"simulation {told['above']} on either side"]
+    return [f"simulation {what} just {name} it" for name, what in told.items()]
+
+
+def piled_up(orbit: Orbit, approaches: np.ndarray | None = None) -> bool:
     """Whether a border orbit has an impact that is too slow, once the wall has sent it back, to see what the next ones do.
 
     `approaches` are the orbit's own, where they are known.
     """
     speeds = (orbit.approaches if approaches is None else approaches).tolist()
-    back, codes = orbit.model.restitutions(orbit.params), orbit.word.codes
-    hits = codes[codes < 2].tolist()
-    return any(speed > VANISHING and back[hit] * speed < UNRESOLVED for speed, hit in zip(speeds, hits))
+    hits = [place for place in range(len(orbit.word)) if orbit.word.letter(place).kind == HIT]
+    return any(
+        speed > VANISHING and orbit.flow.restitution(orbit, place) * speed < UNRESOLVED
+        for speed, place in zip(speeds, hits)
+    )
 
 
-def _gives_way_one_way(orbit: Solution) -> bool:
+def _gives_way_one_way(orbit: Orbit) -> bool:
     """Whether friction and slope hold the absorber better one way than the other."""
     reserves = getattr(orbit.model.rest, "reserves", None)
     if reserves is None:

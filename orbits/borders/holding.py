@@ -6,10 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.contacts.changes import Change, Grows
+from orbits.contacts.changes import Change, Grows, What
 from orbits.contacts.letters import STICK
 from orbits.protocol import CycleProblem
-from orbits.words.alphabet import LEFT
 
 NEAR = 1e-7  # margins this small vanish together
 
@@ -47,33 +46,33 @@ def hold(
     other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Change, p: float, wanted: float
 ) -> Held | None:
     """Solve with what grows beyond the border at p held at a size; None where there is no such solution near the border."""
-    n, size = other.model.node, other.dimension
+    size = other.dimension
+    n = size // other.length
     kernels, work = other.equations.kernels, other.scratch
     step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
-    u, scale = guess.copy(), parameter_unit(other, p)
-    if change.grows is Grows.GAP:
-        border[first * n], border[(first + 1) * n] = -1.0, 1.0
-        if change.start == change.stop:  # the later event stays: friction gives way there
-            u[first * n] = u[(first + 1) * n] - wanted
+    u, here, following = guess.copy(), first * n, (first + 1) * n % size
+    if change.grows is Grows.GAP and not other.forced:
+        border[here], u[here] = 1.0, wanted
+    elif change.grows is Grows.GAP:
+        border[here], border[following] = -1.0, 1.0
+        if change.what is What.CROSSINGS_APPEAR:
+            u[here] = 0.5 * (u[here] + u[following] - wanted)
+            u[following] = u[here] + wanted
+        elif change.start == change.stop:  # the later event stays: friction gives way there
+            u[here] = u[following] - wanted
         else:
-            u[(first + 1) * n] = u[first * n] + wanted
+            u[following] = u[here] + wanted
     else:
-        sign = 1.0 if other.word.letter(first).contact == LEFT else -1.0
-        unit = other.equations.unit[first]  # the second entry of an impact's node is a speed
-        node, near = u[first * n : (first + 1) * n] * unit, NEAR * scale
-        cavity, slopes = other.model.cavity_speed(node, other.values(q))
-        beside, _ = other.model.cavity_speed(node, other.values(q + near))
-        own = float(unit[1])
-        cavity, beside = cavity / own, beside / own
-        border[first * n : (first + 1) * n] = -sign * slopes * unit / own
-        border[first * n + 1] += sign
-        border[size] = -sign * (beside - cavity) / near
-        speed = sign * (float(u[first * n + 1]) - cavity)
-        u[first * n + 1] += sign * (wanted - speed)
+        near = NEAR * parameter_unit(other, p)
+        speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
+        border[here : here + n], border[size] = slopes, by_parameter
+        u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
         if (
             len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
         ):  # it comes to rest the sooner the slower it is
-            u[(first + 1) * n] += (u[(first + 1) * n] - u[first * n]) * (wanted / speed - 1.0)
+            clock = here if not other.forced else following
+            since = u[following] - u[here] if other.forced else u[here]
+            u[clock] += since * (wanted / speed - 1.0)
     residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
     if not residual < 1e-10:
         return None

@@ -11,14 +11,12 @@ import numpy as np
 
 from orbits.borders.distance import SHRINKS, gap, tends, tends_to
 from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
-from orbits.borders.rewriting import edits_at, rewritten
+from orbits.borders.rewriting import durations_after, edits_at, rewritten
 from orbits.contacts.changes import Change, Grows
-from orbits.contacts.letters import HIT, STICK
-from orbits.cycles.claim import REAL
-from orbits.cycles.solution import Solution
+from orbits.contacts.letters import HIT, SLIP, STICK
+from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem
 from orbits.words.edit import Edit
-from orbits.words.margins import PER_NODE
 
 # of what grows beyond the border: ways to try
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))
@@ -30,11 +28,12 @@ ASTRAY = 0.1  # part of the way from the border by which a solution may miss its
 CLOSER = 3  # times that a solution which tends to the border orbit is looked at closer still
 PLACED = 1e-10  # of the parameter's unit: places of such solutions this close to the border's are the same
 GROWING = 1e-4  # least growth of a margin with the distance from the border
+ROOM = 4  # events that may stand before that of the margin
 
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
-    """Margins of a solution."""
-    return examined(problem, u, p)[2 * problem.n_multipliers :]
+    """Margins of a solution; where one is not a number it is as far from real as can be."""
+    return np.nan_to_num(examined(problem, u, p)[2 * problem.n_multipliers :], nan=-np.inf, posinf=np.inf)
 
 
 def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
@@ -54,14 +53,35 @@ def turned(
     problem: CycleProblem, u: np.ndarray, p: float, index: int
 ) -> tuple[CycleProblem, np.ndarray, int]:
     """The same border read from another event, so that what changes does not straddle the end of the word."""
-    place, column = divmod(index, PER_NODE)
-    letter = problem.word.events[place]
-    if 0 < place < problem.length - 1 or (place == 0 and letter != "u") or problem.length < 2:
+    place = index // len(problem.word.alphabet.columns)
+    slip = len(problem.word) > 0 and problem.word.letter(place).kind == SLIP
+    if 0 < place < problem.length - 1 or (place == 0 and not slip) or problem.length < 2:
         return problem, u, index
-    first = place - 1 if letter == "u" else place
+    return read_from(problem, u, p, index, place - 1 if slip else place)
+
+
+def read_from(
+    problem: CycleProblem, u: np.ndarray, p: float, index: int, first: int
+) -> tuple[CycleProblem, np.ndarray, int]:
+    """The same border read from event `first`."""
+    width = len(problem.word.alphabet.columns)
+    place, column = divmod(index, width)
     orbit = problem.orbit(u, p).rotate(first % len(problem.word))
     other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
-    return other, other.reduce(orbit.nodes), PER_NODE * (place - first) + column
+    return other, other.reduce(orbit.nodes), width * ((place - first) % problem.length) + column
+
+
+def readings(
+    problem: CycleProblem, u: np.ndarray, p: float, index: int
+) -> Iterator[tuple[CycleProblem, np.ndarray, int]]:
+    """The same border read as `turned` reads it, then with more events before the margin's: a change may need room on either side."""
+    first = turned(problem, u, p, index)
+    yield first
+    read, v, place = first
+    own = place // len(read.word.alphabet.columns)
+    for ahead in range(min(ROOM, read.length)):
+        if ahead != own and len(read.word):
+            yield read_from(read, v, p, place, own - ahead)
 
 
 class Grown(NamedTuple):
@@ -78,14 +98,14 @@ class Begun:
 
     Attributes
     ----------
-    orbit : Solution
+    orbit : Orbit
         The border orbit.
     p : float
     start : (problem, unknowns, where what grows stands, its change) or None
         At the border; None where the edits make no word.
     """
 
-    def __init__(self, problem: CycleProblem, orbit: Solution, p: float, edits: list[Edit]) -> None:
+    def __init__(self, problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> None:
         self.orbit, self.p = orbit, p
         self.start = with_edits(problem, orbit, edits)
         self._climbed: dict[tuple[float, ...], list[Held]] = {}
@@ -115,7 +135,7 @@ class Place(NamedTuple):
     u: np.ndarray
     p: float
     index: int
-    orbit: Solution
+    orbit: Orbit
     edits: list[Edit]
     known: dict[int, Begun]
 
@@ -128,7 +148,11 @@ class Place(NamedTuple):
 
 def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Place:
     """The border at which margin `index` of a solution vanishes."""
-    problem, u, index = turned(problem, u, p, index)
+    return place_at(*turned(problem, u, p, index), p)
+
+
+def place_at(problem: CycleProblem, u: np.ndarray, index: int, p: float) -> Place:
+    """The same, read as it is."""
     orbit = problem.orbit(u, p)
     return Place(problem, u, p, index, orbit, edits_at(orbit, index, problem.length), {})
 
@@ -174,29 +198,42 @@ def grown(begun: Begun, ways: tuple[tuple[float, ...], ...] = SIZES, steady: boo
     first, change = begun.growing
     for sizes in ways:
         found = begun.climbed(sizes)
-        if found and steady and not stable_at(other, found[-1].u, found[-1].p):
-            return None
+        if (
+            found and steady
+        ):  # beside a graze the multipliers grow without bound: stable from a flip close to it on
+            found = [held for held in found if stable_at(other, held.u, held.p)]
+            if not found:
+                return None
         if found and _begins_at(orbit, other, first, change, p, found):
             return Grown(other, *found[-1][:3])
     return None
 
 
 def with_edits(
-    problem: CycleProblem, orbit: Solution, edits: list[Edit]
+    problem: CycleProblem, orbit: Orbit, edits: list[Edit]
 ) -> tuple[CycleProblem, np.ndarray, int, Change] | None:
     """The problem of the new word, its unknowns at the border, and where what grows stands, with its change; None for no word."""
-    if problem.symmetric:  # edit the half, and mirror it
-        half = problem.length
+    empty, half = not len(problem.word), problem.length
+    halved = problem.symmetric
+    if empty:
+        halved = problem.mirrored and bool(edits[0].change.events) and problem.word.mirror_symmetric_halves
+    if halved and not empty:  # edit the half, and mirror it
         if any(edit.change.stop > half and edit.change.start != half for edit in edits):
             return None
         word, nodes, first = rewritten(orbit.word.head(half), orbit.nodes[:half], edits)
-        word = word.with_image()
     else:
         word, nodes, first = rewritten(orbit.word, orbit.nodes, edits)
+    if halved:
+        word = word.with_image()
     if not len(word):
-        return None
+        alone = orbit.flow.without_events(orbit)
+        if alone is None:
+            return None
+        nodes, halved = alone, False
+    elif not problem.forced:
+        nodes = durations_after(orbit.durations, nodes, edits[0])
     try:
-        other = problem.sibling(word, problem.periods, problem.symmetric)
+        other = problem.sibling(word, problem.periods, halved)
     except ValueError:
         return None
     return other, other.reduce(nodes), first, edits[0].change
@@ -209,10 +246,12 @@ def vanishing_in(
 
     An impact of vanishing speed, or a stick of vanishing length; there the equations are singular.
     """
-    orbit, units = other.orbit(guess, p), other.equations.unit
+    if not len(other.word):
+        return None
+    orbit, near = other.orbit(guess, p), NEAR * parameter_unit(other, p)
     for place in range(other.length):
         kind = other.word.letter(place).kind
-        if kind == HIT and abs(orbit.events.rate_post[place]) / units[place, 1] < NEAR:
+        if kind == HIT and abs(other.equations.approach(guess, p, place, near).speed) < NEAR:
             grows = Grows.SPEED
         elif kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < NEAR:
             grows = Grows.GAP
@@ -224,7 +263,7 @@ def vanishing_in(
 
 
 def _begins_at(
-    border: Solution, other: CycleProblem, first: int, change: Change, p: float, found: list[Held]
+    border: Orbit, other: CycleProblem, first: int, change: Change, p: float, found: list[Held]
 ) -> bool:
     """Whether the solutions, from large to small, are real ones that tend to the border orbit.
 
@@ -253,7 +292,7 @@ def _begins_at(
 
 
 def _keeps_tending(
-    border: Solution, other: CycleProblem, first: int, change: Change, p: float, near: Held, apart: float
+    border: Orbit, other: CycleProblem, first: int, change: Change, p: float, near: Held, apart: float
 ) -> bool:
     """Whether the solutions go on tending to the border orbit, and to its place, at still smaller sizes, as far as they can be solved for.
 
@@ -283,7 +322,7 @@ def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: 
             yield held
 
 
-def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Solution, steady: bool) -> Grown | None:
+def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, steady: bool) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
     size = other.dimension
     kernels, work = other.equations.kernels, other.scratch

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.borders.holding import Held
-from orbits.borders.neighbours import SIZES, Place, examined
+from orbits.borders.neighbours import SIZES, Place
 from orbits.cycles.rounds import Rounds, derived, judged
 from orbits.protocol import CycleProblem
 from orbits.words.edit import Edit
@@ -23,15 +23,16 @@ def rounds_at(border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float
     """
     other, solutions = _near_border(border, edit)
     kinds = [unchanged[-2:], [derivative(other, held.u, held.p) for held in solutions[-2:]]]
-    if (
-        border.problem.word.impact_free and other.word.impact_free
-    ):  # nothing depends on where such a motion is
-        kinds = [[None if m is None else (_elsewhere(m[0]), m[1]) for m in maps] for maps in kinds]
+    flow, model = border.orbit.flow, border.orbit.model
+    loose = {*flow.loose(model, border.problem.word)} & {*flow.loose(model, other.word)}
+    if loose:  # nothing depends on where such a motion is
+        entries = [entry - (not other.forced) for entry in sorted(loose)]
+        kinds = [[None if m is None else (_elsewhere(m[0], entries), m[1]) for m in maps] for maps in kinds]
     return judged(kinds)
 
 
-def _elsewhere(derivative: np.ndarray) -> np.ndarray:
-    return np.delete(np.delete(derivative, 1, axis=0), 1, axis=1)
+def _elsewhere(derivative: np.ndarray, entries: list[int]) -> np.ndarray:
+    return np.delete(np.delete(derivative, entries, axis=0), entries, axis=1)
 
 
 def _near_border(border: Place, edit: Edit) -> tuple[CycleProblem, list[Held]]:
@@ -47,9 +48,5 @@ def _near_border(border: Place, edit: Edit) -> tuple[CycleProblem, list[Held]]:
 
 def derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:
     """Derivative of a round, mirrored where it is half a cycle, and its rounding; None where there is none."""
-    examined(problem, u, p)
-    work = problem.scratch
-    found = derived(work.A, work.D)
-    if found is not None:
-        found[0][1:] *= problem.data.twist
-    return found
+    found = problem.equations.through_flights(u, p)
+    return None if found is None else derived(*found)

@@ -8,7 +8,7 @@ import numpy as np
 
 from orbits.borders.distance import CLOSE
 from orbits.borders.holding import parameter_unit
-from orbits.cycles.solution import Solution
+from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import StartError, find
 
@@ -21,7 +21,7 @@ def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     for distance in (1e-4, 1e-3):
         for side in (1.0, -1.0):
             q = p + side * distance * parameter_unit(problem, p)
-            if Solution.at_rest(problem.model, problem.values(q)).real:
+            if Orbit.at_rest(problem.model, problem.values(q)).real:
                 continue
             values = dict(
                 zip(problem.model.parameter_names, (float(x) for x in problem.values(q)), strict=True)
@@ -43,14 +43,14 @@ def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
 
 def to_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
-    if sorted(problem.word.events) != ["s", "s", "u", "u"]:
+    if problem.model.flow != "native" or sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []
     p = float(point.value)
     unit = parameter_unit(problem, p)
     for side in (-1.0, 1.0):
         q = p + side * 1e-7 * unit
-        orbit = Solution.at_rest(problem.model, problem.values(q))
-        beyond = Solution.at_rest(problem.model, problem.values(p - side * 1e-7 * unit))
+        orbit = Orbit.at_rest(problem.model, problem.values(q))
+        beyond = Orbit.at_rest(problem.model, problem.values(p - side * 1e-7 * unit))
         if orbit.margin > 0.0 > beyond.margin:
             other = problem.sibling(orbit.word, 1, orbit.symmetric)
             direction = np.zeros(other.dimension + 1)

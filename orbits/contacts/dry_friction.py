@@ -43,6 +43,11 @@ class FrictionLaw:
     def __init__(self, name: str, letters: Sequence[str] = ("t", "s", "u")) -> None:
         self.name, self.letters = name, tuple(letters)
 
+    @property
+    def described(self) -> str:
+        """What it is, by its name."""
+        return f"friction {self.name!r}"
+
     def events(self, j: int) -> list[Letter]:
         """The letters, for the contact with index j."""
         return [Letter(text, j, kind) for text, kind in zip(self.letters, (TURN, STICK, SLIP))]

@@ -31,6 +31,11 @@ class SwitchLaw:
         """What a word calls the two crossings."""
         return (f"{self.name}+", f"{self.name}-")
 
+    @property
+    def described(self) -> str:
+        """What it is, by its name."""
+        return f"switch {self.name!r}"
+
     def events(self, j: int) -> list[Letter]:
         """The letters, for the contact with index j."""
         plus, minus = self.letters

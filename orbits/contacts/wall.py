@@ -30,6 +30,11 @@ class WallLaw:
         """The one letter of its impacts."""
         return (self.letter,)
 
+    @property
+    def described(self) -> str:
+        """What it is, by its name."""
+        return f"wall {self.letter!r}"
+
     def events(self, j: int) -> list[Letter]:
         """The letters, for the contact with index j."""
         return [Letter(self.letter, j, HIT)]

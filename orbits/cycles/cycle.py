@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
-from orbits.cycles.identity import is_symmetric, root_orbit
+from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
+from orbits.flows.catalogue import flow_of
+from orbits.flows.protocol import Flow
 from orbits.machines.base import Model
-from orbits.machines.events import EventTable, event_table
+from orbits.machines.events import EventTable, events_of
 from orbits.words import Word
 
 
@@ -20,27 +22,28 @@ class Cycle:
 
     Attributes
     ----------
-    model : Model
+    model : Model or Machine
         The machine.
-    word : Word
-        Its events over the whole period; the empty word is the absorber at rest in its cavity.
+    word : Word or PageWord
+        Its events over the whole period; the empty word is a motion without events: of a built-in machine the absorber at rest.
     periods : int
-        Forcing periods k.
+        Forcing periods k; 1 for a self-excited machine.
     nodes : float array (L, n)
-        Per event (Psi, B+) at impacts and (Psi, w) elsewhere; the coupled machine adds v and v'.
+        Of a built-in machine per event (Psi, B+) at impacts and (Psi, w) elsewhere; the coupled machine adds v and v'. On a page the
+        phase (of a self-excited machine: the duration of the flight that follows) and the states after the event.
     params : float array (P,)
         Parameter vector, in the order of `model.parameter_names`.
     """
 
-    model: Model
-    word: Word
+    model: Any
+    word: Any
     periods: int
     nodes: np.ndarray = field(repr=False)
     params: np.ndarray = field(repr=False)
 
     @classmethod
     def at_rest(cls, model: Model, params: np.ndarray) -> Self:
-        """The cycle without events."""
+        """The cycle without events of a built-in machine."""
         return cls(model, Word((), ()), 1, np.zeros((0, model.node)), params)
 
     @classmethod
@@ -53,6 +56,16 @@ class Cycle:
         return f"{type(self).__name__}({self.model.name}, word={self.spelling!r}, periods={self.periods}, {values})"
 
     # ------------------------------------------------------------------ facts
+    @property
+    def flow(self) -> Flow:
+        """What happens between its events."""
+        return flow_of(self.model)
+
+    @property
+    def forced(self) -> bool:
+        """Whether a forcing sets the clock; else the first entry of a node is a duration."""
+        return self.model.forced
+
     @property
     def spelling(self) -> str:
         """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
@@ -70,28 +83,38 @@ class Cycle:
 
     @property
     def period(self) -> float:
-        """Duration in dimensionless time tau."""
-        return 2.0 * np.pi * self.periods / self.parameters["frequency"]
+        """Duration, in the machine's own time."""
+        if not self.forced:
+            return float(self.nodes[:, 0].sum())
+        return 2.0 * np.pi * self.periods / self.parameters[self.model.phase_rate]
 
     @cached_property
     def symmetric(self) -> bool:
         """Whether the orbit equals its mirror image after half its period."""
-        return self.model.has_mirror(self.params) and is_symmetric(
-            self.word, self.periods, self.nodes, image=self._image
+        if not self.model.has_mirror(self.params):
+            return False
+        return is_symmetric(
+            self.word,
+            self.periods,
+            self.nodes,
+            size_of_one(self.nodes),
+            forced=self.forced,
+            image=self.flow.image(self),
         )
 
     @cached_property
     def events(self) -> EventTable:
-        """Positions and velocities at the events; arrays of shape (L,)."""
-        table = event_table(self.model, self.word, self.nodes[None], self.params[None])
-        return EventTable(**{name: values[0] for name, values in vars(table).items()})
+        """Positions and velocities at the events of a built-in machine; arrays of shape (L,)."""
+        return events_of(self)
 
     @property
     def durations(self) -> np.ndarray:
-        """Duration of each segment in radians of the forcing phase, shape (L,)."""
-        if not len(self.word):
-            return np.zeros(0)
+        """Clock that passes in each flight, shape (L,): radians of the forcing phase, or time of a self-excited machine."""
+        if not self.forced:
+            return self.nodes[:, 0].copy()
         phases = self.nodes[:, 0]
+        if not len(phases):
+            return np.zeros(0)
         durations = np.empty(len(phases))
         np.subtract(phases[1:], phases[:-1], out=durations[:-1])
         durations[-1] = phases[0] + 2.0 * np.pi * self.periods - phases[-1]
@@ -100,22 +123,31 @@ class Cycle:
     # ------------------------------------------------------------------ other descriptions of it
     def root(self) -> Self:
         """The shortest orbit of which this one is a repetition."""
-        word, periods, nodes = root_orbit(self.word, self.periods, self.nodes)
-        return replace(self, word=word, periods=periods, nodes=nodes)
+        same = size_of_one(self.nodes)
+        if len(self.word):
+            word, periods, nodes = root_orbit(
+                self.word, self.periods, self.nodes, forced=self.forced, same=same
+            )
+            return replace(self, word=word, periods=periods, nodes=nodes)
+        if self.periods == 1:
+            return self
+        alike = np.abs(self.flow.strobed(self)[1:] - self.nodes[0, 1:]).max(axis=1) < same
+        again = [k for k in range(1, self.periods) if self.periods % k == 0 and alike[k - 1]]
+        return replace(self, periods=min(again, default=self.periods))
 
     def repeat(self, times: int) -> Self:
         """The same orbit, written `times` times."""
-        turn = 2.0 * np.pi * self.periods
+        turn = 2.0 * np.pi * self.periods if self.forced else 0.0
         parts = []
         for copy in range(times):
             part = self.nodes.copy()
             part[:, 0] += copy * turn
             parts.append(part)
-        word, periods = self.word.repeat(times), self.periods * times
+        word, periods = self.word.repeat(times), self.periods * times if self.forced else self.periods
         return replace(self, word=word, periods=periods, nodes=np.concatenate(parts))
 
     def mirror(self) -> Self:
-        """The mirror image: L and R change places, half a forcing period later.
+        """The mirror image: contacts change places, half a forcing period later.
 
         Raises
         ------
@@ -124,16 +156,12 @@ class Cycle:
         """
         if not self.model.has_mirror(self.params):
             raise ValueError(
-                f"the model {self.model.name!r} has no mirror symmetry with these parameters: the image of "
+                f"the machine {self.model.name!r} has no mirror symmetry with these parameters: the image of "
                 f"{self.word.text!r} is not one of its orbits"
             )
-        nodes = self._image
-        nodes[:, 0] += np.pi
+        nodes = self.flow.image(self)
+        nodes[:, 0] += np.pi if self.forced else 0.0
         return replace(self, word=self.word.mirror(), nodes=nodes)
-
-    @property
-    def _image(self) -> np.ndarray:
-        return self.model.image(self.word.codes, self.nodes, self.params)
 
     def rotate(self, places: int) -> Self:
         """The same orbit, read from the event `places` further on."""
@@ -141,6 +169,6 @@ class Cycle:
         if n == 0:
             return self
         nodes = np.roll(self.nodes, -places, axis=0)
-        turns = np.arange(n) + places
-        nodes[:, 0] += (turns // n) * 2.0 * np.pi * self.periods
+        if self.forced:
+            nodes[:, 0] += ((np.arange(n) + places) // n) * 2.0 * np.pi * self.periods
         return replace(self, word=self.word.rotate(places), nodes=nodes)

@@ -21,7 +21,7 @@ AnyWord = TypeVar("AnyWord", bound=CyclicWord)
 
 def size_of_one(nodes: np.ndarray) -> float:
     """Distance below which nodes (L, n + 1) are one, of a machine whose states have any size."""
-    return SAME * (1.0 + float(np.abs(nodes[:, 1:]).max()))
+    return SAME * (1.0 + float(np.abs(nodes[:, 1:]).max(initial=0.0)))
 
 
 def root_orbit(
@@ -55,7 +55,7 @@ def is_symmetric(
     `image` are the nodes mirrored, at the same phases; by default all states have the opposite sign.
     """
     if not len(word):
-        return True
+        return not len(nodes)  # at rest; of another motion without events its one node does not tell
     if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)):
         return False
     half = len(word) // 2

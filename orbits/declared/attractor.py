@@ -10,12 +10,11 @@ import numpy as np
 
 from orbits.contacts.letters import HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
-from orbits.declared.orbit import DeclaredOrbit
-from orbits.flows.page.cycle_equations import DeclaredSystem
 from orbits.flows.page.solving import SOLVED, newton
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.flows.protocol import Record
 from orbits.machines.page.machine import Machine
+from orbits.orbit import Orbit
 from orbits.simulation.page import PageTrajectory, collect, first_state
 from orbits.words.of_pages import PageWord
 
@@ -42,7 +41,7 @@ class DeclaredAttractor:
     kind : str
         "periodic", "chatter" (periodic or not, with infinitely many impacts in finite time), "rest" (a wall holds the body for good, or a
         self-excited machine has no events any more), or "aperiodic" (no period up to the longest that was looked for).
-    orbit : DeclaredOrbit or None
+    orbit : Orbit or None
         Of a periodic one.
     trajectory : PageTrajectory
         The last part of the simulation.
@@ -51,7 +50,7 @@ class DeclaredAttractor:
     machine: Machine
     params: np.ndarray
     kind: str
-    orbit: DeclaredOrbit | None
+    orbit: Orbit | None
     trajectory: PageTrajectory = field(repr=False)
 
     @property
@@ -65,7 +64,7 @@ class DeclaredAttractor:
         return 0 if self.orbit is None else self.orbit.periods
 
     @property
-    def found(self) -> DeclaredOrbit:
+    def found(self) -> Orbit:
         """The orbit.
 
         Raises
@@ -97,7 +96,7 @@ class DeclaredAttractor:
         """
         return self.found.problem(parameter, symmetric)
 
-    def seed(self, problem: DeclaredSystem) -> tuple[np.ndarray, float]:
+    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value in `problem`."""
         return self.found.seed(problem)
 
@@ -180,13 +179,13 @@ def look(stepper: Stepper, max_period: int) -> PageTrajectory:
     return collect(stepper, 1e4, min(2 * LONGEST_WORD, 50 * max_period))
 
 
-def settle(stepper: Stepper, transient: int, max_period: int) -> DeclaredOrbit | None:
+def settle(stepper: Stepper, transient: int, max_period: int) -> Orbit | None:
     """The periodic orbit to which a stepper's motion settles after a transient, or None."""
     skip(stepper, transient)
     return returning(look(stepper, max_period), max_period, RETURNED)
 
 
-def returning(run: PageTrajectory, max_period: int, near: float) -> DeclaredOrbit | None:
+def returning(run: PageTrajectory, max_period: int, near: float) -> Orbit | None:
     """The shortest cycle at the end of a run whose equations confirm it: not one that repels, beside which the run has only passed."""
     machine = run.machine
     if any(kind in (HOLD, RELEASE) for _, kind, _ in run.events[-LONGEST_WORD:]):
@@ -223,7 +222,7 @@ def returning(run: PageTrajectory, max_period: int, near: float) -> DeclaredOrbi
     return None
 
 
-def solved(run: PageTrajectory, length: int, periods: int, far: float = 0.1) -> DeclaredOrbit | None:
+def solved(run: PageTrajectory, length: int, periods: int, far: float = 0.1) -> Orbit | None:
     """The last `length` events of a run as an orbit, if its equations have a solution within `far` of them; see `polished`."""
     machine = run.machine
     word = PageWord(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
@@ -233,10 +232,10 @@ def solved(run: PageTrajectory, length: int, periods: int, far: float = 0.1) -> 
     else:
         first = np.append(np.diff(clocks), clocks[0] - run.clocks[-length - 1])
     nodes = np.column_stack([first, run.states[-length:]])
-    return polished(DeclaredOrbit(machine, word, periods, nodes, run.params), far)
+    return polished(Orbit(machine, word, periods, nodes, run.params), far)
 
 
-def of_record(record: Record, first: int, last: int, periods: int, far: float) -> DeclaredOrbit | None:
+def of_record(record: Record, first: int, last: int, periods: int, far: float) -> Orbit | None:
     """The cycle next to events `first` to `last` - 1 of a record; see `solved`."""
     run, stop = record.source, last + 1
     part = PageTrajectory(
@@ -252,36 +251,36 @@ def of_record(record: Record, first: int, last: int, periods: int, far: float) -
     return solved(part, last - first, periods, far)
 
 
-def polished(orbit: DeclaredOrbit, far: float = 0.1) -> DeclaredOrbit | None:
+def polished(orbit: Orbit, far: float = 0.1) -> Orbit | None:
     """The orbit with the same word next to a guess; None if there is none within `far` (relative to 1 + states)."""
     word = orbit.word
     problem = orbit.system(symmetric=False)
-    p = float(orbit.params[problem.index])
+    p = problem.value(orbit.params)
     u, _, residual, _ = newton(problem, problem.reduce(orbit.nodes), p)
     nodes = problem.expand(u)
     near = far * (1.0 + np.abs(orbit.nodes[:, 1:]).max())
     moved = nodes - orbit.nodes
-    for j in problem.loose:  # shifted as a whole it is the same motion
-        moved[:, 1 + j] -= moved[:, 1 + j].mean()
+    for entry in orbit.flow.loose(orbit.model, word):  # shifted as a whole it is the same motion
+        moved[:, entry] -= moved[:, entry].mean()
     if not residual < SOLVED or np.abs(moved).max() > near:
         return None
-    found = DeclaredOrbit(orbit.machine, word, orbit.periods, nodes, orbit.params)
+    found = Orbit(orbit.model, word, orbit.periods, nodes, orbit.params)
     return plainest(found.root()) if found.real else None
 
 
-def plainest(orbit: DeclaredOrbit) -> DeclaredOrbit:
+def plainest(orbit: Orbit) -> Orbit:
     """The orbit read from the event from which its word is written shortest, never from a slip."""
     if not 1 < len(orbit.word) <= PLAIN:
         return orbit
     places = [i for i in range(len(orbit.word)) if orbit.word.letter(i).kind != SLIP]
     texts = [(len(text), text, i) for i in places for text in (orbit.word.rotate(i).text,)]
     found = orbit.rotate(min(texts)[2])
-    if found.machine.forced:  # the first phase within the first period
+    if found.model.forced:  # the first phase within the first period
         found.nodes[:, 0] -= TWO_PI * np.floor(found.nodes[0, 0] / TWO_PI)
     return found
 
 
-def _eventless(run: PageTrajectory, max_period: int, near: float) -> DeclaredOrbit | None:
+def _eventless(run: PageTrajectory, max_period: int, near: float) -> Orbit | None:
     """The shortest cycle of a forced motion without events, once per forcing period at phase zero; see `returning`."""
     machine = run.machine
     mode = run.modes[-1]
@@ -298,7 +297,7 @@ def _eventless(run: PageTrajectory, max_period: int, near: float) -> DeclaredOrb
         gap = float(np.abs(states[-1] - states[-1 - periods]).max())
         if not gap <= near * size:
             continue
-        orbit = polished(DeclaredOrbit(machine, word, periods, np.array([[0.0, *states[-1]]]), run.params))
+        orbit = polished(Orbit(machine, word, periods, np.array([[0.0, *states[-1]]]), run.params))
         if orbit is not None and (gap <= CLOSED * size or not np.any(np.abs(orbit.multipliers) > REPELS)):
             return orbit
     return None

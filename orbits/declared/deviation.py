@@ -32,8 +32,8 @@ def deviation(orbit: Any) -> float:
 
 
 def _begun(orbit: Any, place: int) -> Stepper:
-    stepper = Stepper(orbit.machine, orbit.params)
-    forced = orbit.machine.forced
+    stepper = Stepper(orbit.model, orbit.params)
+    forced = orbit.model.forced
     clock = float(orbit.nodes[place, 0]) if forced else 0.0
     stepper.start(orbit.nodes[place, 1:], clock, orbit.word.modes[place])
     return stepper
@@ -41,7 +41,7 @@ def _begun(orbit: Any, place: int) -> Stepper:
 
 def by_events(orbit: Any) -> float:
     """Largest difference of nodes over one period, infinite if the events differ."""
-    word, nodes, forced = orbit.word, orbit.nodes, orbit.machine.forced
+    word, nodes, forced = orbit.word, orbit.nodes, orbit.model.forced
     n = len(word)
     try:
         stepper = _begun(orbit, 0)
@@ -71,9 +71,8 @@ def by_events(orbit: Any) -> float:
 
 def by_states(orbit: Any, points: int = 400) -> float:
     """Largest difference of the states at many instants, the simulation started anew at every definite event."""
-    from orbits.flows.page.sampling import lengths
 
-    durations = lengths(orbit)
+    durations = orbit.durations
     if np.any(durations < -1e-9):
         return np.inf
     word, nodes, n = orbit.word, orbit.nodes, max(1, len(orbit.word))
@@ -83,13 +82,13 @@ def by_states(orbit: Any, points: int = 400) -> float:
         if abs(m.value) < DELICATE and m.kind not in ("wall", "flight", "hold")
     }
     places = [i for i in range(n) if i not in weak] or [0]
-    compiled, e = orbit.machine.compiled, orbit.machine.equations
+    compiled, e = orbit.model.compiled, orbit.model.equations
     worst = 0.0
     for a, b in zip(places, [*places[1:], places[0] + n]):
         clocks, claimed, passed = [], [], 0.0
         for i in range(a, b):
             k = i % n
-            begin = float(nodes[k, 0]) if orbit.machine.forced else 0.0
+            begin = float(nodes[k, 0]) if orbit.model.forced else 0.0
             count = max(3, round(points * durations[k] / max(durations.sum(), 1e-300)))
             grid = begin + np.linspace(0.0, max(float(durations[k]), 0.0), count + 1)
             watch = compiled.watch(e.pattern_key(word.modes[k]))

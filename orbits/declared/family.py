@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from orbits.declared.attractor import find_attractor, polished, random_start
-from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.starts import find
 from orbits.declared.sweep import sweep
 from orbits.flows.page.stepper import Stepper
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.machine import Machine
+from orbits.orbit import Orbit
 from orbits.simulation.page import outside
 from orbits.starts.find import StartError
 from orbits.words.of_pages import PageWord
@@ -61,7 +61,7 @@ class PageFamily:
         """The machine; the page is run once a process."""
         return load_page(self.page, self.name)
 
-    def __call__(self, values: Mapping[str, float], near: Any = None) -> DeclaredOrbit:
+    def __call__(self, values: Mapping[str, float], near: Any = None) -> Orbit:
         """The orbit of the machine with these values.
 
         Raises
@@ -96,7 +96,7 @@ class PageFamily:
         raise refusal or StartError("the simulator finds no periodic motion to begin with; give a word")
 
     @staticmethod
-    def near(orbit: DeclaredOrbit) -> Any:
+    def near(orbit: Orbit) -> Any:
         """What a neighbour's orbit may begin with."""
         return orbit.nodes, orbit.params, orbit.word.events, orbit.word.modes, orbit.periods
 
@@ -137,7 +137,7 @@ class PageFamily:
         return found
 
     @staticmethod
-    def _carried(machine: Machine, params: np.ndarray, near: Any) -> DeclaredOrbit | None:
+    def _carried(machine: Machine, params: np.ndarray, near: Any) -> Orbit | None:
         """The orbit at `params` from one nearby with the same word: Newton's method over the whole way, or part after part."""
         nodes, here, events, modes, periods = near
         word = PageWord(tuple(events), tuple(map(tuple, modes)), machine.alphabet)
@@ -145,7 +145,7 @@ class PageFamily:
         while reached < 1.0:
             goal = min(reached + step, 1.0)
             there = params if goal == 1.0 else here + goal * (params - here)
-            orbit = polished(DeclaredOrbit(machine, word, periods, nodes, there))
+            orbit = polished(Orbit(machine, word, periods, nodes, there))
             if orbit is None or not orbit.real:
                 step *= 0.5
                 if step < NARROW:

@@ -9,10 +9,10 @@ import numpy as np
 
 from orbits.contacts.letters import HIT
 from orbits.declared.attractor import find_attractor, random_start
-from orbits.declared.orbit import DeclaredOrbit
 from orbits.flows.page.solving import SOLVED, newton
 from orbits.flows.page.stepper import TWO_PI, SimulationError
 from orbits.machines.page.machine import Machine
+from orbits.orbit import Orbit
 from orbits.starts.find import StartError
 from orbits.words.of_pages import PageWord
 
@@ -27,7 +27,7 @@ def find(
     periods: int = 1,
     guess: Any = None,
     parameters: Mapping[str, float] | None = None,
-) -> DeclaredOrbit:
+) -> Orbit:
     """Solve for the orbit with a word: from the guess, else among simulated attractors, else by Newton's method from random nodes.
 
     Parameters
@@ -42,7 +42,7 @@ def find(
 
     Returns
     -------
-    DeclaredOrbit
+    Orbit
         A real one where there is one.
 
     Raises
@@ -71,7 +71,7 @@ def find(
 
 def _from_guess(
     machine: Machine, word: PageWord, periods: int, guess: Any, params: np.ndarray
-) -> DeclaredOrbit | None:
+) -> Orbit | None:
     nodes = np.asarray(guess, dtype=float)
     shape = (max(1, len(word)), machine.size + 1)
     if nodes.shape != shape:
@@ -80,17 +80,17 @@ def _from_guess(
             f"guess has the shape {nodes.shape}; the word {word.text!r} needs {shape[0]} rows of {shape[1]} numbers: "
             f"{first}, {', '.join(machine.states)}"
         )
-    orbit = DeclaredOrbit(machine, word, periods, nodes, params)
+    orbit = Orbit(machine, word, periods, nodes, params)
     problem = orbit.system(symmetric=False)
-    u, _, residual, _ = newton(problem, problem.reduce(nodes), float(params[problem.index]))
+    u, _, residual, _ = newton(problem, problem.reduce(nodes), problem.value(params))
     if not residual < SOLVED:
         return None
-    return DeclaredOrbit(machine, word, periods, problem.expand(u), params)
+    return Orbit(machine, word, periods, problem.expand(u), params)
 
 
-def _aligned(orbit: DeclaredOrbit, word: PageWord) -> DeclaredOrbit | None:
+def _aligned(orbit: Orbit, word: PageWord) -> Orbit | None:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
-    images = [orbit] + ([orbit.mirror()] if orbit.machine.has_mirror(orbit.params) else [])
+    images = [orbit] + ([orbit.mirror()] if orbit.model.has_mirror(orbit.params) else [])
     for image in images:
         for place in range(max(1, len(word))):
             if image.word.rotate(place) == word:
@@ -100,7 +100,7 @@ def _aligned(orbit: DeclaredOrbit, word: PageWord) -> DeclaredOrbit | None:
 
 def _simulated(
     machine: Machine, word: PageWord, periods: int, params: np.ndarray
-) -> tuple[DeclaredOrbit | None, str]:
+) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     generator = np.random.default_rng(20)
     values = dict(zip(machine.parameter_names, map(float, params)))
@@ -124,7 +124,7 @@ def _simulated(
     return None, nearest
 
 
-def _shot(machine: Machine, word: PageWord, periods: int, params: np.ndarray) -> DeclaredOrbit | None:
+def _shot(machine: Machine, word: PageWord, periods: int, params: np.ndarray) -> Orbit | None:
     """Newton's method from simulated stretches and random nodes: the first real orbit, else the first proper one."""
     if len(word) > LONG:
         return None
@@ -141,7 +141,7 @@ def _shot(machine: Machine, word: PageWord, periods: int, params: np.ndarray) ->
         if not len(word):
             nodes[0, 0] = 0.0
         _onto_surfaces(machine, word, params, nodes)
-        orbit = polished_anywhere(DeclaredOrbit(machine, word, periods, nodes, params))
+        orbit = polished_anywhere(Orbit(machine, word, periods, nodes, params))
         if orbit is None or len(orbit.root().word) != len(word):
             continue
         if orbit.real:
@@ -152,15 +152,13 @@ def _shot(machine: Machine, word: PageWord, periods: int, params: np.ndarray) ->
     return fallback
 
 
-def polished_anywhere(orbit: DeclaredOrbit) -> DeclaredOrbit | None:
+def polished_anywhere(orbit: Orbit) -> Orbit | None:
     """The orbit that Newton's method finds from a guess, real or not."""
     problem = orbit.system(symmetric=False)
-    u, _, residual, _ = newton(
-        problem, problem.reduce(orbit.nodes), float(orbit.params[problem.index]), limit=25
-    )
+    u, _, residual, _ = newton(problem, problem.reduce(orbit.nodes), problem.value(orbit.params), limit=25)
     if not residual < SOLVED:
         return None
-    return DeclaredOrbit(orbit.machine, orbit.word, orbit.periods, problem.expand(u), orbit.params)
+    return Orbit(orbit.model, orbit.word, orbit.periods, problem.expand(u), orbit.params)
 
 
 def _onto_surfaces(machine: Machine, word: PageWord, params: np.ndarray, nodes: np.ndarray) -> None:

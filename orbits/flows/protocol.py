@@ -1,4 +1,22 @@
-"""What a flow, the motion between two events, is asked about, and what a simulator of it answers.
+"""What happens between two events: one protocol, fulfilled by closed forms (`orbits.flows.native`) and by flights on a page (`orbits.flows.page`).
+
+The solving half, in words
+--------------------------
+1. A *node* is an event in as many numbers as a motion has unknowns there: the phase (of a self-excited machine the duration of the flight
+   that follows), then coordinates on the event's surface or the states after it, as the flow likes. The mirror image of a node has all but
+   the first with the other sign (`image`: positions are counted from the middle between the walls); a motion is the same after a turn of 2 pi in the first.
+2. `equations` are F(u, p) = 0 for the cycles with one word: sizes, units, kernels (`contvines.problems.protocol`) with Newton's method and a
+   look at one solution beside them (`Equations`). They know how unknowns and nodes go together and say which margin to follow along a locus.
+   Margins come as the word's alphabet orders them (`Alphabet.watched`).
+3. `loose` are the entries of a node along which any motion with a word may be shifted as a whole.
+4. `sample` has a motion over time, `positions` what no impulse moves, at equal phases from phase zero on, shape (m, c): motions are compared
+   by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong.
+   `strobed` has a motion without events once per period.
+5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first. `described` is what JSON has of events.
+6. At a border, `vanishing` says what the vanishing margin watches, where, and what the laws of the contacts need to know of it; `placed` are
+   the nodes of the events that they propose; `without_events` the node of a motion that has lost its last event (None: that is at rest).
+   `restitution` is that of an impact. Of equations, `approach` is the speed with which an impact leaves its wall, and `through_flights` are the
+   derivatives of a round's flights (with the mirror, where a round is half a cycle).
 
 The stepping half, in words
 ---------------------------
@@ -21,11 +39,12 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
+from orbits.contacts.changes import Change, Site
 
 
 class Motion(Protocol):
@@ -144,3 +163,153 @@ def later(
     except SimulationError:
         return np.full(len(point), np.nan)
     return simulator.point
+
+
+FIRST = 2e-3  # size of what grows from nothing beyond a border: clock, or speed in the machine's own units
+
+
+class Vanishing(NamedTuple):
+    """What vanishes at a border.
+
+    Attributes
+    ----------
+    site : Site
+        The border orbit's word, seen from the event to which the margin belongs.
+    watched : int
+        Index of the contact that is met in the flight after the event, or one of `orbits.words.alphabet.Watch`.
+    touch : (float, ndarray) or None
+        Where in the flight: clock ahead of the event before, and the flow's own coordinates there.
+    """
+
+    site: Site
+    watched: int
+    touch: tuple[float, np.ndarray] | None = None
+
+
+class Approach(NamedTuple):
+    """The speed with which an impact leaves its wall, in units of the unknowns, and how it depends on them.
+
+    Attributes
+    ----------
+    speed : float
+    slopes : ndarray, shape (n,)
+        By the entries of the node.
+    by_parameter : float
+    push : ndarray, shape (n,)
+        Direction of the node in which it is changed.
+    """
+
+    speed: float
+    slopes: np.ndarray
+    by_parameter: float
+    push: np.ndarray
+
+
+class Equations(Protocol):
+    """The equations of the cycles with one word, against one parameter.
+
+    Attributes
+    ----------
+    length, dimension, n_multipliers, n_margins : int
+        Unknown nodes (half the word's, of a symmetric cycle), unknowns, multipliers, margins.
+    twist, shift : float
+        Closure: the first node returns with its phase plus `shift`, all else times `twist`.
+    movable : bool
+        Whether solutions may be shifted as a whole, but for the mirror that holds them.
+    period_shift : float array (N,) or None
+        What a turn of the forcing adds to the unknowns.
+    path : float array (2, P)
+        How the numbers follow the parameter (`orbits.machines.path`).
+    units : (float, float)
+        Length and rate in which the unknowns are counted; `unit` is what one of each entry of the nodes is, shape (L, n).
+    began : float
+        The value of the parameter in the parameter vector.
+    data, kernels
+        What a continuation is handed.
+    """
+
+    @property
+    def length(self) -> int: ...
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def n_multipliers(self) -> int: ...
+    @property
+    def n_margins(self) -> int: ...
+    @property
+    def twist(self) -> float: ...
+    @property
+    def shift(self) -> float: ...
+    @property
+    def movable(self) -> bool: ...
+    @property
+    def period_shift(self) -> np.ndarray | None: ...
+    @property
+    def path(self) -> np.ndarray: ...
+    @property
+    def units(self) -> tuple[float, float]: ...
+    @property
+    def unit(self) -> np.ndarray: ...
+    @property
+    def params(self) -> np.ndarray: ...
+    @property
+    def data(self) -> Any: ...
+    @property
+    def kernels(self) -> Any: ...
+    @property
+    def began(self) -> float: ...
+    @property
+    def scratch(self) -> Any: ...
+    def workspace(self) -> Any: ...
+    def values(self, p: float | np.ndarray) -> np.ndarray: ...
+    def value(self, params: np.ndarray) -> float: ...
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray: ...
+    def reduce(self, nodes: np.ndarray) -> np.ndarray: ...
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray: ...
+    def smooth_margin(self, j: int) -> int: ...
+    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach: ...
+    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray | None] | None: ...
+
+
+class Flow(Protocol):
+    """What a flow answers; see the top of this module."""
+
+    @property
+    def angles(self) -> tuple[str, ...]: ...
+    @property
+    def resolution(self) -> float: ...
+
+    def position_entries(self, model: Any) -> tuple[int, ...]: ...
+
+    def equations(
+        self,
+        model: Any,
+        word: Any,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
+        units: tuple[float, float] | None = None,
+    ) -> Equations: ...
+
+    def loose(self, model: Any, word: Any) -> tuple[int, ...]: ...
+    def sample(self, motion: Motion, points: int) -> dict[str, np.ndarray]: ...
+    def positions(self, motion: Motion, instants: int) -> np.ndarray: ...
+    def image(self, motion: Motion) -> np.ndarray: ...
+    def strobed(self, motion: Motion) -> np.ndarray: ...
+    def measure_names(self, model: Any) -> tuple[str, ...]: ...
+    def default_measure(self, model: Any) -> str: ...
+    def measures(
+        self,
+        model: Any,
+        word: Any,
+        periods: int,
+        nodes: np.ndarray,
+        params: np.ndarray,
+        wanted: Sequence[str],
+    ) -> dict[str, np.ndarray]: ...
+    def described(self, motion: Motion) -> dict[str, Any]: ...
+    def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing | None: ...
+    def placed(self, motion: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray: ...
+    def restitution(self, motion: Motion, place: int) -> float: ...
+    def without_events(self, motion: Motion) -> np.ndarray | None: ...

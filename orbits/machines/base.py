@@ -45,6 +45,11 @@ class Model(Varying):
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
     name: ClassVar[str]
+    flow: ClassVar[str] = "native"
+    """What happens between two events: a name in `orbits.flows.catalogue`."""
+    forced: ClassVar[bool] = True
+    phase_rate: ClassVar[str] = "frequency"
+    """The parameter that is the forcing's frequency."""
     table: ClassVar[tuple[Parameter, ...]]
     node_names: ClassVar[tuple[str, ...]]
     default_parameter: ClassVar[str]
@@ -173,6 +178,18 @@ class Model(Varying):
         """Entry `name` of a parameter vector, or that column of many of them."""
         j = cls.parameter_names.index(name)
         return params[j] if params.ndim == 1 else params[..., j]
+
+    def check_value(self, name: str, value: float) -> None:
+        """Refuse a value that a parameter cannot have.
+
+        Raises
+        ------
+        ParameterError
+            Naming the parameter, the value and what would do.
+        """
+        for entry in self.settable:
+            if entry.name == name:
+                entry.number(value)
 
     # ------------------------------------------------------------------ mechanics
     def shakes(self, name: str) -> bool:
@@ -332,8 +349,8 @@ class Model(Varying):
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
         return above("find")(self, word, periods, guess, parameters, made=above("Orbit"))
 
-    def settings(self) -> dict[str, Any]:
-        """The machine's own fields by name, ready for JSON."""
+    def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
+        """The machine's own fields by name, ready for JSON; those of a page are its parameters, at `params` where they are given."""
         return {"name": self.name} | {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def changed(self, **values: Any) -> Self:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -62,3 +63,9 @@ def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, 
     (at_left, at_right), (by_left, by_right) = model.walls(params), model.restitutions(params)
     walls = np.where(left, at_left[:, None], at_right[:, None])
     return hits, walls, np.where(left, by_left[:, None], by_right[:, None])
+
+
+def events_of(motion: Any) -> EventTable:
+    """What happens at the events of one motion (its model, word, nodes and params); arrays of shape (L,)."""
+    table = event_table(motion.model, motion.word, motion.nodes[None], motion.params[None])
+    return EventTable(**{name: values[0] for name, values in vars(table).items()})

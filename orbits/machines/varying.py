@@ -7,7 +7,7 @@ A machine whose numbers are all its own varies one of them at a time; a machine 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -20,9 +20,10 @@ from orbits.machines.path import single
 class Varying:
     """The part of a machine (`orbits.machines.base.Model`) that knows what may vary."""
 
+    table: ClassVar[tuple[Parameter, ...]] = ()
+
     if TYPE_CHECKING:
         name: str
-        table: tuple[Parameter, ...]
         parameter_names: tuple[str, ...]
 
         def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray: ...
@@ -80,6 +81,10 @@ class Varying:
     def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
         """What one of these coordinates (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; none here."""
         return {}
+
+    def middle(self, params: np.ndarray) -> Any:
+        """The position about which mirror images are taken."""
+        return 0.0
 
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
         """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.

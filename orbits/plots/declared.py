@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from orbits.declared.orbit import DeclaredOrbit
+    from orbits.orbit import Orbit
 
 MARKS = "osD^v<>Ph*Xd"
 COLOURS = (ORBIT, "#b5531c", "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
@@ -24,7 +24,7 @@ COLOURS = (ORBIT, "#b5531c", "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
 
 @hinting
 def portrait(
-    orbit: DeclaredOrbit,
+    orbit: Orbit,
     points: int = 1200,
     *,
     axes: Axes | Sequence[Axes] | None = None,
@@ -37,7 +37,7 @@ def portrait(
 
     Parameters
     ----------
-    orbit : DeclaredOrbit
+    orbit : Orbit
     points : int
         Samples over the period.
     axes : Axes or two of them, optional
@@ -51,7 +51,7 @@ def portrait(
     style : str or mapping, optional
         A style or rcParams of matplotlib's that come before the house's.
     """
-    names = list(orbit.machine.states)
+    names = list(orbit.model.states)
     motion = orbit.sample(points)
     with styled(style):
         if axes is None:
@@ -80,16 +80,16 @@ def portrait(
     return figure
 
 
-def scene(orbit: DeclaredOrbit, points: int = 120) -> dict[str, Any]:
+def scene(orbit: Orbit, points: int = 120) -> dict[str, Any]:
     """Curves of one period as plain numbers, as `orbits.plots.scene.scene` has them; the animation is that of `track`.
 
     Parameters
     ----------
-    orbit : DeclaredOrbit
+    orbit : Orbit
     points : int
         About how many samples.
     """
-    motion, names = orbit.sample(points), list(orbit.machine.states)
+    motion, names = orbit.sample(points), list(orbit.model.states)
     x, y = names[0], names[1] if len(names) > 1 else names[0]
     clock = _clock(orbit, motion)
     starts = _starts(orbit, motion, clock)
@@ -111,23 +111,23 @@ def scene(orbit: DeclaredOrbit, points: int = 120) -> dict[str, Any]:
     }
 
 
-def _time(orbit: DeclaredOrbit) -> str:
-    return "forcing periods" if orbit.machine.forced else "time"
+def _time(orbit: Orbit) -> str:
+    return "forcing periods" if orbit.model.forced else "time"
 
 
-def _clock(orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> np.ndarray:
-    return motion["phase"] / (2.0 * np.pi) if orbit.machine.forced else motion["time"]
+def _clock(orbit: Orbit, motion: dict[str, np.ndarray]) -> np.ndarray:
+    return motion["phase"] / (2.0 * np.pi) if orbit.model.forced else motion["time"]
 
 
-def _starts(orbit: DeclaredOrbit, motion: dict[str, np.ndarray], clock: np.ndarray) -> list[Any]:
+def _starts(orbit: Orbit, motion: dict[str, np.ndarray], clock: np.ndarray) -> list[Any]:
     """When each event happens."""
     return [clock[np.searchsorted(motion["segment"], i)] for i in range(len(orbit.word))]
 
 
-def _phase(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray], x: str, y: str) -> None:
+def _phase(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray], x: str, y: str) -> None:
     axes.plot(motion[x], motion[y], color=ORBIT)
     letters = dict.fromkeys(orbit.word.events)
-    columns = [1 + orbit.machine.states.index(name) for name in (x, y)]
+    columns = [1 + orbit.model.states.index(name) for name in (x, y)]
     for mark, letter in zip(MARKS, letters):
         places = [i for i, event in enumerate(orbit.word.events) if event == letter]
         here = orbit.nodes[places][:, columns]
@@ -135,9 +135,9 @@ def _phase(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray], x: s
     axes.set(xlabel=x, ylabel=y)
 
 
-def _history(axes: Axes, orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> None:
+def _history(axes: Axes, orbit: Orbit, motion: dict[str, np.ndarray]) -> None:
     clock = _clock(orbit, motion)
-    for name, colour in zip(orbit.machine.states, COLOURS * 3):
+    for name, colour in zip(orbit.model.states, COLOURS * 3):
         axes.plot(clock, motion[name], color=colour, label=name)
     for where, letter in zip(_starts(orbit, motion, clock), orbit.word.events):
         axes.axvline(where, color="#bdbdbd", lw=0.7, zorder=0)

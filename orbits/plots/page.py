@@ -14,7 +14,7 @@ def page(orbit: Any) -> str:
 
     Parameters
     ----------
-    orbit : Orbit or DeclaredOrbit
+    orbit : Orbit
     """
     multipliers = ", ".join(
         f"{m.real:.8g}" + (f" {'+' if m.imag > 0 else '-'} {abs(m.imag):.8g}i" if m.imag else "")

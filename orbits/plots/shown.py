@@ -82,7 +82,7 @@ def quantities(orbit: Any, digits: int = 6) -> dict[str, str]:
 
     Parameters
     ----------
-    orbit : Orbit or DeclaredOrbit
+    orbit : Orbit
     digits : int
     """
     model = getattr(orbit, "model", None)

@@ -9,12 +9,12 @@ import numpy as np
 from orbits.machines.page.formulas import Named, NoPhase, States
 
 if TYPE_CHECKING:
-    from orbits.declared.orbit import DeclaredOrbit
+    from orbits.orbit import Orbit
 
 ALIKE = 0.02  # a state is the rate of another one if it is within this share of it
 
 
-def track(orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
+def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
     """Bodies and walls over a period, on one line; None where no state is the rate of another one.
 
     A body is a state whose rate is a state, too. A wall stands at its gap from the body that it pushes, on the side
@@ -22,7 +22,7 @@ def track(orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> dict[str, Any]
 
     Parameters
     ----------
-    orbit : DeclaredOrbit
+    orbit : Orbit
     motion : dict
         Its `sample`.
 
@@ -32,12 +32,12 @@ def track(orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> dict[str, Any]
         "bodies": positions by the states' names; "walls": "name", "at" and "side" (+1: beyond larger positions) of each;
         "periods".
     """
-    rates = _rates(orbit.machine.states, motion)
+    rates = _rates(orbit.model.states, motion)
     if not rates:
         return None
     bodies = {velocity: place for place, velocity in rates.items()}
     walls = []
-    for contact in orbit.machine.contacts:
+    for contact in orbit.model.contacts:
         pushed = [name for name in getattr(contact, "push", {}) if name in bodies]
         if len(pushed) == 1:
             gaps = _gaps(orbit, contact, motion)
@@ -73,19 +73,19 @@ def _rates(states: tuple[str, ...], motion: dict[str, np.ndarray]) -> dict[str, 
     return found
 
 
-def _states(orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> list[tuple[States, Any]]:
-    names = orbit.machine.states
+def _states(orbit: Orbit, motion: dict[str, np.ndarray]) -> list[tuple[States, Any]]:
+    names = orbit.model.states
     rows = np.column_stack([motion[name] for name in names])
-    phases = motion["phase"] if orbit.machine.forced else [NoPhase()] * len(rows)
+    phases = motion["phase"] if orbit.model.forced else [NoPhase()] * len(rows)
     return [(States(names, row), phase) for row, phase in zip(rows, phases, strict=True)]
 
 
-def _gaps(orbit: DeclaredOrbit, contact: Any, motion: dict[str, np.ndarray]) -> np.ndarray:
+def _gaps(orbit: Orbit, contact: Any, motion: dict[str, np.ndarray]) -> np.ndarray:
     p = Named("p", orbit.parameters)
     return np.array([float(contact.gap(state, phase, p)) for state, phase in _states(orbit, motion)])
 
 
-def _number(push: Any, orbit: DeclaredOrbit, motion: dict[str, np.ndarray]) -> float:
+def _number(push: Any, orbit: Orbit, motion: dict[str, np.ndarray]) -> float:
     """What a unit impulse does to a velocity, at the start of the period."""
     if callable(push):
         state, phase = _states(orbit, motion)[0]

@@ -13,13 +13,13 @@ from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.declared.attractor import RETURNED, look, of_record, returning, skip
-from orbits.declared.orbit import DeclaredOrbit
 from orbits.declared.sweep import sweep
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.flows.protocol import Record
 from orbits.machines.notation import STARTS
 from orbits.machines.page.machine import Machine
+from orbits.orbit import Orbit
 from orbits.population.sorting import Sorting
 from orbits.simulation.page import PageSimulator, PageTrajectory, collect, letter_of, outside
 
@@ -231,7 +231,7 @@ class PageFleet:
                 best = marks, gap
         return best
 
-    def _add(self, orbit: DeclaredOrbit, i: int, stepper: Stepper, sorting: Sorting) -> None:
+    def _add(self, orbit: Orbit, i: int, stepper: Stepper, sorting: Sorting) -> None:
         root = orbit.root()
         kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
         place, problem, u = sorting.known(root, kind, root.periods)
@@ -248,14 +248,14 @@ class PageFleet:
         marks, _ = self._nearest(stepper)
         return marks is not None and marks.place == place and marks.mirrored
 
-    def _moves(self, orbit: DeclaredOrbit) -> bool:
+    def _moves(self, orbit: Orbit) -> bool:
         """Whether any state of a motion without events changes."""
         return bool(
             np.any(np.ptp(np.array([orbit.sample(50)[s] for s in self.machine.states]), axis=1) > 1e-9)
         )
 
-    def _marks(self, place: int, orbit: DeclaredOrbit, mirrored: bool) -> _Marks:
-        loose = orbit.system(symmetric=False).loose
+    def _marks(self, place: int, orbit: Orbit, mirrored: bool) -> _Marks:
+        loose = [entry - 1 for entry in orbit.flow.loose(orbit.model, orbit.word)]
         states = orbit.nodes[:, 1:]
         rows = states
         if self.machine.forced:

@@ -22,7 +22,7 @@ from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special
 from orbits.proofs.resting import prove_stuck
 from orbits.proofs.varying import Varying
 from orbits.words import Word
-from orbits.words.margins import PER_NODE, margin_name
+from orbits.words.margins import margin_name
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
 NARROW = 1e-12  # half a tile about a special point, from which floats can go on
@@ -45,6 +45,7 @@ def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
     ProofError
         If the machine has no flights in closed form, or a parameter is unknown or out of range.
     """
+    _refuse_pages(orbit.model)
     given = _parameters(orbit.model.name, _numbers(orbit), parameters)
     if not len(orbit.word):
         return prove_stuck(orbit.model.name, given, bits or 160)
@@ -77,6 +78,7 @@ def of_point(
     margin : int, optional
         At a border the index of the margin that vanishes.
     """
+    _refuse_pages(problem.model)
     orbit = problem.orbit(u, p)
     if kind in PLAIN:
         return of_orbit(orbit, bits)
@@ -96,7 +98,7 @@ def of_point(
     if kind not in CRITICAL:
         if margin is None:
             raise ProofError(f"a {kind} needs the margin that vanishes there")
-        vanishing = (_margin(word, margin), margin // PER_NODE)
+        vanishing = (_margin(word, margin), margin // len(word.alphabet.columns))
     return prove_special(
         kind, motif, nodes[: len(motif)], given, varying, float(p), margin=vanishing, bits=bits
     )
@@ -130,6 +132,7 @@ def of_branch(
     ProofError
         If nothing of the branch lies in the interval, or the problem has no equations to prove.
     """
+    _refuse_pages(problem.model)
     if not len(problem.word):
         raise ProofError(
             "the absorber is stuck throughout: prove single orbits and special points of this branch"
@@ -208,9 +211,17 @@ def _critical(
     return ("fold" if kind == "branch-point" else kind), word, periods, nodes, half
 
 
+def _refuse_pages(model: Any) -> None:
+    if model.flow == "page":
+        raise ProofError(
+            f"the machine {model.name!r} offers no proofs, for flights on a page have no closed form; "
+            "the built-in machines do"
+        )
+
+
 def _margin(word: Word, index: int) -> str:
     name = margin_name(word, index)
-    return "reversal" if word.frictionless and index % PER_NODE == 0 else name
+    return "reversal" if word.frictionless and index % len(word.alphabet.columns) == 0 else name
 
 
 def _numbers(orbit: Any) -> dict[str, float]:

@@ -20,7 +20,7 @@ def closed_orbits(model: Model, params: np.ndarray, made: Any) -> Iterator[Any]:
     model : Model
     params : float array (P,)
     made : type
-        Of what is yielded: a kind of `orbits.cycles.solution.Solution`.
+        Of what is yielded: a kind of `orbits.orbit.Orbit`.
     """
     rest = made.at_rest(model, params)
     if rest.real:

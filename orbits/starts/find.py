@@ -11,9 +11,10 @@ from typing import Any, TypeVar
 import numpy as np
 
 from orbits.attractors.recurrence import find_attractor
-from orbits.cycles.solution import Solution
-from orbits.flows.native.cycle_equations import equations, solved_at
+from orbits.flows.native.cycle_equations import equations
+from orbits.flows.solving import solved_at
 from orbits.machines.base import Model
+from orbits.orbit import Orbit
 from orbits.starts.reading import DirectionError, directed, readings
 from orbits.words import Word
 
@@ -31,7 +32,7 @@ class StartError(ValueError):
     """No orbit was found; the sentence says what was tried and what the simulator finds there."""
 
 
-Found = TypeVar("Found", bound=Solution)
+Found = TypeVar("Found", bound=Orbit)
 
 
 def polish(orbit: Found, limit: int = 30) -> Found | None:
@@ -79,7 +80,7 @@ def find(
     periods: int = 1,
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
     parameters: Mapping[str, float] | None = None,
-    made: Any = Solution,
+    made: Any = Orbit,
 ) -> Any:
     """The orbit of `model` with this word.
 
@@ -96,7 +97,7 @@ def find(
     parameters : mapping
         Parameters that are no fields of the machine, or replace them.
     made : type
-        Of what is returned: a `Solution`, or a kind of one.
+        Of what is returned: a `Orbit`, or a kind of one.
 
     Raises
     ------
@@ -169,7 +170,7 @@ def find(
     )
 
 
-def _from_guess(first: Solution) -> Solution | None:
+def _from_guess(first: Orbit) -> Orbit | None:
     """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
     mirrored = first.model.has_mirror(first.params, first.model.default_parameter)
     others = [replace(first, word=reading) for reading in readings(first.word, mirrored)]
@@ -194,7 +195,7 @@ def _warn(guess: Any, word: Word, instead: str) -> None:
         )
 
 
-def _warn_virtual(orbit: Solution) -> None:
+def _warn_virtual(orbit: Orbit) -> None:
     if orbit.real:
         return
     least = min(orbit.margins, key=lambda margin: margin.value)
@@ -209,7 +210,7 @@ def _warn_virtual(orbit: Solution) -> None:
 
 def _repeated(
     model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None, made: Any
-) -> Solution | None:
+) -> Orbit | None:
     """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
     times = math.gcd(word.repetitions, periods)
     if times == 1:
@@ -222,7 +223,7 @@ def _repeated(
         return None
 
 
-def _stuck(orbit: Solution) -> Solution:
+def _stuck(orbit: Orbit) -> Orbit:
     if not orbit.real:
         way = "use a smaller amplitude or forcing, or the word 'ss' for stick-slip"
         if not orbit.model.has_mirror(orbit.params):  # on a slope it may slide down and lie on a wall
@@ -233,7 +234,7 @@ def _stuck(orbit: Solution) -> Solution:
     return orbit
 
 
-def _proper(orbit: Solution) -> bool:
+def _proper(orbit: Orbit) -> bool:
     """Whether time runs forward through the nodes."""
     phases = np.append(orbit.nodes[:, 0], orbit.nodes[0, 0] + 2.0 * np.pi * orbit.periods)
     return bool(np.all(np.diff(phases) > -1e-9))
@@ -241,7 +242,7 @@ def _proper(orbit: Solution) -> bool:
 
 def _simulated(
     model: Model, word: Word, periods: int, params: np.ndarray, made: Any
-) -> tuple[Solution | None, str]:
+) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     mirrored = model.has_mirror(params)
     target = word.canonical(mirrored)
@@ -274,7 +275,7 @@ def _simulated(
     return None, nearest
 
 
-def _aligned(orbit: Solution, word: Word) -> Solution:
+def _aligned(orbit: Orbit, word: Word) -> Orbit:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
     images = (orbit, orbit.mirror()) if orbit.model.has_mirror(orbit.params) else (orbit,)
     for candidate in images:
@@ -284,7 +285,7 @@ def _aligned(orbit: Solution, word: Word) -> Solution:
     return orbit
 
 
-def _random(model: Model, word: Word, periods: int, params: np.ndarray, made: Any) -> Solution | None:
+def _random(model: Model, word: Word, periods: int, params: np.ndarray, made: Any) -> Orbit | None:
     """Newton's method from random nodes, where the machine has any: the first real orbit found, else the first proper one."""
     if len(word) > LONG:
         return None

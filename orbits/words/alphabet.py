@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import IntEnum
 from functools import cached_property
 from typing import Any
 
@@ -29,6 +30,13 @@ from orbits.contacts.dry_friction import ABSENT, SLIDE_BACK, SLIDE_ON, FrictionL
 from orbits.contacts.letters import NAMES as KINDS
 from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.wall import FREE, WallLaw
+
+
+class Watch(IntEnum):
+    """What a margin of an event watches, where it is no contact between events (those are 0, 1, ...)."""
+
+    STRENGTH = -1
+    DURATION = -2
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +60,9 @@ class Alphabet:
         The contact whose mode alone is written; the others have one mode only. Left out: one entry per contact.
     without : frozenset of int
         Frictions that are absent whatever the mode says (with `alone`).
+    watched : tuple of int
+        What each of the margins per event watches: the index of a contact, in the flight after the event, or one of `Watch`. Left out: every
+        contact, the event's strength, the flight's duration.
     """
 
     contacts: tuple[Any, ...]
@@ -61,6 +72,12 @@ class Alphabet:
     rides: frozenset[tuple[int, int]] = frozenset()
     alone: int | None = None
     without: frozenset[int] = frozenset()
+    watched: tuple[int, ...] = ()
+
+    @cached_property
+    def columns(self) -> tuple[int, ...]:
+        """`watched`, or what stands for it."""
+        return self.watched or (*range(len(self.contacts)), Watch.STRENGTH, Watch.DURATION)
 
     @cached_property
     def letters(self) -> dict[str, Letter]:
@@ -152,9 +169,11 @@ _SHAKEN: dict[str, Any] = {
     "flips": {(LEFT, FLOOR): SLIDE_BACK, (RIGHT, FLOOR): SLIDE_ON},
     "alone": FLOOR,
 }
-SHAKEN = Alphabet(**_SHAKEN)
-"""Of the machines with an absorber in a shaken cavity."""
-FRICTIONLESS = Alphabet(**_SHAKEN, without=frozenset((FLOOR,)))
+SHAKEN = Alphabet(**_SHAKEN, watched=(FLOOR, Watch.STRENGTH, LEFT, Watch.DURATION))
+"""Of the machines with an absorber in a shaken cavity; one margin watches both walls."""
+FRICTIONLESS = Alphabet(
+    **_SHAKEN, without=frozenset((FLOOR,)), watched=(LEFT, Watch.STRENGTH, LEFT, Watch.DURATION)
+)
 """The same without friction: flights may reverse freely, and only impacts are events."""
 
 LETTERS = "".join(SHAKEN.letters)

@@ -46,6 +46,19 @@ class CyclicWord(ABC):
     def text(self) -> str:
         """As it is written in studies."""
 
+    def spelled(self, mirror: bool = True) -> str:
+        """The word as people are told it; any reading of it may be told as it stands."""
+        return self.text
+
+    @cached_property
+    def impact_free(self) -> bool:
+        """Whether no wall is hit."""
+        return self.impacts == 0
+
+    def describe(self) -> dict[str, Any]:
+        """Events and modes, ready for JSON."""
+        return {"events": list(self.events), "modes": [list(mode) for mode in self.modes]}
+
     def letter(self, place: int) -> Letter:
         """The letter of an event."""
         return self.alphabet.letters[self.events[place % len(self.events)]]

@@ -1,7 +1,7 @@
 """Margins of admissibility: what makes an orbit real, and which border a vanishing margin is.
 
-Four numbers watch each node and the segment after it; the compiled kernels compute them (`margins` of each model), this
-module gives them names, as the laws of the contacts have them.
+Some numbers watch each event and the flight after it (`Alphabet.watched` says what); flows compute them, this module gives them
+names, as the laws of the contacts have them.
 """
 
 from __future__ import annotations
@@ -10,13 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from orbits.contacts.letters import BORDERS, STRENGTH
-from orbits.contacts.wall import FREE
-from orbits.words import Word
-from orbits.words.alphabet import FLOOR, LEFT
-
-PER_NODE = 4
-FLIGHT, EVENT, WALL, DURATION = range(PER_NODE)
+from orbits.contacts.letters import BORDERS, HIT, STRENGTH, STROBE
+from orbits.words.alphabet import Watch
+from orbits.words.cyclic import CyclicWord
 
 
 @dataclass(frozen=True)
@@ -28,7 +24,8 @@ class Margin:
     kind : str
         What is watched: ``flight`` (smallest relative speed inside it), ``wall`` (distance kept from the walls),
         ``approach`` (impact speed), ``turn`` (excess of the shaking over friction), ``stick`` (reserve of friction),
-        ``slip`` (rate at which friction gives way), ``hold`` (time to the slip) or ``duration``.
+        ``slip`` (rate at which friction gives way), ``hold`` (time to the slip, or reserve until then), ``push`` (of a wall that holds),
+        ``switch`` (distance from its surface, or rate there) or ``duration``.
     segment : int
         Index of the event it belongs to; a flight is counted with the event before it.
     value : float
@@ -40,37 +37,50 @@ class Margin:
     value: float
 
 
-def margin_name(word: Word, index: int) -> str:
+def place_of(word: CyclicWord, index: int) -> tuple[int, int]:
+    """The event to which margin `index` belongs, and what it watches: a contact, or one of `Watch`."""
+    place, column = divmod(index, len(word.alphabet.columns))
+    return place, word.alphabet.columns[column]
+
+
+def index_of(word: CyclicWord, place: int, watch: int) -> int:
+    """The margin of an event that watches this."""
+    columns = word.alphabet.columns
+    return place * len(columns) + columns.index(watch)
+
+
+def margin_name(word: CyclicWord, index: int) -> str:
     """What margin `index` of an orbit with this word watches; see `Margin`."""
-    place, column = divmod(index, PER_NODE)
-    if not len(word):
-        return "stick"  # the reserve of friction
-    contacts = word.alphabet.contacts
-    if column == EVENT:
-        return STRENGTH[word.letter(place).kind]
-    if column == DURATION:
+    if not word.modes:
+        return "stick"  # at rest: the reserve of friction
+    place, watch = place_of(word, index)
+    if watch == Watch.DURATION:
         return "duration"
-    if column == WALL or word.frictionless:
-        return contacts[LEFT].watched(FREE)
-    return contacts[FLOOR].watched(word.mode(place))
+    if watch == Watch.STRENGTH:
+        return STRENGTH[word.letter(place).kind if len(word) else STROBE]
+    return word.alphabet.contacts[watch].watched(word.alphabet.entry(word.mode(place), watch))
 
 
-def border_kind(word: Word, index: int) -> str:
+def border_kind(word: CyclicWord, index: int) -> str:
     """The kind of border that is met where margin `index` vanishes."""
-    name, place = margin_name(word, index), index // PER_NODE
-    if name == "duration":
-        return word.alphabet.together(word.letter(place), word.letter(place + 1))
-    return BORDERS[name]
+    name = margin_name(word, index)
+    if name != "duration":
+        return BORDERS[name]
+    if not len(word):
+        return "corner"
+    place, _ = place_of(word, index)
+    return word.alphabet.together(word.letter(place), word.letter(place + 1))
 
 
-def approaches_of(word: Word, margins: np.ndarray) -> np.ndarray:
+def approaches_of(word: CyclicWord, margins: np.ndarray) -> np.ndarray:
     """The margins of the impacts, their speeds, from those of all events of a cycle, or of half of them."""
-    own = margins[EVENT::PER_NODE]
-    return own[word.codes[: own.size] < 2]
+    columns = word.alphabet.columns
+    own = margins[columns.index(Watch.STRENGTH) :: len(columns)] if len(word) else margins[:0]
+    return own[[word.letter(i).kind == HIT for i in range(own.size)]]
 
 
-def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
-    """What margins of one are in a length and a rate, shape (4 L,)."""
+def margin_units(word: CyclicWord, units: tuple[float, float]) -> np.ndarray:
+    """What margins of one are in a length and a rate, an entry per margin."""
     length, rate = units
     sizes = {
         "flight": length * rate,
@@ -82,15 +92,16 @@ def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
         "hold": 1.0 / rate,
         "duration": 1.0 / rate,
     }
+    count = len(word.alphabet.columns) * max(len(word), 1)
     if not len(word) or (length == 1.0 and rate == 1.0):
-        return np.ones(max(PER_NODE * len(word), 1))
-    return np.array([sizes[margin_name(word, index)] for index in range(PER_NODE * len(word))])
+        return np.ones(count)
+    return np.array([sizes[margin_name(word, index)] for index in range(count)])
 
 
-def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
-    """The finite margins among `values`, shape (4 L,), with their names."""
+def named_margins(word: CyclicWord, values: np.ndarray) -> list[Margin]:
+    """The finite margins among `values` with their names."""
     return [
-        Margin(margin_name(word, index), index // PER_NODE, float(value))
+        Margin(margin_name(word, index), index // len(word.alphabet.columns), float(value))
         for index, value in enumerate(values)
         if np.isfinite(value)
     ]

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import IntEnum
 from typing import Any, TypeVar
 
 import numpy as np
 
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, STICK, SWITCH
+from orbits.words.alphabet import Watch
 from orbits.words.cyclic import CyclicWord
 
 W = TypeVar("W", bound=CyclicWord)
-
-
-class Watch(IntEnum):
-    """What a margin of an event watches, where it is no contact between events (those are 0, 1, ...)."""
-
-    STRENGTH = -1
-    DURATION = -2
 
 
 def changes_at(site: Site, watched: int) -> list[Change]:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -144,17 +145,20 @@ class Word(CyclicWord):
                 parts.append(letter)
         return "".join(parts)
 
+    def describe(self) -> dict[str, Any]:
+        """Events and modes, ready for JSON."""
+        return {
+            "events": "".join(self.events),
+            "modes": list(self.modes),
+            "frictionless": self.frictionless,
+        }
+
     def spelled(self, mirror: bool = True) -> str:
         """The word as people are told it: one spelling for one motion, from whichever event and in whichever mirror image.
 
         That of `canonical`, without signs where the letters alone mean this motion.
         """
         return _spelled(self.canonical(mirror), mirror)
-
-    @cached_property
-    def impact_free(self) -> bool:
-        """Whether no wall is hit: the mean position of such a motion is free."""
-        return self.impacts == 0
 
     @cached_property
     def codes(self) -> np.ndarray:

@@ -14,12 +14,13 @@ import numpy as np
 from orbits.arguments import Workspace, cycle_data, workspace
 from orbits.flows.native.kernels import assemble
 from orbits.flows.native.rest_equations import RestEquations
+from orbits.flows.plain_kernels import PLAIN
+from orbits.flows.protocol import Approach
 from orbits.machines.base import Model
 from orbits.machines.path import along
 from orbits.words import Word
-from orbits.words.margins import PER_NODE
-
-PLAIN = (1.0, 1.0)
+from orbits.words.alphabet import LEFT, Watch
+from orbits.words.margins import index_of, margin_name
 
 _shared = lru_cache(maxsize=64)(workspace)
 
@@ -34,8 +35,8 @@ class Equations:
     dimension, n_multipliers, n_margins : int
     twist, shift : float
         Closure: the first node returns with its phase plus `shift` and all else times `twist`.
-    loose : bool
-        Whether the motion may be moved as a whole; `pinned` says how that is prevented.
+    movable : bool
+        Whether solutions may be shifted as a whole; of those that are not symmetric the mean position is pinned.
     units : (float, float)
         Length and rate in which the unknowns are counted; see `Model.natural_units`.
     data : CycleData
@@ -71,10 +72,11 @@ class Equations:
         self.length, self.dimension = length, length * n
         self.twist = -1.0 if symmetric else 1.0
         self.shift = np.pi * periods * (1 if symmetric else 2)
-        self.loose = word.impact_free
-        self.pinned = 0 if not self.loose else (2 if symmetric else 1)
-        self.n_multipliers = n - 1 if self.loose else n
-        self.n_margins = PER_NODE * length
+        self.word = word
+        pinned = 0 if not word.impact_free else (2 if symmetric else 1)
+        self.movable = pinned == 2  # a symmetric motion without impacts
+        self.n_multipliers = n - 1 if pinned else n
+        self.n_margins = len(word.alphabet.columns) * length
         self.period_shift = np.zeros(self.dimension)
         self.period_shift[::n] = 2.0 * np.pi
         self.codes = word.codes[:length]
@@ -86,7 +88,7 @@ class Equations:
             frame.path if self.units == PLAIN else frame.own_path,
             self.twist,
             self.shift,
-            self.pinned,
+            pinned,
             frame.active,
             frame.amounts,
             frame.law,
@@ -99,9 +101,13 @@ class Equations:
         """linearise, bordered, inspect, newton, examine of the model."""
         return assemble(self.model)
 
-    @cached_property
+    @property
     def began(self) -> float:
         """The value of the parameter that varies in the parameter vector."""
+        return self._began
+
+    @cached_property
+    def _began(self) -> float:
         return self.value(self.params)
 
     def workspace(self) -> Workspace:
@@ -120,6 +126,12 @@ class Equations:
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
+        if margin_name(self.word, j) != "hold":
+            return j
+        return index_of(self.word, j // len(self.word.alphabet.columns), Watch.DURATION)
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).
@@ -144,6 +156,32 @@ class Equations:
         if self.units != PLAIN:
             own /= self.unit[: self.length]
         return own.ravel()
+
+    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
+        """Of the impact at a place; the dependence on the parameter from a difference of size `near`."""
+        n, unit = self.model.node, self.unit[place]
+        node, own = (
+            u[place * n : (place + 1) * n] * unit,
+            float(unit[1]),
+        )  # the second entry of an impact's node is a speed
+        sign = 1.0 if self.word.letter(place).contact == LEFT else -1.0
+        cavity, slopes = self.model.cavity_speed(node, self.values(p))
+        beside, _ = self.model.cavity_speed(node, self.values(p + near))
+        cavity, beside = cavity / own, beside / own
+        by_node, push = -sign * slopes * unit / own, np.zeros(n)
+        by_node[1] += sign
+        push[1] = sign
+        return Approach(
+            sign * (float(u[place * n + 1]) - cavity), by_node, -sign * (beside - cavity) / near, push
+        )
+
+    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Derivatives of each flight's equations by the node before it and after it, the mirror in the last."""
+        row = np.empty(2 * self.n_multipliers + self.n_margins)
+        self.kernels.examine(self.data, u, p, self.scratch, row)
+        A, D = self.scratch.A, self.scratch.D.copy()
+        D[-1, :, 1:] *= self.twist
+        return A, D
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
@@ -217,17 +255,3 @@ def equations(
     if not len(word):
         return RestEquations(model, parameter, params)
     return Equations(model, word, int(periods), parameter, params, symmetric, units)
-
-
-def solved_at(
-    system: Equations | RestEquations, guess: np.ndarray, p: float, tolerance: float = 1e-12, limit: int = 40
-) -> tuple[np.ndarray, float]:
-    """Solution at a parameter value by Newton's method, and its residual (infinite if there is none)."""
-    border = np.zeros(system.dimension + 1)
-    border[-1] = 1.0
-    step, tangent = np.empty_like(border), np.empty_like(border)
-    u = guess.copy()
-    residual, _, _ = system.kernels.newton(
-        system.data, u, p, system.scratch, border, step, tangent, tolerance, limit
-    )
-    return u, float(residual)

@@ -18,6 +18,7 @@ from contvines.core.multipliers.periodic_schur import reference as multipliers
 from contvines.core.table import TableKernels, native_table
 from orbits.elimination import rearranged
 from orbits.elimination.block_cyclic import bordered
+from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines import path
 from orbits.machines.base import Model
 from orbits.words.alphabet import CODES
@@ -34,7 +35,7 @@ class NativeKernels(TableKernels):
     matrix = staticmethod(rearranged.matrix)
 
 
-class ReferenceKernels:
+class ReferenceKernels(PlainKernels):
     """Cycles of one model, in plain Python and numpy: what the native core is compared with.
 
     Parameters
@@ -43,11 +44,9 @@ class ReferenceKernels:
         `linearise`, `margins` and `unpin` of the model.
     """
 
-    compiled = False
     natural = True
     column = 3
     matrix = staticmethod(rearranged.matrix)
-    bordered = staticmethod(bordered)
     assign = staticmethod(path.assign)
     transpose = staticmethod(rearranged.transpose)
 
@@ -61,6 +60,12 @@ class ReferenceKernels:
                 return float(self.maps.linearise(data, u, p, work))
             except (ArithmeticError, ValueError):  # of functions in `math`, which have no infinity
                 return math.inf
+
+    def bordered(
+        self, data: Any, work: Any, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+    ) -> float:
+        """Block-cyclic elimination; see `orbits.elimination.block_cyclic`."""
+        return bordered(data, work, border, target, step, tangent)
 
     def flip(self, data: Any, work: Any, sign: float) -> None:
         """Turn the linearisation's closure round."""
@@ -94,43 +99,6 @@ class ReferenceKernels:
                 self.maps.margins(data, u, p, work, row[2 * count :])
             except (ArithmeticError, ValueError):
                 row[2 * count :] = math.nan
-
-    def newton(
-        self,
-        data: Any,
-        u: np.ndarray,
-        p: float,
-        work: Any,
-        border: np.ndarray,
-        step: np.ndarray,
-        tangent: np.ndarray,
-        tolerance: float,
-        limit: int,
-    ) -> tuple[float, int, float]:
-        """Newton's method; see `contvines.core.table.TableKernels.newton`."""
-        residual = self.linearise(data, u, p, work)
-        for iteration in range(limit):
-            sign = self.bordered(data, work, border, 0.0, step, tangent)
-            if sign == 0.0 or not np.isfinite(step).all():
-                return math.inf, iteration, p
-            length, share, best, trial = float(np.abs(step[:-1]).max()), 1.0, math.inf, u
-            while share > 0.01:
-                trial = u + share * step[:-1]
-                best = self.linearise(data, trial, p + share * step[-1], work)
-                if best < residual or length < 1e-7:
-                    break
-                share *= 0.5
-            u[:] = trial
-            p, residual = p + share * float(step[-1]), best
-            if length * share < tolerance or (residual < 1e-14 and length < 1e-9):
-                return residual, iteration + 1, p
-        return math.inf, limit, p
-
-    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
-        """Residual, and the row of `inspect`, of one solution."""
-        residual = self.linearise(data, u, p, work)
-        self.inspect(data, u, p, work, row)
-        return residual
 
 
 @cache

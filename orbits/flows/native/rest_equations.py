@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
+from orbits.flows.plain_kernels import PLAIN, PlainKernels
+from orbits.flows.protocol import Approach
 from orbits.machines.base import Model
 from orbits.machines.path import along, assign
 
-
-class RestKernels(NamedTuple):
-    """What a continuation, a locus of its border, and `newton` call."""
-
-    linearise: Any
-    bordered: Any
-    inspect: Any
-    newton: Any
-    examine: Any
-    compiled: bool = False
-    assign: Any = None
-    flip: None = None  # the unknowns hold no perturbations that could change sign
-    transpose: Any = None
-    column: int = 2
-    matrix: None = None
+RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Residual, Jacobian and derivative by the parameter."""
 
 
 class RestEquations:
@@ -31,7 +18,7 @@ class RestEquations:
 
     length, n_margins = 0, 1
     twist, shift = 1.0, 2.0 * np.pi
-    loose, pinned = False, 0
+    movable, units = False, PLAIN
     period_shift = None
     unit = np.ones((0, 1))  # there are no nodes
 
@@ -50,17 +37,17 @@ class RestEquations:
         return self.value(self.params)
 
     @property
-    def kernels(self) -> Any:
+    def kernels(self) -> RestKernels:
         """In plain Python: there are three equations."""
         return KERNELS
 
-    def workspace(self) -> tuple[np.ndarray, ...]:
+    def workspace(self) -> RestWork:
         """Residual, Jacobian and derivative with respect to the parameter."""
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
     @property
-    def scratch(self) -> tuple[np.ndarray, ...]:
+    def scratch(self) -> RestWork:
         """A workspace for single calls."""
         return self.workspace()
 
@@ -71,6 +58,17 @@ class RestEquations:
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin itself: there is one."""
+        return j
+
+    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
+        """There are no impacts."""
+        raise TypeError("at rest there are no impacts")
+
+    def through_flights(self, u: np.ndarray, p: float) -> None:
+        """There are no flights."""
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """No nodes."""
@@ -85,66 +83,56 @@ class RestEquations:
         return np.asarray(spectrum, dtype=complex)
 
 
-def _linearise(data: RestEquations, u: np.ndarray, p: float, work: tuple[np.ndarray, ...]) -> float:
-    F, J, Q = work
-    K, f = data.model.rest.equations(data.values(p))
-    J[:] = K
-    F[:] = K @ u - f
-    h = 1e-6 * (abs(p) or 1.0)  # whatever the unit of p
-    ahead, f_ahead = data.model.rest.equations(data.values(p + h))
-    behind, f_behind = data.model.rest.equations(data.values(p - h))
-    Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)
-    return float(np.abs(F).max())
+class RestKernels(PlainKernels):
+    """What a continuation, a locus of its border, and Newton's method call."""
+
+    column = 2
+    flip = None  # the unknowns hold no perturbations that could change sign
+    matrix = None
+    assign = staticmethod(assign)
+
+    def linearise(self, data: RestEquations, u: np.ndarray, p: float, work: RestWork) -> float:
+        """F = K u - f, its Jacobian K, and its derivative by the parameter from central differences."""
+        F, J, Q = work
+        K, f = data.model.rest.equations(data.values(p))
+        J[:] = K
+        F[:] = K @ u - f
+        h = 1e-6 * (abs(p) or 1.0)  # whatever the unit of p
+        ahead, f_ahead = data.model.rest.equations(data.values(p + h))
+        behind, f_behind = data.model.rest.equations(data.values(p - h))
+        Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)
+        return float(np.abs(F).max())
+
+    def bordered(
+        self,
+        data: RestEquations,
+        work: RestWork,
+        border: np.ndarray,
+        target: float,
+        step: np.ndarray,
+        tangent: np.ndarray,
+    ) -> float:
+        """Dense elimination."""
+        F, J, Q = work
+        matrix = np.vstack([np.column_stack([J, Q]), border])
+        sides = np.column_stack([np.r_[-F, target], np.r_[np.zeros_like(F), 1.0]])
+        sign = float(np.linalg.slogdet(matrix)[0])
+        solution = np.linalg.solve(matrix, sides) if sign else np.linalg.lstsq(matrix, sides, rcond=None)[0]
+        step[:], tangent[:] = solution[:, 0], solution[:, 1]
+        return sign
+
+    def inspect(self, data: RestEquations, u: np.ndarray, p: float, work: RestWork, row: np.ndarray) -> None:
+        """Multipliers of the forcing period, and the reserve of friction."""
+        params = data.values(p)
+        spectrum = data.model.rest.multipliers(params)
+        row[: 2 * spectrum.size : 2] = np.real(spectrum)
+        row[1 : 2 * spectrum.size : 2] = np.imag(spectrum)
+        row[-1] = data.model.rest.reserve(params, u)
+
+    @staticmethod
+    def transpose(data: RestEquations, work: RestWork, column: np.ndarray, other: RestWork) -> None:
+        """The transposed Jacobian, with another last column, into another workspace."""
+        other[1][:], other[2][:] = work[1].T, column
 
 
-def _bordered(
-    data: RestEquations, work: tuple, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
-) -> float:
-    F, J, Q = work
-    matrix = np.vstack([np.column_stack([J, Q]), border])
-    sides = np.column_stack([np.r_[-F, target], np.r_[np.zeros_like(F), 1.0]])
-    sign = float(np.linalg.slogdet(matrix)[0])
-    solution = np.linalg.solve(matrix, sides) if sign else np.linalg.lstsq(matrix, sides, rcond=None)[0]
-    step[:], tangent[:] = solution[:, 0], solution[:, 1]
-    return sign
-
-
-def _inspect(data: RestEquations, u: np.ndarray, p: float, work: tuple, row: np.ndarray) -> None:
-    params = data.values(p)
-    spectrum = data.model.rest.multipliers(params)
-    row[: 2 * spectrum.size : 2] = np.real(spectrum)
-    row[1 : 2 * spectrum.size : 2] = np.imag(spectrum)
-    row[-1] = data.model.rest.reserve(params, u)
-
-
-def _newton(
-    data: RestEquations,
-    u: np.ndarray,
-    p: float,
-    work: tuple,
-    border: np.ndarray,
-    step: np.ndarray,
-    tangent: np.ndarray,
-    tolerance: float,
-    limit: int,
-) -> tuple[float, int, float]:
-    for iteration in range(limit):
-        residual = _linearise(data, u, p, work)
-        if residual <= tolerance or _bordered(data, work, border, 0.0, step, tangent) == 0.0:
-            return (residual if residual <= tolerance else np.inf), iteration, p
-        u += step[:-1]
-        p += float(step[-1])
-    return np.inf, limit, p
-
-
-def _examine(data: RestEquations, u: np.ndarray, p: float, work: tuple, row: np.ndarray) -> float:
-    residual = _linearise(data, u, p, work)
-    _inspect(data, u, p, work, row)
-    return residual
-
-
-def _transpose(data: RestEquations, work: tuple, column: np.ndarray, other: tuple) -> None:
-    other[1][:], other[2][:] = work[1].T, column
-
-
-KERNELS = RestKernels(_linearise, _bordered, _inspect, _newton, _examine, assign=assign, transpose=_transpose)
+KERNELS = RestKernels()

@@ -11,7 +11,6 @@ from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.states import state_of, states_of
 from orbits.machines.stepping import Machine
 
-PER_PERIOD = 200  # instants of a forcing period at which motions are compared
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
 
@@ -78,7 +77,7 @@ def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
     }
 
 
-def positions(orbit: Motion, instants: int = PER_PERIOD) -> np.ndarray:
+def positions(orbit: Motion, instants: int) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
     count = instants * orbit.periods
     if not len(orbit.nodes):

@@ -4,46 +4,63 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Any
 
 import numpy as np
 
-from contvines.shared.near_names import did_you_mean
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.flows.page import flights, loci
-from orbits.flows.page.margins import fill_margins, owned, per_node
+from orbits.flows.page.margins import fill_margins, owned
+from orbits.flows.plain_kernels import PLAIN, PlainKernels
+from orbits.flows.protocol import Approach
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
+from orbits.machines.path import along
 from orbits.words.of_pages import PageWord
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
+SOLVED = 1e-10  # residual of a solution
 
 
-class Kernels(NamedTuple):
-    """The functions that a continuation calls; plain Python."""
+class PageKernels(PlainKernels):
+    """The functions that a continuation calls; plain Python round integrated flights."""
 
-    linearise: Any
-    bordered: Any
-    inspect: Any
-    compiled: bool = False
-    assign: Any = loci.assign
-    flip: Any = loci.flip
-    transpose: Any = loci.transpose
-    column: int = 3
-    matrix: Any = loci.matrix
+    column = 3
+    accepted = SOLVED
+    assign = staticmethod(loci.assign)
+    flip = staticmethod(loci.flip)
+    transpose = staticmethod(loci.transpose)
+    matrix = staticmethod(loci.matrix)
+
+    def linearise(self, data: PageEquations, u: np.ndarray, p: float, work: flights.Work) -> float:
+        """See `orbits.flows.page.flights.linearise`."""
+        return flights.linearise(data, u, p, work)
+
+    def bordered(
+        self,
+        data: PageEquations,
+        work: flights.Work,
+        border: np.ndarray,
+        target: float,
+        step: np.ndarray,
+        tangent: np.ndarray,
+    ) -> float:
+        """See `orbits.flows.page.flights.bordered`."""
+        return flights.bordered(data, work, border, target, step, tangent)
+
+    def inspect(
+        self, data: PageEquations, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray
+    ) -> None:
+        """Multipliers as (re, im) pairs, then the margins, into `row`."""
+        m = data.n_multipliers
+        values = flights.multipliers(data, work)
+        row[0 : 2 * m : 2], row[1 : 2 * m : 2] = values.real, values.imag
+        fill_margins(data, u, work, row[2 * m :])
 
 
-def inspect(data: DeclaredSystem, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
-    """Multipliers as (re, im) pairs, then the margins, into `row`."""
-    m = data.n_multipliers
-    values = flights.multipliers(data, work)
-    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = values.real, values.imag
-    fill_margins(data, u, work, row[2 * m :])
-
-
-KERNELS = Kernels(flights.linearise, flights.bordered, inspect)
+KERNELS = PageKernels()
 
 
 def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
@@ -61,7 +78,7 @@ def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
     return tuple(j for j, name in enumerate(names) if name not in known)
 
 
-class DeclaredSystem:
+class PageEquations:
     """Periodic orbits with a given word, against one parameter of a declared machine.
 
     Parameters
@@ -83,8 +100,6 @@ class DeclaredSystem:
         If the parameter is unknown, or `symmetric` is asked of a word whose halves are not mirror images.
     """
 
-    spectrum = "map"
-
     def __init__(
         self,
         machine: Machine,
@@ -94,12 +109,7 @@ class DeclaredSystem:
         params: np.ndarray,
         symmetric: bool = False,
     ) -> None:
-        if parameter not in machine.parameter_names:
-            raise ValueError(
-                f"parameter = {parameter!r} is unknown to the machine {machine.name!r}"
-                f"{did_you_mean(parameter, machine.parameter_names)}; choose one of "
-                + ", ".join(machine.parameter_names)
-            )
+        self.index = machine.place_of(parameter)
         if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):
             raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
         if symmetric and not machine.has_mirror(np.array(params, dtype=float), parameter):
@@ -115,7 +125,6 @@ class DeclaredSystem:
         self.parameter, self.params = parameter, np.array(params, dtype=float)
         self.symmetric, self.forced = bool(symmetric), machine.forced
         self.mirrored = machine.has_mirror(self.params, parameter)
-        self.index = machine.parameter_names.index(parameter)
         self.size, self.contacts = machine.size, len(machine.contacts)
         whole = max(1, len(word))
         self.length = whole if not symmetric or not len(word) else whole // 2
@@ -124,6 +133,13 @@ class DeclaredSystem:
         self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0
         self.loose = loose_states(machine, word)
         self.pinned = () if symmetric else self.loose
+        self.movable = self.symmetric and bool(self.loose)
+        self.unit, self.units, self.path = (
+            np.ones((whole, self.size + 1)),
+            PLAIN,
+            machine.path(parameter, self.params),
+        )
+        self.began = float(self.params[self.index])
         stuck = [
             j
             for j, contact in enumerate(machine.contacts)
@@ -132,8 +148,7 @@ class DeclaredSystem:
         self.trivial = len(self.loose) + len(stuck)
         self.still = () if symmetric else self._still(stuck)
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
-        self.n_margins = per_node(self.contacts) * self.length
-        self.flip_kind = "symmetry-breaking" if symmetric else "period-doubling"
+        self.n_margins = len(word.alphabet.columns) * self.length
         self.period_shift = np.zeros(self.dimension) if self.forced else None
         if self.period_shift is not None:
             self.period_shift[:: self.size + 1] = TURN_OF_PHASE
@@ -214,15 +229,22 @@ class DeclaredSystem:
         return flights.sparsity(self.length, self.size + 1)
 
     # ------------------------------------------------------------------ numerics
+    @cached_property
+    def scratch(self) -> flights.Work:
+        """A workspace for single calls, whose contents nobody relies on."""
+        return self.workspace()
+
+    def smooth_margin(self, j: int) -> int:
+        """The margin to follow where margin `j` vanishes: itself."""
+        return j
+
     def workspace(self) -> flights.Work:
         """Arrays for the kernels."""
         return flights.workspace(self.length, self.size, self.base_numbers.shape[1])
 
-    def values(self, p: float) -> np.ndarray:
-        """The parameter vector at parameter value `p`."""
-        params = self.params.copy()
-        params[self.index] = p
-        return params
+    def values(self, p: float | np.ndarray) -> np.ndarray:
+        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
+        return along(self.path, self.params, p)
 
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
@@ -248,6 +270,22 @@ class DeclaredSystem:
             return 1.0
         return numbers[:, self.machine.parameter_names.index(str(self.machine.phase_rate))]
 
+    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
+        """Of the impact at a place: the rate of its wall's gap; the wall's push changes it."""
+        compiled, d = self.machine.compiled, self.size + 1
+        node = u[place * d : (place + 1) * d]
+        numbers = compiled.numbers(self.values(p), self.word.modes[place])
+        clock = node[:1] if self.forced else np.zeros(1)
+        row = compiled.approach(self.letters[place].contact)(node[None, 1:], clock, numbers[None])[0]
+        return Approach(float(row[0]), np.append(0.0, row[1:d]), 0.0, np.append(0.0, row[d:]))
+
+    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, None] | None:
+        """Derivatives of each node by the one before, the mirror in the last."""
+        if not np.isfinite(flights.linearise(self, u, p, self.scratch)):
+            return None
+        with np.errstate(all="ignore"):
+            return flights.factors(self, self.scratch), None
+
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
         spectrum = np.asarray(spectrum, dtype=complex)
@@ -267,25 +305,6 @@ class DeclaredSystem:
         image[..., 0] = nodes[..., 0] + self.shift
         return image
 
-    def expand_direction(self, direction: np.ndarray) -> np.ndarray:
-        """A direction of the unknowns, shape (N,), as one of the nodes of the whole cycle."""
-        nodes = np.asarray(direction).reshape(self.length, self.size + 1)
-        if not self.symmetric or not len(self.word):
-            return nodes
-        image = -nodes
-        image[:, 0] = nodes[:, 0]
-        return np.concatenate([nodes, image])
-
-    def amplitude(self, direction: np.ndarray) -> float:
-        """Length of a direction as normal forms measure it: Euclidean, over the first node."""
-        return float(np.linalg.norm(direction[: self.size + 1]))
-
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle."""
         return np.array(nodes[: self.length], dtype=float, order="C").ravel()
-
-    # ------------------------------------------------------------------ identity and other words
-    def sibling(self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Self:
-        """The same for another word of the machine, against the same parameter; on half the word only where the machine has a mirror image."""
-        given, half = self.params if params is None else params, symmetric and self.mirrored
-        return type(self)(self.machine, word, periods, self.parameter, given, half)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.contacts.letters import BORDERS, HIT, SLIP, STICK, STRENGTH, STROBE, SWITCH, TURN
+from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
 from orbits.flows.page.flights import Work
 from orbits.words.of_pages import PageWord
 
@@ -19,11 +19,6 @@ DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted 
 OWN = (
     1e-9  # share of a flight next to its ends in which the guard of the event there has no minimum of its own
 )
-
-
-def per_node(contacts: int) -> int:
-    """Margins per node: one per contact, the event's, the duration."""
-    return contacts + 2
 
 
 def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
@@ -116,25 +111,3 @@ def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -
         last.kind in (HIT, SWITCH) or (last.kind == SLIP and guard.sign == data.slips[i + 1])
     ):
         table[following, column] = min(table[following, column], -rate_end)
-
-
-def margin_name(word: PageWord, index: int) -> str:
-    """What margin `index` watches."""
-    contacts = word.alphabet.contacts
-    place, column = divmod(index, per_node(len(contacts)))
-    if column == len(contacts) + 1:
-        return "duration"
-    if column == len(contacts):
-        return STRENGTH[word.letter(place).kind if len(word) else STROBE]
-    return contacts[column].watched(word.mode(place)[column])
-
-
-def border_kind(word: PageWord, index: int) -> str:
-    """The kind of border that is met where margin `index` vanishes."""
-    name = margin_name(word, index)
-    if name != "duration":
-        return BORDERS[name]
-    if not len(word):
-        return "corner"
-    place = index // per_node(len(word.alphabet.contacts))
-    return word.alphabet.together(word.letter(place), word.letter(place + 1))

@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-
-def lengths(orbit: Any) -> np.ndarray:
-    """Clock that passes in each flight, shape (L,)."""
-    if not orbit.machine.forced:
-        return orbit.nodes[:, 0].copy()
-    phases = orbit.nodes[:, 0]
-    return np.diff(np.append(phases, phases[0] + 2.0 * np.pi * orbit.periods))
+from orbits.flows.protocol import Motion
 
 
-def strobed(orbit: Any) -> np.ndarray:
+def strobed(orbit: Motion) -> np.ndarray:
     """States of a motion without events, once per forcing period from its node on to its return, shape (periods + 1, n)."""
     grid = orbit.nodes[0, 0] + 2.0 * np.pi * np.arange(orbit.periods + 1)
     mode = orbit.word.modes[0]
-    watch = orbit.machine.compiled.watch(orbit.machine.equations.pattern_key(mode))
-    return watch.path(orbit.nodes[0, 1:], grid, orbit.machine.compiled.numbers(orbit.params, mode))
+    watch = orbit.model.compiled.watch(orbit.model.equations.pattern_key(mode))
+    return watch.path(orbit.nodes[0, 1:], grid, orbit.model.compiled.numbers(orbit.params, mode))
 
 
-def sample(orbit: Any, points: int = 400) -> dict[str, np.ndarray]:
+def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
     """States over one period, events included with the states before and after them.
 
     Returns
@@ -32,14 +24,14 @@ def sample(orbit: Any, points: int = 400) -> dict[str, np.ndarray]:
         ``time`` from the first event, ``phase`` (of a forced machine), every state by its name, and ``segment`` (index of the
         event before).
     """
-    durations = lengths(orbit)
+    durations = orbit.durations
     total = max(float(durations.sum()), 1e-300)
-    compiled, e = orbit.machine.compiled, orbit.machine.equations
+    compiled, e = orbit.model.compiled, orbit.model.equations
     clocks, states, segments, passed = [], [], [], 0.0
-    first = float(orbit.nodes[0, 0]) if orbit.machine.forced else 0.0
+    first = float(orbit.nodes[0, 0]) if orbit.model.forced else 0.0
     for i, duration in enumerate(durations):
         count = max(2, round(points * duration / total))
-        begin = float(orbit.nodes[i, 0]) if orbit.machine.forced else 0.0
+        begin = float(orbit.nodes[i, 0]) if orbit.model.forced else 0.0
         grid = begin + np.linspace(0.0, max(float(duration), 0.0), count)
         mode = orbit.word.modes[i % len(orbit.word.modes)]
         watch = compiled.watch(e.pattern_key(mode))
@@ -49,13 +41,32 @@ def sample(orbit: Any, points: int = 400) -> dict[str, np.ndarray]:
         passed += float(duration)
     clock = np.concatenate(clocks)
     result = {}
-    if orbit.machine.forced:
-        result["time"] = clock / orbit.parameters[str(orbit.machine.phase_rate)]
+    if orbit.model.forced:
+        result["time"] = clock / orbit.parameters[str(orbit.model.phase_rate)]
         result["phase"] = first + clock
     else:
         result["time"] = clock
     table = np.concatenate(states)
-    for j, name in enumerate(orbit.machine.states):
+    for j, name in enumerate(orbit.model.states):
         result[name] = table[:, j]
     result["segment"] = np.concatenate(segments)
     return result
+
+
+def states_at(orbit: Motion, phases: np.ndarray) -> np.ndarray:
+    """States of a forced motion at phases from 0 on, shape (m, n)."""
+    compiled, e = orbit.model.compiled, orbit.model.equations
+    whole, word = 2.0 * np.pi * orbit.periods, orbit.word
+    begins = np.maximum.accumulate(orbit.nodes[:, 0] - orbit.nodes[0, 0])
+    wanted = (phases - orbit.nodes[0, 0]) % whole
+    wanted[wanted >= whole] = 0.0  # of a phase just below zero
+    segments = np.searchsorted(begins, wanted, side="right") - 1
+    out = np.empty((len(phases), orbit.model.size))
+    for i in np.unique(segments).tolist():
+        places = np.flatnonzero(segments == i)
+        order = places[np.argsort(wanted[places])]
+        mode, node = word.mode(i), orbit.nodes[i]
+        grid = node[0] + np.concatenate([[0.0], wanted[order] - begins[i]])
+        watch = compiled.watch(e.pattern_key(mode))
+        out[order] = watch.path(node[1:], grid, compiled.numbers(orbit.params, mode))[1:]
+    return out

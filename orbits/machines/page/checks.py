@@ -11,7 +11,6 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.machines.page.formulas import PageError
-from orbits.machines.page.names import described
 from orbits.machines.page.patterns import Equations
 
 DRAWS = 8  # random states at which formulas are compared
@@ -51,7 +50,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     _check_periods(draws, rates)
     _check_surfaces(draws, rates)
     for j in frictions:
-        what = described(e.contacts[j])
+        what = e.contacts[j].described
         limit = draws.of([e.limit[j]])[:, 0]
         if np.all(limit < 0.0):
             raise PageError(f"{what}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
@@ -75,7 +74,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     for j, contact in enumerate(e.contacts):
         if not isinstance(contact, Wall):
             continue
-        what = described(contact)
+        what = contact.described
         rate = e.along(e.gap[j], rates)
         if any(name in variables_of(rate) for name in zero):
             raise PageError(
@@ -113,7 +112,7 @@ def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
     forces = {name: 0.0 for j in e.velocity for name in (f"force_{e.contacts[j].name}",)}
     told = [(f"motion's rate of {n}", replaced(r, forces)) for n, r in zip(e.states, rates)]
     for table, what in ((e.gap, "gap"), (e.velocity, "velocity"), (e.limit, "limit"), (e.surface, "surface")):
-        told += [(f"the {what} of {described(e.contacts[j])}", value) for j, value in table.items()]
+        told += [(f"the {what} of {e.contacts[j].described}", value) for j, value in table.items()]
     values = [value for _, value in told]
     here, there = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
     for (what, _), a, b in zip(told, here.T, there.T):
@@ -130,7 +129,7 @@ def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
     """Whether switches switch something, and whether contacts that would always act at once are declared apart."""
     e = draws.equations
     for j, surface in e.surface.items():
-        what, name = described(e.contacts[j]), e.contacts[j].name
+        what, name = e.contacts[j].described, e.contacts[j].name
         if not variables_of(surface) & {*e.layout.states, e.layout.clock}:
             raise PageError(
                 f"{what}: its surface is a constant; give a function of the states that changes sign"
@@ -145,7 +144,7 @@ def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
         for k, other in pairs[place + 1 :]:
             if j not in e.velocity or not _proportional(draws, one, other):
                 continue
-            both = f"{described(e.contacts[j])} and {described(e.contacts[k])}"
+            both = f"{e.contacts[j].described} and {e.contacts[k].described}"
             if k in e.velocity:
                 raise PageError(
                     f"{both} have the same velocity; declare one DryFriction whose limit is the sum of theirs"

@@ -14,6 +14,7 @@ from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
 from orbits.doors import above
+from orbits.machines.notation import SYMBOLS
 from orbits.machines.page import checks, names
 from orbits.machines.page.compiled import Compiled
 from orbits.machines.page.formulas import PageError
@@ -21,11 +22,12 @@ from orbits.machines.page.mirror import MirrorImage
 from orbits.machines.page.page import Page, page_of
 from orbits.machines.page.patterns import Equations
 from orbits.machines.parameters import ParameterError
+from orbits.machines.varying import Varying
 from orbits.words.alphabet import Alphabet
 from orbits.words.of_pages import PageWord, parse
 
 
-class Machine:
+class Machine(Varying):
     """A machine declared by its equations of motion and its contacts.
 
     Parameters
@@ -53,6 +55,8 @@ class Machine:
     PageError
         If the page is no machine; the sentence names the contact and the way out.
     """
+
+    flow = "page"
 
     @hinting
     def __init__(
@@ -101,9 +105,9 @@ class Machine:
         return len(self.states)
 
     @property
-    def units(self) -> dict[str, str]:
-        """Units of parameters and measures: a declared machine has plain numbers."""
-        return {}
+    def notation(self) -> dict[str, str]:
+        """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names on the page."""
+        return {"phase": SYMBOLS["phase"]}
 
     @property
     def default_parameter(self) -> str:
@@ -177,9 +181,10 @@ class Machine:
         values = self.compiled.limits(tuple(self._frictions))(draws.states, draws.clock, numbers)
         return frozenset(j for j, column in zip(self._frictions, values.T) if np.all(column == 0.0))
 
-    def settings(self) -> dict[str, Any]:
-        """What a file keeps of the machine, ready for JSON: where its page is, the page's text and digest."""
-        return {"name": self.name, **self.page.describe(self), **self.parameters}
+    def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
+        """What a file keeps of the machine, ready for JSON: where its page is, the page's text and digest, and parameters."""
+        values = self.parameters.values() if params is None else map(float, params)
+        return {"name": self.name, **self.page.describe(self), **dict(zip(self.parameter_names, values))}
 
     # ------------------------------------------------------------------ motions
     def word(

@@ -16,7 +16,6 @@ from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values
 from orbits.machines.page.checks import DRAWS, SAME, Draws
 from orbits.machines.page.formulas import PageError
-from orbits.machines.page.names import described
 from orbits.machines.page.patterns import Equations
 
 VARIED = 0.5  # parts of its own value (of 1, where it is 0) by which a parameter is varied
@@ -80,7 +79,7 @@ class MirrorImage:
         """Name, formula, formula whose mirror image equals it, and that image's sign."""
         e, rows = self.equations, []
         for j, contact in enumerate(e.contacts):
-            what, k = described(contact), self.images[j]
+            what, k = contact.described, self.images[j]
             if isinstance(contact, Wall):
                 rows.append((f"the gap of {what}", e.gap[j], e.gap[k], 1.0))
                 rows.append((f"the restitution of {what}", e.restitution[j], e.restitution[k], 1.0))

@@ -65,7 +65,7 @@ def _check_contacts(states: Sequence[str], contacts: Any) -> None:
     for contact in contacts:
         if not isinstance(contact, (Wall, DryFriction, Switch)):
             raise PageError(f"contacts has {contact!r}; it may have Wall, DryFriction and Switch")
-        what = described(contact)
+        what = contact.described
         if isinstance(contact, DryFriction) and len(tuple(contact.letters)) != 3:
             raise PageError(
                 f"{what}: letters = {contact.letters!r} must be three, for a turn, a stick and a slip"
@@ -116,13 +116,6 @@ def check_restitution(what: str, value: float) -> None:
         raise PageError(
             f"{what}: restitution = {value:g} is out of range; give a number above 0 and at most 1"
         )
-
-
-def described(contact: Any) -> str:
-    """A contact as sentences name it."""
-    if isinstance(contact, Wall):
-        return f"wall {contact.letter!r}"
-    return f"{'friction' if isinstance(contact, DryFriction) else 'switch'} {contact.name!r}"
 
 
 def check_starts(

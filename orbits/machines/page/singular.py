@@ -68,20 +68,14 @@ def _on_numbers(
             given = {"the surface": contact.surface}
         for what, function in given.items():
             if callable(function):
-                yield f"{what} of {_called(contact)}", lambda f=function: f(*arguments)
+                yield f"{what} of {contact.described}", lambda f=function: f(*arguments)
 
 
 def _on_symbols(e: Equations, modes: Sequence[int]) -> Iterator[tuple[str, list[Any]]]:
     yield "motion", e.pattern(e.pattern_key(modes)).rates
     for what, symbols in (("gap", e.gap), ("velocity", e.velocity), ("surface", e.surface)):
         for j, symbol in symbols.items():
-            yield f"the {what} of {_called(e.contacts[j])}", [symbol]
-
-
-def _called(contact: Any) -> str:
-    if isinstance(contact, Wall):
-        return f"wall {contact.letter!r}"
-    return f"{'friction' if isinstance(contact, DryFriction) else 'switch'} {contact.name!r}"
+            yield f"the {what} of {e.contacts[j].described}", [symbol]
 
 
 def _named(error: Exception) -> str:

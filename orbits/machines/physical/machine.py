@@ -308,7 +308,7 @@ class Physical(Model):
     def _texts(self) -> dict[str, Any]:
         return {name: units.text(value, self.units.get(name, "")) for name, value in self.quantities.items()}
 
-    def settings(self) -> dict[str, Any]:
+    def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """The machine's quantities as text, ready for JSON."""
         return {"name": self.name, "units": "si", "unusual": self.unusual, **self._texts}
 

@@ -7,12 +7,11 @@ import contvines as cv
 import orbits
 from contvines.loci.problem import LocusProblem
 from contvines.problems.protocol import MEMBERS, Problem
-from orbits.declared.problem import DeclaredProblem
 from orbits.problem import OrbitProblem
 
 
 def checked_by_pyright(
-    a: cv.AlgebraicProblem, b: cv.MapProblem, c: LocusProblem, d: OrbitProblem, e: DeclaredProblem
+    a: cv.AlgebraicProblem, b: cv.MapProblem, c: LocusProblem, d: OrbitProblem, e: OrbitProblem
 ) -> list[Problem]:
     """Never called: the type checker compares the signatures."""
     return [a, b, c, d, e]

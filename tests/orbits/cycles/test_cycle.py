@@ -9,7 +9,8 @@ from orbits import Absorber, Cavity, Coupled, Orbit, OrbitProblem, Word
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.identity import canonical
 from orbits.factories import FACTORIES
-from orbits.flows.native.cycle_equations import equations, solved_at
+from orbits.flows.native.cycle_equations import equations
+from orbits.flows.solving import solved_at
 from orbits.problem import rebuild
 
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)

@@ -13,7 +13,6 @@ import numpy as np
 import contvines as cv
 from orbits.contacts.letters import HOLD, RELEASE
 from orbits.declared.deviation import deviation
-from orbits.flows.page.sampling import lengths
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.simulation.page import collect, outside
 from tests.orbits.declared.pages import page
@@ -90,7 +89,7 @@ def stays(orbit) -> bool:
 
 def comes_back(orbit, kick) -> bool:
     """Whether a simulation that is kicked off an orbit is back on it after some rounds."""
-    machine, nodes = orbit.machine, orbit.nodes
+    machine, nodes = orbit.model, orbit.nodes
     stepper = Stepper(machine, orbit.params)
     clock = float(nodes[0, 0]) if machine.forced else 0.0
     stepper.start(outside(stepper, nodes[0, 1:] * (1.0 + kick), clock), clock, orbit.word.modes[0])
@@ -98,7 +97,7 @@ def comes_back(orbit, kick) -> bool:
     known = [j for j in range(machine.size) if j not in loose]
     try:
         if machine.forced:  # compared in the middle of the longest flight
-            spans = lengths(orbit)
+            spans = orbit.durations
             place = int(np.argmax(spans))
             begin = float(nodes[place, 0])
             middle = begin + 0.5 * float(spans[place])

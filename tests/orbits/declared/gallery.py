@@ -28,7 +28,7 @@ def deviations(graph) -> dict[str, float]:
         problem = graph.branches[point.branch].problem
         if point.kind != "end" and problem.dimension == len(point.u):
             orbit = problem.orbit(point.u, point.value)
-            found[label] = deviation(orbit, orbit.machine.equations.formulas_of_motion)
+            found[label] = deviation(orbit, orbit.model.equations.formulas_of_motion)
     return found
 
 

@@ -133,7 +133,7 @@ def crossed(function, run, t, touches=1e-8):
 
 def deviation(orbit, motion):
     """Largest difference between an orbit's nodes and DOP853 from each node to the next; infinite where something else happens first."""
-    machine = orbit.machine
+    machine = orbit.model
     own = Independent(machine, orbit.parameters, motion)
     word, nodes, n = orbit.word, orbit.nodes, len(orbit.word)
     omega = own.omega

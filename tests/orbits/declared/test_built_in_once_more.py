@@ -6,10 +6,8 @@ from scipy.optimize import brentq
 
 import contvines as cv
 import orbits
-from orbits.declared.crossing import turned, usual_room
-from orbits.declared.neighbours import margins_of
-from orbits.declared.orbit import DeclaredOrbit
-from orbits.declared.rounds import escapes
+from orbits.borders.crossing import escapes
+from orbits.borders.neighbours import margins_of, placed, turned
 from tests.orbits.declared.pages import page
 from tests.orbits.declared.same_graph import both, compared, drawn
 
@@ -58,13 +56,11 @@ def test_periods_are_added_at_a_border_of_the_page_too():
     problem = solved(p, nodes).problem("amplitude", symmetric=False)
     here, beside = (solved(a, nodes).seed(problem)[0] for a in (p, p - 1e-5))
     index = int(np.argmin(margins_of(problem, here, p)))
-    room = usual_room(problem, index)
-    read, u, place = turned(problem, here, p, index, room)
-    near = (*turned(problem, beside, p - 1e-5, index, room)[:2], p - 1e-5)
+    near = (*turned(problem, beside, p - 1e-5, index)[:2], p - 1e-5)
     added = {}
-    for (other, v, q, _), note in escapes(read, u, p, place, [near]):
-        if "times as long" in note:
-            added[other.periods] = DeclaredOrbit.of(other, v, q)
+    for seed in escapes(placed(problem, here, p, index), [near]):
+        if "times as long" in seed.note:
+            added[seed.problem.periods] = seed.problem.orbit(seed.u, seed.p)
     assert set(added) == {6, 7}
     for orbit in added.values():
         assert orbit.stable and orbit.real and orbit.replay() < 1e-9

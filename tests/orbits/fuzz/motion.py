@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.flows.native.sampling import PER_PERIOD
+from orbits.borders.distance import PER_PERIOD
 
 BACKWARDS = -1e-6  # durations below: singular points of virtual branches are known to half their digits
 LONGEST = 64  # forcing periods over which motions are compared
@@ -24,7 +24,9 @@ def apart(one: Any, other: Any, *, images: bool = True) -> float:
     periods = math.lcm(one.periods, other.periods)
     if periods > LONGEST:
         return math.nan
-    here, there = (np.tile(orbit.track, periods // orbit.periods) for orbit in (one, other))
+    here, there = (
+        np.tile(orbit.positions(PER_PERIOD)[:, 0], periods // orbit.periods) for orbit in (one, other)
+    )
     free = not (one.impacts and other.impacts)
     faces = [here]
     if images and one.model.has_mirror(one.params):
@@ -39,7 +41,8 @@ def shortest(orbit: Any, near: float = 1e-7) -> int:
     """Forcing periods after which w comes back, a divisor of the orbit's own."""
     for periods in range(1, orbit.periods):
         if orbit.periods % periods == 0:
-            gap = np.roll(orbit.track, periods * PER_PERIOD) - orbit.track
+            track = orbit.positions(PER_PERIOD)[:, 0]
+            gap = np.roll(track, periods * PER_PERIOD) - track
             if np.abs(gap).max() < near * orbit.model.natural_units(orbit.params)[0]:
                 return periods
     return orbit.periods

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from contvines.bifurcation.kinds import BORDERS
-from orbits.cycles.claim import REAL
+from orbits.borders.distance import PER_PERIOD
+from orbits.orbit import REAL
 from orbits.starts.find import polish
 from tests.orbits.fuzz.many_digits import exact, rounds_apart
 from tests.orbits.fuzz.motion import apart, shortest
@@ -68,7 +69,9 @@ def _branch(branch: Any, tally: Tally) -> None:
     places = np.unique(np.linspace(0, len(branch) - 1, 7).astype(int))
     orbits = [branch.orbit(int(i)) for i in places]
     # a branch so short that it is born by a doubling and hardly leaves it does differ from its root: as much as its own motions do
-    extent = max(float(np.abs(orbit.track - orbits[0].track).max()) for orbit in orbits)
+    extent = max(
+        float(np.abs(orbit.positions(PER_PERIOD) - orbits[0].positions(PER_PERIOD)).max()) for orbit in orbits
+    )
     near = min(REPEATED, OF_EXTENT * extent) if len(branch) > 1 else REPEATED
     if all(shortest(orbit, near) < orbit.periods for orbit in orbits):
         middle = orbits[len(orbits) // 2]

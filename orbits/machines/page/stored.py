@@ -1,4 +1,4 @@
-"""Problems of declared machines from what a file keeps of them."""
+"""Machines on a page from what a file keeps of them."""
 
 from __future__ import annotations
 
@@ -6,13 +6,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from orbits.declared.problem import DeclaredProblem
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import digest_of
-from orbits.words.of_pages import PageWord
 
 
 class PageChanged(OSError):
@@ -47,32 +43,18 @@ def loaded(settings: dict[str, Any]) -> Machine | None:
     return None
 
 
-def rebuild(description: dict[str, Any], trust: bool = False) -> DeclaredProblem | None:
-    """The problem that `DeclaredProblem.describe` described.
-
-    A machine that this process has already is taken as it is. Else its page has to be run: only with `trust`; without it the
-    answer is None.
+def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
+    """The machine with these settings: the one that this process has, or, only with `trust`, that of its page; else None.
 
     Raises
     ------
     PageChanged
         If the page is gone or has changed.
     """
-    settings = description["model"]
     machine = loaded(settings)
-    if machine is None:
-        if not trust:
-            return None
-        problem = page_changed(settings)
-        if problem:
-            raise PageChanged(problem)
-        machine = load_page(settings["page"], settings["object"])
-    word = PageWord(tuple(description["events"]), tuple(map(tuple, description["modes"])), machine.alphabet)
-    return DeclaredProblem(
-        machine,
-        word,
-        description["periods"],
-        description["parameter"],
-        np.array(description["params"]),
-        description["symmetric"],
-    )
+    if machine is not None or not trust:
+        return machine
+    problem = page_changed(settings)
+    if problem:
+        raise PageChanged(problem)
+    return load_page(settings["page"], settings["object"])

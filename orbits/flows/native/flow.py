@@ -1,0 +1,115 @@
+"""The flow of the built-in machines: closed forms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.changes import Change
+from orbits.flows.native import cycle_equations, measures, sampling, vanishing
+from orbits.flows.native.cycle_equations import Equations
+from orbits.flows.native.rest_equations import RestEquations
+from orbits.flows.protocol import Motion, Vanishing
+from orbits.machines.base import Model
+from orbits.machines.events import events_of
+from orbits.words import Word
+
+
+class NativeFlow:
+    """See `orbits.flows.protocol`; a node is (Psi, B+) at an impact, (Psi, w) elsewhere, and what the machine adds."""
+
+    angles = measures.ANGLES
+    resolution = 1e-7  # two borders whose values agree to 1e-12 may be 5e-6 apart
+
+    def position_entries(self, model: Model) -> tuple[int, ...]:
+        """w."""
+        return (1,)
+
+    def equations(
+        self,
+        model: Model,
+        word: Word,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
+        units: tuple[float, float] | None = None,
+    ) -> Equations | RestEquations:
+        """In the native core, or its reference."""
+        return cycle_equations.equations(model, word, periods, parameter, params, symmetric, units)
+
+    def loose(self, model: Model, word: Word) -> tuple[int, ...]:
+        """The position, where no wall is hit."""
+        return (1,) if word.impact_free and len(word) else ()
+
+    def sample(self, motion: Motion, points: int) -> dict[str, np.ndarray]:
+        """See `orbits.flows.native.sampling.sample`."""
+        return sampling.sample(motion, points)
+
+    def positions(self, motion: Motion, instants: int) -> np.ndarray:
+        """w; see `orbits.flows.native.sampling.positions`."""
+        return sampling.positions(motion, instants)[:, None]
+
+    def image(self, motion: Motion) -> np.ndarray:
+        """Mirrored about the middle between the walls."""
+        return motion.model.image(motion.word.codes, motion.nodes, motion.params)
+
+    def strobed(self, motion: Motion) -> np.ndarray:
+        """Nothing to be seen: at rest there are no unknowns."""
+        return np.zeros((motion.periods + 1, 0))
+
+    def measure_names(self, model: Model) -> tuple[str, ...]:
+        """See `orbits.machines.measures`."""
+        return measures.names(model)
+
+    def default_measure(self, model: Model) -> str:
+        """As the machine says."""
+        return model.default_measure
+
+    def measures(
+        self,
+        model: Model,
+        word: Word,
+        periods: int,
+        nodes: np.ndarray,
+        params: np.ndarray,
+        wanted: Sequence[str],
+    ) -> dict[str, np.ndarray]:
+        """See `orbits.flows.native.measures`."""
+        return measures.measure(model, word, periods, nodes, params, wanted)
+
+    def described(self, motion: Motion) -> dict[str, Any]:
+        """Velocities and positions at the events, in the units that are shown."""
+        model, table = motion.model, events_of(motion)
+        long, fast = (float(model.gauge(kind, motion.params)) for kind in ("length", "velocity"))
+        nodes = []
+        for i, letter in enumerate(motion.word.events):
+            entry = {
+                "event": letter,
+                "phase": float(table.phase[i]),
+                "B_pre": float(table.B_pre[i]) * fast,
+                "B_post": float(table.B_post[i]) * fast,
+                "w": float(table.w[i]) * long,
+                "w_rate": float(table.rate_post[i]) * fast,
+            }
+            for name in model.node_names[2:]:
+                entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
+            nodes.append(entry)
+        return {"events": "".join(motion.word.events), "nodes": nodes}
+
+    def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing | None:
+        """See `orbits.flows.native.vanishing`."""
+        return vanishing.vanishing(motion, index, unit)
+
+    def placed(self, motion: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+        """See `orbits.flows.native.vanishing`."""
+        return vanishing.placed(motion, found, place, change)
+
+    def restitution(self, motion: Motion, place: int) -> float:
+        """Newton's coefficient of the wall that is hit."""
+        return float(motion.model.restitutions(motion.params)[motion.word.letter(place).contact])
+
+    def without_events(self, motion: Motion) -> None:
+        """That is the absorber at rest, whose border has rules of its own."""

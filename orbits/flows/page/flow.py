@@ -1,0 +1,121 @@
+"""The flow of machines on a page: integrated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.changes import Change
+from orbits.contacts.wall import Wall
+from orbits.flows.page import measures, sampling, vanishing
+from orbits.flows.page.cycle_equations import PageEquations, loose_states
+from orbits.flows.protocol import Motion, Vanishing
+from orbits.machines.page.machine import Machine
+from orbits.words.of_pages import PageWord
+
+
+class PageFlow:
+    """See `orbits.flows.protocol`; a node is the phase, or the duration of the flight that follows, and the states after the event."""
+
+    angles = ("phase",)
+    resolution = 1e-5  # flights know a border to 1e-10, and grazes to its root
+
+    def position_entries(self, model: Machine) -> tuple[int, ...]:
+        """States that no wall pushes."""
+        return tuple(1 + j for j in unmoved(model))
+
+    def equations(
+        self,
+        model: Machine,
+        word: PageWord,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
+        units: tuple[float, float] | None = None,
+    ) -> PageEquations:
+        """Flight by flight, in numpy; a page has no units of its own."""
+        return PageEquations(model, word, periods, parameter, params, symmetric)
+
+    def loose(self, model: Machine, word: PageWord) -> tuple[int, ...]:
+        """States that no rate and no event of the word knows."""
+        return tuple(1 + j for j in loose_states(model, word))
+
+    def sample(self, motion: Motion, points: int) -> dict[str, np.ndarray]:
+        """See `orbits.flows.page.sampling.sample`."""
+        return sampling.sample(motion, points)
+
+    def positions(self, motion: Motion, instants: int) -> np.ndarray:
+        """States that no wall pushes; see `orbits.flows.page.sampling.states_at`."""
+        phases = np.linspace(0.0, 2.0 * np.pi * motion.periods, instants * motion.periods, endpoint=False)
+        return sampling.states_at(motion, phases)[:, unmoved(motion.model)]
+
+    def image(self, motion: Motion) -> np.ndarray:
+        """All states with the other sign."""
+        image = -motion.nodes
+        image[:, 0] = motion.nodes[:, 0]
+        return image
+
+    def strobed(self, motion: Motion) -> np.ndarray:
+        """See `orbits.flows.page.sampling.strobed`."""
+        return sampling.strobed(motion)
+
+    def measure_names(self, model: Machine) -> tuple[str, ...]:
+        """See `orbits.flows.page.measures.names`."""
+        return measures.names(model)
+
+    def default_measure(self, model: Machine) -> str:
+        """Impact speeds, or how far the first state goes."""
+        return measures.shown_first(model)
+
+    def measures(
+        self,
+        model: Machine,
+        word: PageWord,
+        periods: int,
+        nodes: np.ndarray,
+        params: np.ndarray,
+        wanted: Sequence[str],
+    ) -> dict[str, np.ndarray]:
+        """See `orbits.flows.page.measures.measure`."""
+        return measures.measure(model, word, periods, nodes, params, wanted)
+
+    def described(self, motion: Motion) -> dict[str, Any]:
+        """Clock and states after the events."""
+        clock = "phase" if motion.model.forced else "duration"
+        nodes = [
+            {"event": event, clock: float(row[0]), **dict(zip(motion.model.states, map(float, row[1:])))}
+            for event, row in zip(motion.word.events or ("",), motion.nodes)
+        ]
+        return {"nodes": nodes, **({} if len(motion.word) else {"rest": "no events"})}
+
+    def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing:
+        """See `orbits.flows.page.vanishing`."""
+        return vanishing.vanishing(motion, index, unit)
+
+    def placed(self, motion: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+        """See `orbits.flows.page.vanishing`."""
+        return vanishing.placed(motion, found, place, change)
+
+    def restitution(self, motion: Motion, place: int) -> float:
+        """Of the wall that is hit, as its formula has it there."""
+        model, node = motion.model, motion.nodes[place]
+        clock = node[:1] if model.forced else np.zeros(1)
+        numbers = model.compiled.numbers(motion.params, motion.word.mode(place))
+        rebound = model.compiled.rebound(motion.word.letter(place).contact)
+        return float(rebound(node[None, 1:], clock, numbers[None])[0, 1])
+
+    def without_events(self, motion: Motion) -> np.ndarray:
+        """The node at phase zero."""
+        table = sampling.sample(motion, 4000)
+        phase = table["phase"] / (2.0 * np.pi)
+        k = int(np.argmin(np.abs(phase - np.round(phase))))
+        return np.array([[0.0, *(table[name][k] for name in motion.model.states)]])
+
+
+def unmoved(machine: Machine) -> list[int]:
+    """States that no impulse of a wall moves."""
+    pushed = {name for contact in machine.contacts if isinstance(contact, Wall) for name in contact.push}
+    return [j for j, name in enumerate(machine.states) if name not in pushed]

@@ -1,0 +1,82 @@
+"""Where a margin of a page's orbit vanishes, and clocks and states of the events that the contacts' laws propose there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from orbits.contacts.changes import Change, Site, Spot
+from orbits.flows.protocol import FIRST, Motion, Vanishing
+from orbits.words.margins import place_of
+
+AT_END = 1e-9  # share of a flight from its ends within which a guard vanishes there
+
+
+def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing:
+    """What vanishes with margin `index` of a border orbit, over its whole cycle; see `orbits.flows.protocol`."""
+    place, watched = place_of(orbit.word, index)
+    spans = orbit.durations
+    site = Site(orbit.word, place, spans, unit)
+    if watched < 0:
+        return Vanishing(site, watched)
+    ahead, state, sign = _closest(orbit, place, watched)
+    share = ahead / max(spans[place], 1e-300)
+    site = site._replace(sign=sign, at=_end(orbit, place, share), ahead=share < AT_END)
+    return Vanishing(site, watched, (ahead, state))
+
+
+def _end(orbit: Motion, place: int, share: float) -> int:
+    """The event at that end of a flight at which a guard vanishes; -1 inside it."""
+    if not len(orbit.word) or AT_END <= share <= 1.0 - AT_END:
+        return -1
+    return (place if share < AT_END else place + 1) % len(orbit.word)
+
+
+def _closest(orbit: Motion, place: int, contact: int) -> tuple[float, np.ndarray, int]:
+    """Where the guards of a contact come closest to zero in a flight: clock from its start, state, sign of the guard's event."""
+    compiled, e = orbit.model.compiled, orbit.model.equations
+    mode = orbit.word.mode(place)
+    key = e.pattern_key(mode)
+    numbers = compiled.numbers(orbit.params, mode)
+    guards, values, watch = e.pattern(key).guards, compiled.guards(key), compiled.watch(key)
+    begin = float(orbit.nodes[place, 0]) if orbit.model.forced else 0.0
+    length = float(orbit.durations[place])
+    state = orbit.nodes[place, 1:]
+    candidates = [(begin, g, state) for g, guard in enumerate(guards) if guard.contact == contact]
+    candidates += [c for c in watch(state, begin, begin + length, numbers) if guards[c[1]].contact == contact]
+    final = watch.final
+    candidates += [(begin + length, g, final) for g, guard in enumerate(guards) if guard.contact == contact]
+    own_start = len(orbit.word) and orbit.word.letter(place).contact == contact
+    own_end = len(orbit.word) and orbit.word.letter(place + 1).contact == contact
+    best, found = np.inf, (0.0, state, 0)
+    for clock, g, there in candidates:
+        share = (clock - begin) / max(length, 1e-300)
+        if (own_start and share < AT_END) or (own_end and share > 1.0 - AT_END):
+            continue
+        value = abs(values(there[None], np.array([clock]), numbers[None])[0, g])
+        if value < best:
+            best, found = value, (clock - begin, np.array(there), guards[g].sign)
+    return found
+
+
+def placed(orbit: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+    """The nodes of a change's new events."""
+    rows = [_at(orbit, place, spot, found) for spot in change.spots]
+    return np.array(rows) if rows else orbit.nodes[:0]
+
+
+def _at(orbit: Motion, place: int, spot: Spot, found: Vanishing) -> np.ndarray:
+    """Clock and states of a spot; a self-excited orbit's inserted events have the clock from the flight's start."""
+    forced, nodes = orbit.model.forced, orbit.nodes
+    if spot.node is None:
+        assert found.touch is not None
+        ahead, state = found.touch
+        begin = float(nodes[place, 0]) if forced else 0.0
+        row = np.concatenate([[begin + ahead], state])
+    else:
+        row = nodes[spot.node].copy()
+        if spot.clock is not None:
+            row[0] = nodes[spot.clock, 0]
+        if spot.between:
+            row[0] = (0.5 if forced else 1.0) * (row[0] + nodes[spot.node + 1, 0])
+    row[0] += spot.later * FIRST
+    return row

@@ -1,0 +1,75 @@
+"""Kernels in plain Python: what all of them have, Newton's method and the look at one solution."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+
+PLAIN = (1.0, 1.0)
+"""Length and rate of unknowns that are counted in the machine's own units."""
+
+
+class PlainKernels(ABC):
+    """The functions that a continuation calls, and two of this package's own; signatures as in `contvines.core.table.TableKernels`."""
+
+    compiled = False
+    accepted = 0.0
+    """Residual of a solution whose steps do not become any smaller."""
+
+    @abstractmethod
+    def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
+        """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
+
+    @abstractmethod
+    def bordered(
+        self, data: Any, work: Any, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+    ) -> float:
+        """Solve the bordered system with the linearisation in `work`; returns the determinant's sign."""
+
+    @abstractmethod
+    def inspect(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+        """Multipliers of the closure map as (re, im) pairs, then margins, into `row`."""
+
+    def newton(
+        self,
+        data: Any,
+        u: np.ndarray,
+        p: float,
+        work: Any,
+        border: np.ndarray,
+        step: np.ndarray,
+        tangent: np.ndarray,
+        tolerance: float,
+        limit: int,
+    ) -> tuple[float, int, float]:
+        """Newton's method at fixed p, or on the hyperplane of `border`; steps that do not help are halved."""
+        residual = self.linearise(data, u, p, work)
+        for iteration in range(limit):
+            if not math.isfinite(residual):
+                return math.inf, iteration, p
+            sign = self.bordered(data, work, border, 0.0, step, tangent)
+            if sign == 0.0 or not np.isfinite(step).all():
+                return math.inf, iteration, p
+            length, share = float(np.abs(step[:-1]).max(initial=0.0)), 1.0
+            while True:
+                trial, q = u + share * step[:-1], p + share * float(step[-1])
+                found = self.linearise(data, trial, q, work)
+                if found < residual or length < 1e-7 or share < 0.02:
+                    break
+                share *= 0.5
+            u[:], p, residual = trial, q, found
+            if length * share < tolerance or (residual < 1e-14 and length < 1e-9):
+                return residual, iteration + 1, p
+        return residual if residual < self.accepted else math.inf, limit, p
+
+    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
+        """Residual, and the row of `inspect`, of one solution; the row is not a number where it cannot be evaluated."""
+        residual = self.linearise(data, u, p, work)
+        if math.isfinite(residual):
+            self.inspect(data, u, p, work, row)
+        else:
+            row[:] = math.nan
+        return residual
