@@ -1,5 +1,6 @@
 #include "api.h"
 #include "cavity.hpp"
+#include "collocation.hpp"
 #include "coupled_cycles.hpp"
 #include "loci.hpp"
 #include "math.hpp"
@@ -79,3 +80,14 @@ EXPORT whole core_multipliers(const double* A, const double* D, whole length, wh
 EXPORT whole core_periodic_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {
     return algebra::periodic_multipliers(A, D, length, int(n), twist, re, im, scratch);
 }
+
+// ---- cycles of flows -------------------------------------------------------------------------------------------------------------
+EXPORT void core_at_gauss_points(const double* values, const double* slopes, const double* x, whole count, whole m, whole d, double* points, double* rates) {
+    collocation::at_gauss_points(values, slopes, x, count, m, d, points, rates);
+}
+EXPORT void core_collocation_blocks(const double* values, const double* slopes, const double* steps, const double* jacobian, const double* scale,
+                                    whole count, whole m, whole d, double* blocks) {
+    collocation::blocks_of(values, slopes, steps, jacobian, scale, count, m, d, blocks);
+}
+EXPORT double core_collocation(const collocation::System* system) { return collocation::solve(*system); }
+EXPORT whole core_collocation_room(whole count, whole inner, whole d, whole k, whole s) { return collocation::room_for(count, inner, d, k, s); }

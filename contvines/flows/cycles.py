@@ -13,6 +13,7 @@ from ..problems.images import in_order, linear_part
 from ..problems.protocol import Embedding, ProblemDefaults, Seed, Symmetry
 from ..problems.scales import Scales
 from . import mesh
+from .assembly import at_gauss_points, blocks_of
 from .collocation import Rule, rule
 from .field import Field
 from .forms import LARGEST, neimark_sacker, period_doubling
@@ -194,34 +195,27 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         x, period, widths = self.parts(u, p)
         if not period > 0.0:
             raise NotEvaluable(f"the period would be {period:.3g}")
-        ends = mesh.closed(x)
-        points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
-        slopes = np.einsum("cj,ijk->ick", r.slopes, ends)
+        points, slopes = at_gauss_points(r, x)
         steps = period * widths
+        long = np.repeat(steps, m)[:, None]
         begins = np.append(0.0, np.cumsum(widths)[:-1])
         places = (begins[:, None] + widths[:, None] * r.points).reshape(-1) if self.field.forced else None
         times = None if places is None else period * places
-        f = self.field(points, p, times).reshape(count, m, d)
-        residual = slopes - steps[:, None, None] * f
-        jacobian = self.field.jacobian(points, p, times).reshape(count, m, d, d)
-        scaled = jacobian * (self.node_scale / self.node_scale[:, None])
-        blocks = np.einsum("cj,icab->icajb", r.values, -steps[:, None, None, None] * scaled)
-        diagonal = np.arange(d)
-        blocks[:, :, diagonal, :, diagonal] += r.slopes
-        work.blocks = blocks.reshape(count, m * d, (m + 1) * d)
+        f, jacobian = self.field(points, p, times), self.field.jacobian(points, p, times)
+        work.blocks = blocks_of(r, steps, jacobian, self.node_scale)
         work.residual[:], work.derivative[:] = 0.0, 0.0
-        work.residual[: self.states] = residual.reshape(-1)
+        work.residual[: self.states] = (slopes - long * f).reshape(-1)
         if places is not None:
             by = self.field.along(lambda q: self._moved(points, q, places, widths), p)
             work.derivative[: self.states] = -by.reshape(-1)
             return
-        by = self.field.slope(points, p).reshape(count, m, d)
-        work.derivative[: self.states] = -(steps[:, None, None] * by).reshape(-1)
-        direction = f / self.node_scale
+        work.derivative[: self.states] = -(long * self.field.slope(points, p)).reshape(-1)
+        direction = (f / self.node_scale).reshape(count, m, d)
         work.by_period = -(widths[:, None, None] * direction * self.clock).reshape(count, m * d)
-        row = np.einsum("cj,ica->ija", r.values, (widths[:, None] * r.weights)[:, :, None] * direction)
+        row = np.matmul(r.values.T, (widths[:, None] * r.weights)[:, :, None] * direction)
         phase = row[:, :-1].copy()
-        phase[:, 0] += np.roll(row[:, -1], 1, axis=0)
+        phase[1:, 0] += row[:-1, -1]
+        phase[0, 0] += row[-1, -1]
         size = np.sqrt((phase**2).sum())
         work.phase = (phase / size if size > 0.0 else self._first_phase(phase)).reshape(count, m * d)
         if self.reference is not None:
@@ -229,8 +223,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             work.residual[self.states] = (
                 work.phase * ((x / self.node_scale).reshape(count, -1) - origin)
             ).sum()
-        work.speeds = self.field(x[:, 0], p) / self.node_scale
-        work.closeness = _distance_to_rest(scaled, direction)
+        work.along = np.array(x[:, 0]), p, jacobian, direction
 
     reference: tuple[np.ndarray, np.ndarray] | None = None
 
@@ -265,9 +258,11 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         x = u[: self.states].reshape(-1, self.node) / self.node_scale
         size = float(np.ptp(x, axis=0).max())
         short = float(np.log10(LONGEST * self.clock / max(float(u[self.states]), 1e-300)))
-        if not size > 0.0 or not np.isfinite(work.closeness):
+        _, _, jacobian, direction = work.along
+        closeness = _distance_to_rest(jacobian * (self.node_scale / self.node_scale[:, None]), direction)
+        if not size > 0.0 or not np.isfinite(closeness):
             return np.array([short])
-        return np.array([min(short, float(np.log10(max(work.closeness / size, 1e-300) / CLOSE)))])
+        return np.array([min(short, float(np.log10(max(closeness / size, 1e-300) / CLOSE)))])
 
     def margin_kind(self, j: int) -> str:
         """A cycle that comes near to an equilibrium ends as a homoclinic orbit."""
@@ -543,7 +538,8 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
 
 def _distance_to_rest(matrices: np.ndarray, rates: np.ndarray) -> float:
-    """The shortest Newton step to an equilibrium from points with Jacobians (..., d, d) and rates (..., d); infinite if there is none."""
+    """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates; infinite if there is none."""
+    rates = rates.reshape(len(matrices), -1)
     try:
         steps = np.linalg.solve(matrices, rates[..., None])[..., 0]
     except np.linalg.LinAlgError:  # one of them is singular to the last bit

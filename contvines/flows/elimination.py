@@ -8,11 +8,14 @@ columns (period, parameter) and rows (phase, border) go along.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from ..core.library import NUMBER, POINTER, WHOLE, address, function, native
 from ..core.multipliers.periodic_schur import multipliers
+from ..core.records import pack
 
 LEAST = 1e-18  # singular values of a singular system, relative to the largest
 
@@ -145,6 +148,77 @@ def _solve(matrix: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
     left, values, right = np.linalg.svd(matrix)
     values = np.maximum(values, LEAST * max(values[0], 1e-200))
     return right.T @ ((left.T @ sides) / values[:, None]), 0.0
+
+
+class Eliminated(NamedTuple):
+    """Values at the nodes, shape (N, m d, s), shared unknowns, (k, s), equations between mesh points, both (N, d, d), sign of the determinant."""
+
+    states: np.ndarray
+    shared: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    sign: float
+
+
+def solve_collocation(
+    blocks: np.ndarray,
+    columns: np.ndarray,
+    rows: np.ndarray,
+    foot: np.ndarray,
+    d: int,
+    closure: float = 1.0,
+) -> Eliminated:
+    """Solve ``blocks[i] x_i + columns[i] (e, -1) = 0``, ``sum rows[i] x_i + foot (e, -1) = 0``, where the last node of an interval is the
+
+    first one of the next, and the last one of all is ``closure`` times the first: in the native core, or by :func:`reference`.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (N, m d, (m + 1) d)
+    columns : ndarray, shape (N, m d, k + s)
+        Of the k shared unknowns, then s right-hand sides.
+    rows : ndarray, shape (N, k, m d)
+    foot : ndarray, shape (k, k + s)
+    d : int
+    closure : float
+    """
+    if not native():
+        return reference(blocks, columns, rows, foot, d, closure)
+    count, size, _ = blocks.shape
+    k, s = foot.shape[0], foot.shape[1] - foot.shape[0]
+    arrays = [np.ascontiguousarray(array, dtype=float) for array in (blocks, columns, rows, foot)]
+    left, right = np.empty((2, count, d, d))
+    states, shared, room = (
+        np.empty((count, size, s)),
+        np.empty((k, s)),
+        np.empty(_room(count, size - d, d, k, s)),
+    )
+    system = pack(count, size - d, d, k, s, float(closure), *arrays, left, right, states, shared, room)
+    sign = function("core_collocation", NUMBER, POINTER)(address(system))
+    return Eliminated(states, shared, left, right, sign)
+
+
+@lru_cache(maxsize=64)
+def _room(*sizes: int) -> int:
+    return function("core_collocation_room", WHOLE, *[WHOLE] * 5)(*sizes)
+
+
+def reference(
+    blocks: np.ndarray, columns: np.ndarray, rows: np.ndarray, foot: np.ndarray, d: int, closure: float
+) -> Eliminated:
+    """:func:`solve_collocation` in numpy."""
+    count, k, s = len(blocks), len(foot), foot.shape[1] - len(foot)
+    cond = condense(blocks, columns, d)
+    passed = np.matmul(rows[:, :, d:], cond.maps)
+    foot = foot - passed[:, :, 2 * d :].sum(axis=0)
+    mesh = np.zeros((count + 1, k, d))
+    mesh[:-1] = rows[:, :, :d] - passed[:, :, :d]
+    mesh[1:] -= passed[:, :, d : 2 * d]
+    solved = solve_cyclic(cond.left, cond.right, cond.columns, mesh, foot, closure)
+    weights = np.broadcast_to(np.concatenate([solved.shared, -np.eye(s)]), (count, k + s, s))
+    inside = -np.matmul(cond.maps, np.concatenate([solved.mesh[:-1], solved.mesh[1:], weights], axis=1))
+    states = np.concatenate([solved.mesh[:-1], inside], axis=1)
+    return Eliminated(states, solved.shared, cond.left, cond.right, solved.sign * cond.sign)
 
 
 def multipliers_of(left: np.ndarray, right: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problems.functions import NotEvaluable
 from ..problems.kernels import Kernels
-from .elimination import condense, multipliers_of, solve_cyclic
+from .elimination import condense, multipliers_of, solve_collocation
 from .mesh import closed
 
 
@@ -26,8 +26,9 @@ class CycleWork:
         self.blocks: np.ndarray = np.zeros(0)
         self.by_period: np.ndarray = np.zeros(0)
         self.phase: np.ndarray = np.zeros(0)
-        self.speeds: np.ndarray = np.zeros(0)
-        self.closeness = np.inf
+        self.along: Any = (
+            None  # of autonomous flows: mesh points, parameter, Jacobians and rates at the Gauss points
+        )
         self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
         self.kept: Any = None  # by_period and phase, while the closure is turned round
         self.full: Any = (
@@ -90,7 +91,6 @@ def _solve(
     widths = np.concatenate([-column[tail, None], sides[tail]], axis=1)  # by the parameter, then of each side
     shared = [work.by_period[:, :, None]] if free else []
     shared += [column[:states].reshape(count, m * d, 1), sides[:states].reshape(count, m * d, 2)]
-    cond = condense(work.blocks, np.concatenate(shared, axis=2), d)
     k = free + 1
     rows = np.zeros((count, k, m * d))
     foot = np.zeros((k, k + 2))
@@ -102,26 +102,14 @@ def _solve(
     foot[-1, k - 1 :] = border[-1], *sides[-1]
     foot[-1, k - 1] += border[tail] @ widths[:, 0]
     foot[-1, k:] -= border[tail] @ widths[:, 1:]
-    passed = np.matmul(rows[:, :, d:], cond.maps)
-    foot -= passed[:, :, 2 * d :].sum(axis=0)
-    mesh = np.zeros((count + 1, k, d))
-    mesh[:-1] = rows[:, :, :d] - passed[:, :, :d]
-    mesh[1:] -= passed[:, :, d : 2 * d]
-    solved = solve_cyclic(cond.left, cond.right, cond.columns, mesh, foot, work.closure)
-    work.mesh = cond.left, cond.right
-    weights = np.concatenate([solved.shared, -np.eye(2)])
-    inside = -np.matmul(
-        cond.maps,
-        np.concatenate(
-            [solved.mesh[:-1], solved.mesh[1:], np.broadcast_to(weights, (count, *weights.shape))], axis=1
-        ),
-    )
+    solved = solve_collocation(work.blocks, np.concatenate(shared, axis=2), rows, foot, d, work.closure)
+    work.mesh = solved.left, solved.right
     found = np.empty((len(border), 2))
-    found[:states] = np.concatenate([solved.mesh[:-1], inside], axis=1).reshape(states, 2)
+    found[:states] = solved.states.reshape(states, 2)
     found[states : states + free] = solved.shared[:free]
     found[-1] = solved.shared[-1]
     found[tail] = widths[:, 1:] + widths[:, :1] * solved.shared[-1]
-    return found, solved.sign * cond.sign
+    return found, solved.sign
 
 
 def _solve_full(
@@ -152,7 +140,8 @@ def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     if not data.free_period:
         return multipliers_of(left, right), 0.0
     steps = -np.linalg.solve(right, left)
-    speeds = work.speeds
+    points, p, _, _ = work.along
+    speeds = data.field(points, p) / data.node_scale
     sizes = np.linalg.norm(speeds, axis=1)
     if not sizes.min() > 1e-12 * (1.0 + sizes.max()):
         values = multipliers_of(

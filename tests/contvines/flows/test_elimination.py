@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contvines.flows.elimination import condense, multipliers_of, solve_cyclic
+from contvines.flows.elimination import condense, multipliers_of, reference, solve_collocation, solve_cyclic
 
 SIZES = [(1, 2, 1, 2), (2, 3, 2, 1), (5, 3, 2, 2), (8, 2, 1, 1), (13, 1, 2, 2)]
 
@@ -81,3 +81,54 @@ def test_a_pair_beside_a_tiny_multiplier():
     pair = found[np.abs(found.imag) > 0.1]
     assert np.allclose(np.sort_complex(pair), np.sort_complex(np.exp([0.3j, -0.3j])), atol=1e-12)
     assert np.isclose(np.abs(found).min(), 1e-40, rtol=1e-11)
+
+
+@pytest.mark.parametrize("method", [solve_collocation, reference])
+@pytest.mark.parametrize(
+    ("n", "m", "d", "k", "s"), [(1, 2, 1, 1, 1), (2, 3, 2, 2, 2), (7, 4, 3, 2, 2), (12, 7, 2, 1, 3)]
+)
+@pytest.mark.parametrize("closure", [1.0, -1.0])
+def test_collocation_equations_are_solved_as_written_out(method, n, m, d, k, s, closure):
+    rng = np.random.default_rng(n)
+    blocks, rows = rng.standard_normal((n, m * d, (m + 1) * d)), rng.standard_normal((n, k, m * d))
+    columns, foot = rng.standard_normal((n, m * d, k + s)), rng.standard_normal((k, k + s))
+    size = n * m * d
+    whole, sides = np.zeros((size + k, size + k)), np.zeros((size + k, s))
+    for i in range(n):
+        here, first = slice(i * m * d, (i + 1) * m * d), (i + 1) * m * d % size
+        whole[here, here] += blocks[i][:, : m * d]
+        whole[here, first : first + d] += (closure if i == n - 1 else 1.0) * blocks[i][:, m * d :]
+        whole[here, size:], whole[size:, here] = columns[i][:, :k], rows[i]
+        sides[here] = columns[i][:, k:]
+    whole[size:, size:], sides[size:] = foot[:, :k], foot[:, k:]
+    found = method(blocks, columns, rows, foot, d, closure)
+    expected = np.linalg.solve(whole, sides)
+    scale = np.abs(expected).max()
+    assert np.abs(found.states.reshape(size, s) - expected[:size]).max() < 1e-11 * scale
+    assert np.abs(found.shared - expected[size:]).max() < 1e-11 * scale
+
+
+def test_both_cores_agree_on_signs_and_equations_between_mesh_points():
+    rng = np.random.default_rng(4)
+    signs = []
+    for _ in range(12):
+        system = (
+            rng.standard_normal((5, 6, 8)),
+            rng.standard_normal((5, 6, 4)),
+            rng.standard_normal((5, 2, 6)),
+            rng.standard_normal((2, 4)),
+        )
+        one, other = (method(*system, 2, 1.0) for method in (solve_collocation, reference))
+        signs.append(one.sign * other.sign)
+        maps = [np.linalg.solve(found.right, found.left) for found in (one, other)]
+        assert np.allclose(*maps, rtol=1e-9, atol=1e-9)
+    assert len(set(signs)) == 1
+
+
+def test_a_singular_system_has_large_solutions_and_no_sign():
+    blocks = np.tile(np.array([[-1.0, 1.0]]), (3, 1, 1))  # x_0 = x_1 = x_2 = x_0, without a border
+    found = solve_collocation(
+        blocks, np.array([[[1.0]], [[0.0]], [[0.0]]]), np.zeros((3, 0, 1)), np.zeros((0, 1)), 1
+    )
+    assert abs(found.sign) <= 1.0
+    assert np.abs(found.states).max() > 1e12
