@@ -5,6 +5,7 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import contvines as cv
@@ -29,3 +30,30 @@ def test_a_table_of_c_functions_is_followed(tmp_path):
     found = sorted((p.kind, p.value) for p in graph.special.values() if p.kind != "end")
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]
     assert [value for _, value in found] == pytest.approx([value for _, value in expected], abs=1e-12)
+
+
+@needed
+def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
+    path = ROOT / "examples" / "compiled" / "lorenz.py"
+    spec = importlib.util.spec_from_file_location("lorenz", path)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    flow = example.flow(example.compiled(tmp_path))
+    graph = cv.diagram(flow, over="r", within=(13.0, 26.0), settings={"max_branches": 2})
+    assert graph.of_kind("hopf")[0].value == pytest.approx(470 / 19, abs=1e-11)
+    assert graph.of_kind("homoclinic")[0].value == pytest.approx(13.926557, abs=1e-6)  # Sparrow 1982: 13.926
+    rng = np.random.default_rng(1)
+    x = rng.uniform(-1.0, 1.0, (4, 3))
+    field, (r, s, b) = flow.field, (20.0, 10.0, 8 / 3)
+    expected = np.array([[s * (v - u), r * u - v - u * w, u * v - b * w] for u, v, w in x])
+    assert np.allclose(field(x, 20.0), expected, rtol=1e-15)
+    for j in range(3):
+        step = np.eye(3)[j] * 1e-5
+        difference = (field(x + step, 20.0) - field(x - step, 20.0)) / 2e-5
+        assert np.allclose(field.jacobian(x, 20.0)[:, :, j], difference, atol=1e-9)
+    assert np.allclose(field.slope(x, 20.0), np.column_stack([0 * x[:, 0], x[:, 0], 0 * x[:, 0]]))
+
+
+def test_libraries_that_are_not_there_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="nowhere.so"):
+        cv.flows.CompiledRates(tmp_path / "nowhere.so")

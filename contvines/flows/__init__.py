@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from .compiled import CompiledRates
 from .files import read_ode
 from .problem import FlowProblem
 
-__all__ = ["FlowProblem", "read_ode"]
+__all__ = ["CompiledRates", "FlowProblem", "read_ode"]

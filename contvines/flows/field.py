@@ -11,6 +11,7 @@ import numpy as np
 from ..problems.derivatives import COMPLEX_STEP, Differentiated
 from ..problems.functions import NotEvaluable
 from ..problems.parameters import ParameterSet
+from .compiled import CompiledRates
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
@@ -62,6 +63,7 @@ class Field:
         self.lengths, self.complex_step = self.functions.lengths, self.functions.complex_step
         if not self.complex_step and not self.functions.noise.any():
             self.complex_step = self.functions._complex_step_works(start, values.start)
+        self.compiled = f if isinstance(f, CompiledRates) else None
         self.many = self.many_jacobian = False
         self._find_vectorised(start)
 
@@ -100,6 +102,8 @@ class Field:
             If f fails or does not return d numbers.
         """
         parameters = self.values.at(p)
+        if self.compiled is not None:
+            return self.compiled.at_points(self.compiled.f, x, parameters, t, (self.node,))
         if self.many:
             return self._stacked(self.f, x, parameters, t, (self.node,))
         times = [None] * len(x) if t is None else t
@@ -156,6 +160,8 @@ class Field:
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dx at the points, shape (n, d, d)."""
         shape = (self.node, self.node)
+        if self.compiled is not None and self.compiled.dfdx is not None:
+            return self.compiled.at_points(self.compiled.dfdx, x, self.values.at(p), t, shape)
         if self.given_jacobian is not None:
             parameters = self.values.at(p)
             if self.many_jacobian:
@@ -190,6 +196,11 @@ class Field:
     def slope(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dp at fixed points and times, shape (n, d)."""
         given = self.given_derivative
+        if self.compiled is not None and self.compiled.dfdp is not None:
+            names = list(self.values.values)
+            shape, parameters = (self.node, len(names)), self.values.at(p)
+            found = self.compiled.at_points(self.compiled.dfdp, x, parameters, t, shape)
+            return found[:, :, names.index(self.values.varying)]
         if isinstance(given, Mapping):
             given = given.get(self.values.varying)
         if given is None:

@@ -15,6 +15,7 @@ from ..problems.scales import flat_start, given_scale
 from . import mesh
 from .attractors import recurrence
 from .collocation import rule
+from .compiled import CompiledRates
 from .cycles import CycleProblem
 from .equilibria import Equilibria
 from .expressions import compiled_expressions
@@ -38,7 +39,7 @@ class FlowProblem:
     ----------
     f : callable
         (x, p) -> d numbers, of forced flows (x, p, t). It may be written for arrays, ``x[0]`` being a number or an array of
-        numbers; whether it is, is found out.
+        numbers; whether it is, is found out. Or :class:`contvines.flows.CompiledRates`, functions in C.
     x0 : array_like, shape (d,)
         A start.
     params : float, or mapping of str to float
@@ -92,6 +93,10 @@ class FlowProblem:
             raise ValueError(f"error = {error!r} must be a number between 0 and 1")
         self.error = float(error)
         self.x0, self.degree, self.name = flat_start(x0), int(degree), name
+        if isinstance(f, CompiledRates):
+            names = list(ParameterSet(params, parameter).values)
+            jacobian = jacobian or (f.jacobian if f.dfdx is not None else None)
+            derivative = derivative or (f.derivatives(names) if f.dfdp is not None else None)
         self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
         self.given_period, self.given_scale = period, scale
         self.values = ParameterSet(params, parameter)
